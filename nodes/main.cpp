@@ -32,14 +32,12 @@ int main(int argc, char** argv) {
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
     if (!as_rank)  // a rank has words of its own, after MPI has begun, which fails with the same status
-      furrow::launch::end_where_no_thread_starts(std::string("furrow: error: ") + furrow::launch::kNoThread +
-                                                 "\n");
+      furrow::launch::end_where_no_thread_starts(std::string("furrow: error: ") + furrow::launch::kNoThread + "\n");
     furrow::launch::require_stack(argv);
     // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
     const std::string command = argc > 1 ? argv[1] : "";
     if (command == "bed" || command == "sweep" || as_rank) furrow::launch::wait_passively(argv);
-    if (!as_rank)
-      furrow::launch::end_where_processor_time_runs_out();  // the program does not start again after this
+    if (!as_rank) furrow::launch::end_where_processor_time_runs_out();  // the program does not start again after this
     const furrow::ExitCode code = furrow::commands::run_command_line(argc, argv);
     if (!std::cout.flush() && !furrow::launch::reader_is_gone())
       throw furrow::io_error("standard output", "cannot be written, expected room for the result");

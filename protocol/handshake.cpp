@@ -17,9 +17,8 @@ std::vector<Address> all_nodes(int tire_count, int terrain_ranks) {
 template <class T>
 void require_same(const NodeCard& first, const NodeCard& card, const char* what, const T& a, const T& b) {
   if (a == b) return;
-  throw Error(ExitCode::bad_input,
-              fmt::format("handshake: {} of {} is {} but that of {} is {}; expected the same", what,
-                          to_string(first.self), a, to_string(card.self), b));
+  throw Error(ExitCode::bad_input, fmt::format("handshake: {} of {} is {} but that of {} is {}; expected the same",
+                                               what, to_string(first.self), a, to_string(card.self), b));
 }
 
 void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes, int tires) {
@@ -40,9 +39,9 @@ void check(const std::vector<NodeCard>& cards, const std::vector<Address>& nodes
                                                    to_string(card.self), card.substeps));
   }
   if (rig.wheel_count != tires)
-    throw Error(ExitCode::bad_input,
-                fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)",
-                            rig.wheel_count, tires));
+    throw Error(
+        ExitCode::bad_input,
+        fmt::format("handshake: the rig carries {} wheel(s) but the scenario has {} tire(s)", rig.wheel_count, tires));
   for (const NodeCard& card : cards)
     if (card.self.role != Role::tire && card.tire_count != tires)
       throw Error(ExitCode::bad_input, fmt::format("handshake: the {} expects {} tire(s) but there are {}",

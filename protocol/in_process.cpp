@@ -54,8 +54,7 @@ class QueueWire final : public Wire {
 
   void idle(int, double) override {
     std::unique_lock lock(own().mutex);
-    own().changed.wait_for(lock, std::chrono::milliseconds(20),
-                           [&] { return own().arrivals != arrivals_seen_; });
+    own().changed.wait_for(lock, std::chrono::milliseconds(20), [&] { return own().arrivals != arrivals_seen_; });
   }
   void expect_losses(double, int) noexcept override {}
 

@@ -80,9 +80,8 @@ struct NodeCard {
   MassProperties tire_mass;  // tire: rigid-body mass properties, added to the rim body by the rig
   double tire_radius = 0.0;  // tire: undeformed radius of the contact surface, m
   double tire_width = 0.0;   // tire: tread width, m
-  double tire_reach =
-      0.0;  // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
-  std::int64_t size = 0;  // grains or coordinates, for the reports
+  double tire_reach = 0.0;   // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
+  std::int64_t size = 0;     // grains or coordinates, for the reports
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<NodeCard> auto& s) {
@@ -161,9 +160,8 @@ struct RimMotion {
   static constexpr MessageKind kKind = MessageKind::rim_motion;
   StepHeader header;
   RimState rim;
-  Order order = Order::go_on;  // due at synchronization n + 1
-  std::int64_t ends_at =
-      kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
+  Order order = Order::go_on;      // due at synchronization n + 1
+  std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
@@ -177,19 +175,19 @@ void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
 struct SpindleReport {
   static constexpr MessageKind kKind = MessageKind::spindle_report;
   StepHeader header;
-  Wrench wrench;   // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
-  Wrench spindle;  // on the rim by the tire, complete
-  double lowest_point = 0.0;             // lowest contact-surface vertex z, m
-  TireDiagnostics diagnostics;           // of the model
+  Wrench wrench;                // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
+  Wrench spindle;               // on the rim by the tire, complete
+  double lowest_point = 0.0;    // lowest contact-surface vertex z, m
+  TireDiagnostics diagnostics;  // of the model
   Vec3 impulse_received = Vec3::Zero();  // cumulative, N s
   double impulse_received_abs = 0.0;     // cumulative Σ|impulse per interval|, N s
   Vec3 spindle_impulse = Vec3::Zero();   // by the tire on the rim, complete, cumulative, N s
   Vec3 gravity_impulse = Vec3::Zero();   // cumulative, N s
   double terrain_work = 0.0;             // cumulative Σ f̄·Δx_tire at the vertices, J
-  double rim_work = 0.0;  // cumulative work done by the rim on the tire, −(F·way + M·turn), J
-  std::int64_t newton_iterations = 0;  // cumulative
-  std::int64_t factorizations = 0;     // cumulative
-  double residual = 0.0;               // last converged free residual / reference
+  double rim_work = 0.0;                 // cumulative work done by the rim on the tire, −(F·way + M·turn), J
+  std::int64_t newton_iterations = 0;    // cumulative
+  std::int64_t factorizations = 0;       // cumulative
+  double residual = 0.0;                 // last converged free residual / reference
   // Of a tire that uses contact tangents: its forces differ from those reported for the same interval.
   bool contact_tangent = false;
   Vec3 impulse_ahead = Vec3::Zero();  // received beyond what the terrain had reported until then, N s

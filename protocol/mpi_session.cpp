@@ -45,8 +45,7 @@ bool one_machine() {
 /// Ends the process when it lives longer than `patience` seconds of its own running time.
 class Deadline {
  public:
-  Deadline(double patience, int exit_code)
-      : thread_([this, patience, exit_code] { watch(patience, exit_code); }) {}
+  Deadline(double patience, int exit_code) : thread_([this, patience, exit_code] { watch(patience, exit_code); }) {}
   ~Deadline() {
     {
       const std::lock_guard lock(mutex_);
@@ -128,8 +127,7 @@ Communicator Communicator::machine(MPI_Comm of) {
   return Communicator(made);
 }
 
-Communicator::Communicator(Communicator&& other) noexcept
-    : comm_(std::exchange(other.comm_, MPI_COMM_NULL)) {}
+Communicator::Communicator(Communicator&& other) noexcept : comm_(std::exchange(other.comm_, MPI_COMM_NULL)) {}
 
 Communicator::~Communicator() {
   if (comm_ != MPI_COMM_NULL) MPI_Comm_free(&comm_);

@@ -83,8 +83,7 @@ std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_
     throw wrong_count(needed, tire_count, terrain_ranks, found);
   const int role = static_cast<int>(address_of(world_rank(), tire_count).role);
   std::vector<HostNode> host = gather_host_nodes(tire_count);
-  return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count,
-                                         std::move(host));
+  return std::make_unique<NodeTransport>(std::make_unique<MpiWire>(session, role), tire_count, std::move(host));
 }
 
 std::vector<std::string> launcher_variables() {

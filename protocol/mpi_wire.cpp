@@ -88,8 +88,7 @@ void MpiWire::post(std::deque<PendingSend>& sends, const Communicator& comm, int
   PendingSend& send = sends.emplace_back();
   send.to = to;
   send.payload = std::move(payload);
-  MPI_Isend(send.payload.data(), static_cast<int>(send.payload.size()), MPI_BYTE, to, tag, comm.get(),
-            &send.request);
+  MPI_Isend(send.payload.data(), static_cast<int>(send.payload.size()), MPI_BYTE, to, tag, comm.get(), &send.request);
   doorbells_.ring(to);
 }
 
@@ -148,9 +147,7 @@ bool MpiWire::every_message_rings() const {
   return doorbells_.everyone() && (session_.receivers_pull() || (sends_.empty() && control_sends_.empty()));
 }
 
-void MpiWire::expect_losses(double patience, int exit_code) noexcept {
-  session_.expect_losses(patience, exit_code);
-}
+void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_.expect_losses(patience, exit_code); }
 
 /// Gives what is still under way a moment to leave, so that a failure notice is not lost.
 void MpiWire::drain(double longest) {

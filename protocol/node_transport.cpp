@@ -39,10 +39,7 @@ class Wait {
 }  // namespace
 
 NodeTransport::NodeTransport(std::unique_ptr<Wire> wire, int tire_count, std::vector<HostNode> host_nodes)
-    : wire_(std::move(wire)),
-      tire_count_(tire_count),
-      host_nodes_(std::move(host_nodes)),
-      watch_(*wire_, tire_count) {
+    : wire_(std::move(wire)), tire_count_(tire_count), host_nodes_(std::move(host_nodes)), watch_(*wire_, tire_count) {
   FURROW_ASSERT(tire_count >= 0 && wire_->node_count() >= tire_count + 2, tire_count, wire_->node_count());
 }
 
@@ -57,8 +54,7 @@ int NodeTransport::number(Address node) const {
       if (node.index < 0 || node.index >= terrain_ranks()) break;
       return 1 + tire_count_ + node.index;
   }
-  throw Error(ExitCode::rank_lost,
-              to_string(self()) + " addressed " + to_string(node) + ", which does not exist");
+  throw Error(ExitCode::rank_lost, to_string(self()) + " addressed " + to_string(node) + ", which does not exist");
 }
 
 void NodeTransport::send(Address to, MessageKind kind, std::vector<std::byte> payload) {
@@ -102,8 +98,7 @@ std::vector<std::byte> NodeTransport::receive(Address from, MessageKind kind) {
 
 void NodeTransport::flush() {
   int to = -1;
-  wait_until([&] { return (to = wire_->unsent_to()) < 0; }, [&] { return to; },
-             "to take what was sent to it");
+  wait_until([&] { return (to = wire_->unsent_to()) < 0; }, [&] { return to; }, "to take what was sent to it");
 }
 
 void NodeTransport::heartbeat() {

@@ -118,8 +118,7 @@ void PeerWatch::tell(int target) {
 Error PeerWatch::lost(int from, const std::string& what, double timeout) {
   FURROW_ASSERT(in_range(from, peers_.size()), from, peers_.size());
   told_ = false;  // whoever loses patience just now must still know whom this node waited for
-  std::string text =
-      fmt::format("{} waited {:g} s for {} ({})", name(wire_.self()), timeout, name(from), what);
+  std::string text = fmt::format("{} waited {:g} s for {} ({})", name(wire_.self()), timeout, name(from), what);
   std::vector<bool> met(peers_.size(), false);
   met[wire_.self()] = true;
   int silent = from;
@@ -131,8 +130,7 @@ Error PeerWatch::lost(int from, const std::string& what, double timeout) {
   if (met[silent]) return Error(ExitCode::rank_lost, text + ": the nodes wait for one another");
   text += fmt::format(": {} does not answer; raise run.peer_timeout if it is only slow", name(silent));
   int terrains = 0;
-  for (int node = 0; node < wire_.node_count(); ++node)
-    terrains += address(node).role == Role::terrain ? 1 : 0;
+  for (int node = 0; node < wire_.node_count(); ++node) terrains += address(node).role == Role::terrain ? 1 : 0;
   if (terrains > 1 && address(silent) == Address{Role::terrain, 0})
     text += fmt::format("; it may wait inside its engine for one of terrain 1 to {}", terrains - 1);
   return Error(ExitCode::rank_lost, text);

@@ -91,9 +91,8 @@ template <class M>
 M receive_step(Transport& transport, Address from, std::int64_t step) {
   M message = receive<M>(transport, from);
   if (message.header.step != step)
-    throw Error(ExitCode::rank_lost, to_string(transport.self()) + " expected step " + std::to_string(step) +
-                                         " from " + to_string(from) + " but got step " +
-                                         std::to_string(message.header.step));
+    throw Error(ExitCode::rank_lost, to_string(transport.self()) + " expected step " + std::to_string(step) + " from " +
+                                         to_string(from) + " but got step " + std::to_string(message.header.step));
   return message;
 }
 

@@ -22,8 +22,7 @@ void mount_masses(DrawbarRigOptions& rig, const MountedTire& tire, const ReadCon
 }
 
 /// load = (carrier + rim + tire) g: the one that is open from the other.
-void mount_load(DrawbarRigOptions& rig, const MountedTire& tire, const ReadContext& context,
-                const std::string& wheel) {
+void mount_load(DrawbarRigOptions& rig, const MountedTire& tire, const ReadContext& context, const std::string& wheel) {
   const double g = -rig.gravity.z(), rest = rig.rim_mass + tire.mass;
   if (is_open(rig.load)) {
     rig.load = (rig.carrier_mass + rest) * g;
@@ -31,11 +30,10 @@ void mount_load(DrawbarRigOptions& rig, const MountedTire& tire, const ReadConte
   }
   rig.carrier_mass = rig.load / g - rest;
   if (!(rig.carrier_mass > 0.0))
-    throw input_error(
-        context.file, context.key(wheel + "load"),
-        fmt::format("is {} N, expected above {:.6g} N: rim ({} kg) and tire ({:.4g} kg) weigh that by "
-                    "themselves; see rig.rim_mass and the tire file",
-                    number_text(rig.load), rest * g, number_text(rig.rim_mass), tire.mass));
+    throw input_error(context.file, context.key(wheel + "load"),
+                      fmt::format("is {} N, expected above {:.6g} N: rim ({} kg) and tire ({:.4g} kg) weigh that by "
+                                  "themselves; see rig.rim_mass and the tire file",
+                                  number_text(rig.load), rest * g, number_text(rig.rim_mass), tire.mass));
 }
 
 void mount_damper(DrawbarRigOptions& rig, const MountedTire& tire) {

@@ -41,8 +41,7 @@ void validate(const DrawbarRigOptions& o) {
   require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
   require(o.toe_time >= 0.0 && std::isfinite(o.toe_time), "toe_time", "must not be negative");
   require(o.toe_ramp > 0.0 && std::isfinite(o.toe_ramp), "toe_ramp", "must be positive");
-  require(std::abs(o.camber_angle) < 0.25 * std::numbers::pi, "camber_angle",
-          "must lie between -pi/4 and pi/4 rad");
+  require(std::abs(o.camber_angle) < 0.25 * std::numbers::pi, "camber_angle", "must lie between -pi/4 and pi/4 rad");
   require(o.travel_sign == 1.0 || o.travel_sign == -1.0, "travel_sign", "must be 1 or -1");
   require(std::isfinite(o.start), "start", "must be finite");
   require(std::isfinite(o.lateral), "lateral", "must be finite");
@@ -59,10 +58,10 @@ void validate(const DrawbarRigOptions& o) {
 
 /// What the rig measures with its longitudinal drive and its damper: columns of the wheel's table.
 struct DrawbarRow {
-  double pull = 0.0;  // raw + m·a of everything the drive carries, N, positive when the tire pulls the rig
-  double pull_raw = 0.0;             // reaction of the longitudinal drive, N
-  double damper_force = 0.0;         // touch-down damper on the slider, N
-  double pull_work = 0.0;            // ∫ raw pull · v dt, J
+  double pull = 0.0;          // raw + m·a of everything the drive carries, N, positive when the tire pulls the rig
+  double pull_raw = 0.0;      // reaction of the longitudinal drive, N
+  double damper_force = 0.0;  // touch-down damper on the slider, N
+  double pull_work = 0.0;     // ∫ raw pull · v dt, J
   double damper_dissipation = 0.0;   // touch-down damper, J
   double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
   double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
@@ -205,18 +204,14 @@ void DrawbarRig::build(double axle_height) {
   if (!steered()) state.orientation = Quat(Eigen::AngleAxisd(options_.toe_angle, Vec3::UnitZ()));
   set_toe_ = system_->add_body("set-toe", options_.set_toe_mass, kGuidedInertia * Mat3::Identity(), state);
   // Camber: about the wheel's forward axis.
-  state.orientation = state.orientation *
-                      Quat(Eigen::AngleAxisd(options_.travel_sign * options_.camber_angle, Vec3::UnitX()));
-  carrier_ =
-      system_->add_body("wheel carrier", options_.carrier_mass, kCarrierInertia * Mat3::Identity(), state);
+  state.orientation =
+      state.orientation * Quat(Eigen::AngleAxisd(options_.travel_sign * options_.camber_angle, Vec3::UnitX()));
+  carrier_ = system_->add_body("wheel carrier", options_.carrier_mass, kCarrierInertia * Mat3::Identity(), state);
   const Vec3 axle = state.orientation * Vec3::UnitY();
-  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia,
-                      options_.rim_diametral_inertia);
-  state.angular_velocity = options_.travel_sign *
-                           vehicle::ramped_motion(-options_.move_from, spin_speed_, options_.ramp).rate *
-                           axle;
-  rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia,
-                           state);
+  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia, options_.rim_diametral_inertia);
+  state.angular_velocity =
+      options_.travel_sign * vehicle::ramped_motion(-options_.move_from, spin_speed_, options_.ramp).rate * axle;
+  rim_ = system_->add_body("rim", options_.rim_mass + tire_.mass, Mat3(diagonal.asDiagonal()) + tire_.inertia, state);
 
   const Vec3 centre = state.position;
   const auto place = [&](const Vec3& axis) {
@@ -225,32 +220,27 @@ void DrawbarRig::build(double axle_height) {
     joint.axis = axis;
     return joint;
   };
-  rail_ =
-      system_->add_joint(vehicle::JointKind::prismatic, "rail", vehicle::kGround, chassis_, place(forward_));
-  toe_lock_ = system_->add_joint(steered() ? vehicle::JointKind::revolute : vehicle::JointKind::fixed,
-                                 "toe lock", chassis_, set_toe_, place(Vec3::UnitZ()));
-  slider_ = system_->add_joint(vehicle::JointKind::prismatic, "vertical slider", set_toe_, carrier_,
-                               place(Vec3::UnitZ()));
+  rail_ = system_->add_joint(vehicle::JointKind::prismatic, "rail", vehicle::kGround, chassis_, place(forward_));
+  toe_lock_ = system_->add_joint(steered() ? vehicle::JointKind::revolute : vehicle::JointKind::fixed, "toe lock",
+                                 chassis_, set_toe_, place(Vec3::UnitZ()));
+  slider_ =
+      system_->add_joint(vehicle::JointKind::prismatic, "vertical slider", set_toe_, carrier_, place(Vec3::UnitZ()));
   spindle_ = system_->add_joint(vehicle::JointKind::revolute, "spindle", carrier_, rim_, place(axle));
   const auto from_rest = [ramp = options_.ramp, from = options_.move_from](double speed) {
     return [=](double t) { return vehicle::ramped_motion(t - from, speed, ramp); };
   };
   drive_ = system_->add_motor("longitudinal drive", rail_, from_rest(travel_speed_));
   if (!free_rolling()) {
-    spindle_motor_ =
-        system_->add_motor("spindle motor", spindle_, from_rest(options_.travel_sign * spin_speed_));
+    spindle_motor_ = system_->add_motor("spindle motor", spindle_, from_rest(options_.travel_sign * spin_speed_));
   }
   if (steered())
-    steering_ = system_->add_motor(
-        "steering", toe_lock_,
-        [angle = options_.toe_angle, from = options_.toe_time, duration = options_.toe_ramp](double t) {
-          return vehicle::step_motion(t - from, angle, duration);
-        });
+    steering_ = system_->add_motor("steering", toe_lock_,
+                                   [angle = options_.toe_angle, from = options_.toe_time, duration = options_.toe_ramp](
+                                       double t) { return vehicle::step_motion(t - from, angle, duration); });
   const double c = options_.touchdown_damping, until = options_.touchdown_time;
-  damper_ =
-      system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
-        return t < until ? vehicle::ElementForce{-c * rate, c} : vehicle::ElementForce{};
-      });
+  damper_ = system_->add_joint_element("touch-down damper", slider_, [c, until](double, double rate, double t) {
+    return t < until ? vehicle::ElementForce{-c * rate, c} : vehicle::ElementForce{};
+  });
   system_->track_energy(damper_);
 }
 
@@ -271,8 +261,7 @@ void DrawbarRig::hold_axle() {
 void DrawbarRig::place(std::span<const double> axle_height) {
   if (axle_height.size() != 1) throw physics_error("drawbar rig: expected one axle height");
   if (!std::isfinite(axle_height[0])) throw physics_error("drawbar rig: the axle height is not finite");
-  if (!(radius_ > 0.0))
-    throw physics_error("drawbar rig: the tire's mass and radius must be added before placing");
+  if (!(radius_ > 0.0)) throw physics_error("drawbar rig: the tire's mass and radius must be added before placing");
   build(axle_height[0]);
   system_->assemble(0.0);
   report_ = {};
@@ -357,11 +346,9 @@ void DrawbarRig::book(const Stand& from, double turned, const Wrench& wrench, do
   RigAccounts& a = accounts_;
   a.drive_work += torque * turned;
   a.pull_work += drive.dot(to.chassis - from.chassis);
-  a.guide_work +=
-      rail.dot(to.chassis - from.chassis) + rail_moment.dot(mean_turn(from.chassis_turn, to.chassis_turn));
+  a.guide_work += rail.dot(to.chassis - from.chassis) + rail_moment.dot(mean_turn(from.chassis_turn, to.chassis_turn));
   if (steered()) a.guide_work += system_->motor_force(steering_) * (to.toe - from.toe);
-  a.tire_work +=
-      wrench.force.dot(to.rim - from.rim) + wrench.moment.dot(mean_turn(from.rim_turn, to.rim_turn));
+  a.tire_work += wrench.force.dot(to.rim - from.rim) + wrench.moment.dot(mean_turn(from.rim_turn, to.rim_turn));
   double mass = 0.0;
   for (int i = 0; i < system_->body_count(); ++i) mass += system_->body(i).mass;
   a.gravity_impulse += step * mass * options_.gravity;

@@ -21,24 +21,24 @@ struct DrawbarRigOptions {
   double slip = 0.3;                         // -, below 1 for fixed_speed
   double angular_speed = 8.56;               // rad/s
   double speed = 4.0;                        // carriage speed, m/s, modes fixed_speed and free_rolling
-  double ramp = 0.15;      // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
-  double move_from = 0.0;  // when both motions begin, s: until then the wheel is lowered and stands
+  double ramp = 0.15;               // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
+  double move_from = 0.0;           // when both motions begin, s: until then the wheel is lowered and stands
   double touchdown_damping = -1.0;  // N s/m, vertical damper between set-toe and carrier
   double touchdown_time = -1.0;     // s, how long it acts
   double lowering_speed = -1.0;     // m/s, at which that damper lets the load down; in place of its constant
   double toe_angle = 0.0;           // rad, about +z
-  double toe_time = 0.0;   // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
-  double toe_ramp = 0.01;  // s, how long that takes
-  double camber_angle = 0.0;  // rad, about the wheel's forward axis: positive leans the top to the right
-  double travel_sign = 1.0;   // +1 along +x, −1 along −x (mirrored travel)
-  double start = 0.0;    // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
-  double lateral = 0.0;  // y of the wheel's mid-plane, m
-  double load = -1.0;    // weight of all that the ground carries, tire included, N
-  double carrier_mass = -1.0;           // wheel carrier with ballast, kg; in place of the load
-  double chassis_mass = 1.0;            // kg, rides on the rail
-  double set_toe_mass = 1.0;            // kg, rides on the rail
-  double rim_mass = -1.0;               // kg
-  double rim_spin_inertia = -1.0;       // kg m², about the axle
+  double toe_time = 0.0;            // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
+  double toe_ramp = 0.01;           // s, how long that takes
+  double camber_angle = 0.0;        // rad, about the wheel's forward axis: positive leans the top to the right
+  double travel_sign = 1.0;         // +1 along +x, −1 along −x (mirrored travel)
+  double start = 0.0;               // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
+  double lateral = 0.0;             // y of the wheel's mid-plane, m
+  double load = -1.0;               // weight of all that the ground carries, tire included, N
+  double carrier_mass = -1.0;       // wheel carrier with ballast, kg; in place of the load
+  double chassis_mass = 1.0;        // kg, rides on the rail
+  double set_toe_mass = 1.0;        // kg, rides on the rail
+  double rim_mass = -1.0;           // kg
+  double rim_spin_inertia = -1.0;   // kg m², about the axle
   double rim_diametral_inertia = -1.0;  // kg m²
   Vec3 gravity = standard_gravity();    // m/s²
 };

@@ -104,11 +104,9 @@ class DrawbarSpec final : public RigSpec {
     fill(section, "rim_diametral_inertia", &DrawbarRigOptions::rim_diametral_inertia);
     fill(section, "touchdown_time", &DrawbarRigOptions::touchdown_time);
     if (!by_load) fill(section, "carrier_mass", &DrawbarRigOptions::carrier_mass);
-    if (!says(section, "lowering_speed"))
-      fill(section, "touchdown_damping", &DrawbarRigOptions::touchdown_damping);
+    if (!says(section, "lowering_speed")) fill(section, "touchdown_damping", &DrawbarRigOptions::touchdown_damping);
     section["start"] = places_.front().rig.start;
-    for (std::size_t k = 0; listed_ && k < places_.size(); ++k)
-      section["wheels"][k]["start"] = places_[k].rig.start;
+    for (std::size_t k = 0; listed_ && k < places_.size(); ++k) section["wheels"][k]["start"] = places_[k].rig.start;
   }
 
  private:
@@ -159,9 +157,8 @@ class DrawbarSpec final : public RigSpec {
 void refuse_both(const json& object, const char* one, const char* other, const ReadContext& context,
                  const std::string& wheel = "") {
   if (says(object, one) && says(object, other))
-    throw input_error(
-        context.file, context.key(wheel + one),
-        fmt::format("is given beside '{}', expected one of the two", context.key(wheel + other)));
+    throw input_error(context.file, context.key(wheel + one),
+                      fmt::format("is given beside '{}', expected one of the two", context.key(wheel + other)));
 }
 
 }  // namespace

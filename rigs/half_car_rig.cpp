@@ -25,8 +25,8 @@ constexpr double kStrutLength = 1.0;     // m, from the front carrier up to the 
 
 struct HalfCarWheel {
   // As made
-  double along = 0.0;         // of the axle ahead of the body's centre, m
-  double body_share = 0.0;    // of the body's mass that it carries at rest, kg
+  double along = 0.0;                     // of the axle ahead of the body's centre, m
+  double body_share = 0.0;                // of the body's mass that it carries at rest, kg
   double stiffness = 0.0, damping = 0.0;  // N/m, N s/m
   MassProperties tire;
   double radius = 0.0;         // undeformed, m
@@ -45,10 +45,9 @@ class HalfCar final : public Rig {
                   o.pitch_inertia, o.unsprung_mass, o.rim_mass);
     FURROW_ASSERT(o.wheelbase > 0.0 && o.front_share > 0.0 && o.front_share < 1.0 && o.lowering_speed > 0.0,
                   o.wheelbase, o.front_share, o.lowering_speed);
-    FURROW_ASSERT(o.suspension_stiffness >= 0.0 && o.suspension_damping >= 0.0 &&
-                      o.rear_suspension_stiffness >= 0.0 && o.rear_suspension_damping >= 0.0,
-                  o.suspension_stiffness, o.suspension_damping, o.rear_suspension_stiffness,
-                  o.rear_suspension_damping);
+    FURROW_ASSERT(o.suspension_stiffness >= 0.0 && o.suspension_damping >= 0.0 && o.rear_suspension_stiffness >= 0.0 &&
+                      o.rear_suspension_damping >= 0.0,
+                  o.suspension_stiffness, o.suspension_damping, o.rear_suspension_stiffness, o.rear_suspension_damping);
     wheels_[0].along = o.wheelbase * (1.0 - o.front_share), wheels_[1].along = -o.wheelbase * o.front_share;
     wheels_[0].body_share = o.body_mass * o.front_share, wheels_[1].body_share = o.body_mass * (1.0 - o.front_share);
     wheels_[0].stiffness = o.suspension_stiffness, wheels_[1].stiffness = o.rear_suspension_stiffness;
@@ -59,9 +58,8 @@ class HalfCar final : public Rig {
   int wheel_count() const override { return 2; }
   Vec3 heading(int) const override { return Vec3::UnitX(); }
   std::vector<Subject> subjects() const override {
-    return {{"wheel0", columns_of<RideRow>()},
-            {"wheel1", columns_of<RideRow>()},
-            {"body", columns_of<HalfCarBodyRow>()}};
+    return {
+        {"wheel0", columns_of<RideRow>()}, {"wheel1", columns_of<RideRow>()}, {"body", columns_of<HalfCarBodyRow>()}};
   }
   void measure(int subject, std::span<double> values) const override {
     if (subject < 2)
@@ -129,8 +127,7 @@ void HalfCar::build() {
   system_.emplace();
   vehicle::BodyState state;
   state.position = Vec3(options_.start - wheels_[0].along, 0.0, wheels_[0].placed_height + kStrutLength);
-  state.velocity =
-      vehicle::ramped_motion(-options_.move_from, options_.speed, options_.ramp).rate * Vec3::UnitX();
+  state.velocity = vehicle::ramped_motion(-options_.move_from, options_.speed, options_.ramp).rate * Vec3::UnitX();
   const Mat3 guided = kGuidedInertia * Mat3::Identity();
   const double hub = kHubShare * options_.body_mass;
   trolley_ = system_->add_body("trolley", kTrolleyMass, guided, state);
@@ -207,9 +204,7 @@ RimState HalfCar::rim(int k) const {
   return {rim.position, rim.orientation, rim.velocity, rim.angular_velocity};
 }
 
-HalfCar::Stand HalfCar::stand() const {
-  return {state(trolley_), {state(wheels_[0].rim), state(wheels_[1].rim)}};
-}
+HalfCar::Stand HalfCar::stand() const { return {state(trolley_), {state(wheels_[0].rim), state(wheels_[1].rim)}}; }
 
 Outcome HalfCar::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
   FURROW_ASSERT(wrenches.size() == 2 && substeps >= 1 && duration > 0.0 && system_, wrenches.size(), substeps,
@@ -266,8 +261,8 @@ void HalfCar::book(const Stand& from, std::span<const Wrench> wrenches, double s
   const Vec3 way = state(trolley_).position - from.trolley.position;
   RigAccounts& a = accounts_;
   a.pull_work += drive.dot(way);
-  a.guide_work += held.dot(way) +
-                  (axes * reaction.moment).dot(mean_turn(from.trolley.orientation, state(trolley_).orientation));
+  a.guide_work +=
+      held.dot(way) + (axes * reaction.moment).dot(mean_turn(from.trolley.orientation, state(trolley_).orientation));
   double mass = kTrolleyMass;
   for (int k = 0; k < 2; ++k) {
     const vehicle::BodyState &rim = state(wheels_[k].rim), &before = from.rims[k];

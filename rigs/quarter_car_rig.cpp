@@ -23,11 +23,11 @@ constexpr double kTrolleyMass = 1.0;     // kg: rides on the rail and feels noth
 class QuarterCar final : public Rig {
  public:
   explicit QuarterCar(const QuarterCarOptions& options) : options_(options) {
-    FURROW_ASSERT(options.body_mass > 0.0 && options.unsprung_mass > 0.0 && options.rim_mass > 0.0,
-                  options.body_mass, options.unsprung_mass, options.rim_mass);
-    FURROW_ASSERT(options.suspension_stiffness >= 0.0 && options.suspension_damping >= 0.0 &&
-                      options.lowering_speed > 0.0,
-                  options.suspension_stiffness, options.suspension_damping, options.lowering_speed);
+    FURROW_ASSERT(options.body_mass > 0.0 && options.unsprung_mass > 0.0 && options.rim_mass > 0.0, options.body_mass,
+                  options.unsprung_mass, options.rim_mass);
+    FURROW_ASSERT(
+        options.suspension_stiffness >= 0.0 && options.suspension_damping >= 0.0 && options.lowering_speed > 0.0,
+        options.suspension_stiffness, options.suspension_damping, options.lowering_speed);
   }
 
   std::string kind() const override { return "quarter_car"; }
@@ -55,10 +55,10 @@ class QuarterCar final : public Rig {
 
   QuarterCarOptions options_;
   MassProperties tire_;
-  double radius_ = 0.0;                    // undeformed tire radius, m
-  std::optional<vehicle::System> system_;  // built by place() or restore()
-  double placed_height_ = 0.0;             // axle height in which the joints were defined, m
-  int trolley_ = 0, body_ = 0, carrier_ = 0, rim_ = 0;        // bodies
+  double radius_ = 0.0;                                      // undeformed tire radius, m
+  std::optional<vehicle::System> system_;                    // built by place() or restore()
+  double placed_height_ = 0.0;                               // axle height in which the joints were defined, m
+  int trolley_ = 0, body_ = 0, carrier_ = 0, rim_ = 0;       // bodies
   int rail_ = 0, guide_ = 0, suspension_ = 0, spindle_ = 0;  // joints
   int drive_ = 0;                                            // motor
   int lowering_ = 0, spring_ = 0;                            // force elements
@@ -87,8 +87,7 @@ void QuarterCar::build(double axle_height) {
   body_ = system_->add_body("body", options_.body_mass, guided, state);
   carrier_ = system_->add_body("carrier", options_.unsprung_mass, guided, state);
   state.angular_velocity = at_first.rate / radius_ * Vec3::UnitY();
-  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia,
-                      options_.rim_diametral_inertia);
+  const Vec3 diagonal(options_.rim_diametral_inertia, options_.rim_spin_inertia, options_.rim_diametral_inertia);
   rim_ = system_->add_body("rim", wheel_mass(), Mat3(diagonal.asDiagonal()) + tire_.inertia, state);
   const auto along = [&](const Vec3& axis) {
     vehicle::JointPlace joint;
@@ -179,8 +178,8 @@ void QuarterCar::book(const vehicle::BodyState& trolley, const vehicle::BodyStat
   const Vec3 way = state(trolley_).position - trolley.position;
   RigAccounts& a = accounts_;
   a.pull_work += drive.dot(way);
-  a.guide_work += held.dot(way) +
-                  (axes * reaction.moment).dot(mean_turn(trolley.orientation, state(trolley_).orientation));
+  a.guide_work +=
+      held.dot(way) + (axes * reaction.moment).dot(mean_turn(trolley.orientation, state(trolley_).orientation));
   a.tire_work += wrench.force.dot(state(rim_).position - rim.position) +
                  wrench.moment.dot(mean_turn(rim.orientation, state(rim_).orientation));
   a.gravity_impulse += step * (carried_mass() + kTrolleyMass) * standard_gravity();

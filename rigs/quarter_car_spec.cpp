@@ -49,9 +49,7 @@ class QuarterCarSpec final : public RigSpec {
     if (!start_given_) rig_.start = length ? tires[0].radius + margins[0] : 0.0;
   }
 
-  void complete(json& section) const override {
-    write_car(section, rig_);
-  }
+  void complete(json& section) const override { write_car(section, rig_); }
 
  private:
   QuarterCarOptions rig_;

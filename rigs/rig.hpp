@@ -23,15 +23,15 @@ namespace furrow::rigs {
 /// = z × e (left when looking along e), z up.
 /// A wheel of a vehicle shares what it carries with the others: its carried mass is that of its load at rest.
 struct WheelReport {
-  double slip = 0.0;             // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
-  double speed = 0.0;            // of the wheel's carrier along the heading, m/s
-  double spin = 0.0;             // of the rim about its axle, rad/s, forward positive
-  double drive_torque = 0.0;     // of the spindle motor about the axle, N m, positive when it drives forward
-  double lateral_force = 0.0;    // on the rim by the tire, along l, N
-  double aligning_moment = 0.0;  // on the rim by the tire, about z, N m
-  double axle_height = 0.0;      // z of the rim centre, m
-  double axle_position = 0.0;    // along the heading, of a vehicle along the one that it starts with, m
-  double vertical_speed = 0.0;   // of the wheel carrier, m/s
+  double slip = 0.0;               // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
+  double speed = 0.0;              // of the wheel's carrier along the heading, m/s
+  double spin = 0.0;               // of the rim about its axle, rad/s, forward positive
+  double drive_torque = 0.0;       // of the spindle motor about the axle, N m, positive when it drives forward
+  double lateral_force = 0.0;      // on the rim by the tire, along l, N
+  double aligning_moment = 0.0;    // on the rim by the tire, about z, N m
+  double axle_height = 0.0;        // z of the rim centre, m
+  double axle_position = 0.0;      // along the heading, of a vehicle along the one that it starts with, m
+  double vertical_speed = 0.0;     // of the wheel carrier, m/s
   double vertical_momentum = 0.0;  // of all mass that the wheel carries (carrier, rim, added tire), kg m/s
   double carried_mass = 0.0;       // kg, including the tire's added mass
   double joint_drift = 0.0;        // largest constraint violation, m or rad
@@ -80,16 +80,16 @@ inline std::vector<Subject> plain_wheels(int count) {
 
 /// Something that happened during a run and is worth telling.
 struct RigEvent {
-  std::string what;   // "wheel_lift"
-  int wheel = -1;     // -1: of no wheel
-  double from = 0.0;  // s
+  std::string what;                                      // "wheel_lift"
+  int wheel = -1;                                        // -1: of no wheel
+  double from = 0.0;                                     // s
   double to = std::numeric_limits<double>::quiet_NaN();  // s; not a number: not over yet
 };
 
 /// What a rig found during a run besides its columns, for the summary.
 struct RigFindings {
-  std::vector<RigEvent> events;                            // in the order in which they began
-  std::vector<std::pair<std::string, double>> figures;     // named after their unit
+  std::vector<RigEvent> events;                         // in the order in which they began
+  std::vector<std::pair<std::string, double>> figures;  // named after their unit
 };
 
 class Rig {

@@ -26,11 +26,11 @@ struct WheelSize {
 
 /// What a rig may take from a tire where the scenario leaves it open.
 struct MountedTire {
-  double radius = 0.0;      // undeformed, m
-  double mass = 0.0;        // kg
-  tire::RimProperties rim;  // as its file says
-  std::string file;         // for messages
-  double width = 0.0;       // overall, m
+  double radius = 0.0;                                             // undeformed, m
+  double mass = 0.0;                                               // kg
+  tire::RimProperties rim;                                         // as its file says
+  std::string file;                                                // for messages
+  double width = 0.0;                                              // overall, m
   double hopeless_load = std::numeric_limits<double>::infinity();  // that it never carries, N
 };
 
@@ -45,8 +45,8 @@ struct WheelDescription {
   double lateral = 0.0;         // y of the mid-plane, m
   double from = 0.0, to = 0.0;  // x of the axle at start and end of the run, m
   double along = 0.0,
-         across = 0.0;     // half of what the wheel takes of the bin along x and y as it turns and leans, m
-  double toe_angle = 0.0;  // largest over the run, about +z, rad
+         across = 0.0;             // half of what the wheel takes of the bin along x and y as it turns and leans, m
+  double toe_angle = 0.0;          // largest over the run, about +z, rad
   double camber_angle = 0.0;       // largest over the run, about the wheel's forward axis, rad
   std::optional<double> slip;      // that the rig imposes or aims at, -; none where it has no such thing
   double travel_sign = 1.0;        // +1 along +x, −1 along −x

@@ -41,7 +41,7 @@ inline RimMasses mounted_rim(RimMasses rim, const MountedTire& tire) {
 /// @throws Error(bad_input) naming the keys where neither scenario nor tire file say the rim's masses or, as
 /// `load_missing` says, what the wheel carries. @param mass_key may be given in place of the load
 inline void require_masses(const RimMasses& rim, bool load_missing, const char* mass_key, const MountedTire& tire,
-                    const ReadContext& context) {
+                           const ReadContext& context) {
   std::vector<std::string> missing;
   if (load_missing) missing.push_back(context.key("load"));
   if (is_open(rim.mass)) missing.push_back(context.key("rim_mass"));
@@ -49,12 +49,11 @@ inline void require_masses(const RimMasses& rim, bool load_missing, const char* 
   if (missing.empty()) return;
   const std::string first = missing.front();
   missing.erase(missing.begin());
-  throw input_error(
-      context.file, first,
-      fmt::format("is missing{}{}, expected here (or {} in place of {}), or as mass, spin_inertia and "
-                  "carrier_mass in a block 'rim' of the tire file {}",
-                  missing.empty() ? "" : " and so is ", fmt::join(missing, ", "), context.key(mass_key),
-                  context.key("load"), tire.file));
+  throw input_error(context.file, first,
+                    fmt::format("is missing{}{}, expected here (or {} in place of {}), or as mass, spin_inertia and "
+                                "carrier_mass in a block 'rim' of the tire file {}",
+                                missing.empty() ? "" : " and so is ", fmt::join(missing, ", "), context.key(mass_key),
+                                context.key("load"), tire.file));
 }
 
 }  // namespace furrow::rigs

@@ -41,8 +41,7 @@ RollingTire::RollingTire(tire::Tire& tire, const RollingOptions& options) : tire
 
 void RollingTire::push() {
   acting_ = forces_;
-  const Outcome pushed =
-      ground_->advance({&surface_, 1}, options_.step, 1, {&forces_, 1}, {&contact_, 1});
+  const Outcome pushed = ground_->advance({&surface_, 1}, options_.step, 1, {&forces_, 1}, {&contact_, 1});
   if (!pushed.ok) throw physics_error(pushed, "ground");
   trajectory_.extend(rim_, options_.step);
 }
@@ -60,8 +59,7 @@ void RollingTire::follow(double damper) {
   rim_.velocity.x() += h * before.x() / options_.load;
   rim_.velocity.z() += h * ((before.z() - damper * rim_.velocity.z()) / options_.load - kStandardGravity);
   rim_.position += h * rim_.velocity;
-  rim_.orientation =
-      (Quat(Eigen::AngleAxisd(h * options_.spin, Vec3::UnitY())) * rim_.orientation).normalized();
+  rim_.orientation = (Quat(Eigen::AngleAxisd(h * options_.spin, Vec3::UnitY())) * rim_.orientation).normalized();
 }
 
 }  // namespace furrow::rigs

@@ -7,8 +7,8 @@
 
 #include <memory>
 
-#include "terrain/terrain.hpp"
 #include "terrain/rigid/ground_options.hpp"
+#include "terrain/terrain.hpp"
 #include "tire/rim_trajectory.hpp"
 #include "tire/tire.hpp"
 

@@ -42,7 +42,8 @@ STATED = (("drawbar_pull", 1.0, "N"), ("sinkage", 1e3, "mm"), ("rut_depth", 1e3,
 
 
 def pages(root):
-    return sorted(root.glob("*.md")) + [page for folder in sorted(TOP) for page in sorted((root / folder).rglob("*.md"))]
+    return sorted(root.glob("*.md")) + [page for folder in sorted(TOP)
+                                        for page in sorted((root / folder).rglob("*.md"))]
 
 
 def names_of_sources(root):
@@ -103,7 +104,8 @@ def alternatives(path):
     match = re.search(r"\{([^}]*)\}", path)
     if not match:
         return [path]
-    return [name for word in match[1].split(",") for name in alternatives(path[:match.start()] + word + path[match.end():])]
+    return [name for word in match[1].split(",")
+            for name in alternatives(path[:match.start()] + word + path[match.end():])]
 
 
 def path_problem(root, text, sources):
@@ -116,7 +118,8 @@ def path_problem(root, text, sources):
         found = list(root.glob(name))
         if not found:
             return f"names '{name}', which does not exist"
-        if match[2] and not any(file.is_file() and len(file.read_text().splitlines()) >= int(match[2]) for file in found):
+        if match[2] and not any(file.is_file() and len(file.read_text().splitlines()) >= int(match[2])
+                                for file in found):
             return f"names line {match[2]} of '{name}', which has no such line"
     return ""
 
@@ -189,7 +192,8 @@ def origin_of_table(text):
 
 def is_study(content):
     """Of a JSON file: that it says what to run, and holds no results."""
-    return isinstance(content, dict) and isinstance(content.get("scenario"), str) and bool({"cases", "list", "grid"} & content.keys())
+    return isinstance(content, dict) and isinstance(content.get("scenario"),
+                                                    str) and bool({"cases", "list", "grid"} & content.keys())
 
 
 def tables(root):
@@ -218,7 +222,8 @@ def table_problems(root):
 
 
 def git(root, *arguments, **options):
-    return subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False, **options).stdout
+    return subprocess.run(["git", "-C", str(root), *arguments], capture_output=True,
+                          text=True, check=False, **options).stdout
 
 
 def commits_named(root):
@@ -235,7 +240,8 @@ def commit_problems(root):
         return
     named = list(commits_named(root))  # none of them is in a history that begins anew, for example a squashed one
     asked = "".join(f"{name}^{{commit}}\n" for _, _, name in named)
-    unknown = [answer.endswith(" missing") for answer in git(root, "cat-file", "--batch-check", input=asked).splitlines()]
+    unknown = [answer.endswith(" missing") for answer in git(root, "cat-file",
+                                                             "--batch-check", input=asked).splitlines()]
     if not all(unknown):
         for (file, number, name), gone in zip(named, unknown):
             if gone:
@@ -259,14 +265,16 @@ def main():
     root = options.root.resolve()
     sources = names_of_sources(root)
     chosen = [page.resolve() for page in options.pages] or pages(root)
-    found = [f"{page.relative_to(root)}:{number}: {text}" for page in chosen for number, text in problems(root, page, sources)]
+    found = [f"{page.relative_to(root)}:{number}: {text}" for page in chosen for number,
+             text in problems(root, page, sources)]
     if (root / "CONTRIBUTING.md").exists():
         found += [f"CONTRIBUTING.md:{number}: {text}" for number, text in recipe_problems(root / "CONTRIBUTING.md")]
     if (root / HEADLINE).exists():
         found += [f"README.md: {text}" for text in headline_problems(root)]
     if not options.pages:
         found += [f"{file.relative_to(root)}:1: {text}" for file, text in table_problems(root)]
-        found += [f"{file.relative_to(root)}:{number}: {text}" for file, number, text in comment_problems(root, sources)]
+        found += [f"{file.relative_to(root)}:{number}: {text}" for file,
+                  number, text in comment_problems(root, sources)]
         found += [f"{file.relative_to(root)}:{number}: {text}" for file, number, text in commit_problems(root)]
         found += [f"{page.relative_to(root)}:1: does not list rigs/{name}" for page, name in unlisted(root)]
     print("\n".join(found), end="\n" if found else "")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks that sources include what they use of the precompiled headers, without which a build would fail.
 
-A source that uses a name of such a header (scripts/cmake/FurrowCompiler.cmake lists them) must include the header itself,
-through headers of this project, or through one that is documented to bring it (BRINGS).
+A source that uses a name of such a header (scripts/cmake/FurrowCompiler.cmake lists them) must include the header
+itself, through headers of this project, or through one that is documented to bring it (BRINGS).
 
 usage: scripts/check_headers.py [--root FOLDER]
 Prints every name without its header as FILE:LINE and exits with 1 if there is one.
@@ -13,11 +13,15 @@ import pathlib
 import re
 import sys
 
-ALGORITHMS = ("adjacent_find all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range fill fill_n find "
+ALGORITHMS = ("adjacent_find all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range "
+              "fill fill_n find "
               "find_first_of find_if find_if_not for_each generate includes inplace_merge is_permutation is_sorted "
-              "lexicographical_compare lower_bound max max_element merge min min_element minmax minmax_element mismatch next_permutation "
-              "none_of nth_element partial_sort partition partition_point remove_copy remove_if replace replace_if reverse rotate sample "
-              "search set_difference set_intersection set_union shuffle sort stable_partition stable_sort swap_ranges transform unique "
+              "lexicographical_compare lower_bound max max_element merge min min_element minmax minmax_element "
+              "mismatch next_permutation "
+              "none_of nth_element partial_sort partition partition_point remove_copy remove_if replace replace_if "
+              "reverse rotate sample "
+              "search set_difference set_intersection set_union shuffle sort stable_partition stable_sort swap_ranges "
+              "transform unique "
               "upper_bound").split()
 # What a source uses that includes the header.
 NAMES = {

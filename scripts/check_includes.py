@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Checks how the sources include each other: no circle, no arrow up, no folder that outgrew its purpose, no line too wide.
+"""Checks how the sources include each other: no circle, no arrow up, no folder that outgrew its purpose, no line too
+wide.
 
-A unit is a header together with its source. Rooms are the folders of FLOORS, lowest first; a file belongs to the longest entry
-that begins its path. A room may include itself, rooms of lower floors, and nothing else; of tests nothing. MPI is the
-business of protocol/ alone. The dummies of tests/dummies/ follow the rules of the room that they would belong to.
+A unit is a header together with its source. Rooms are the folders of FLOORS, lowest first; a file belongs to the
+longest entry that begins its path. A room may include itself, rooms of lower floors, and nothing else; of tests
+nothing. MPI is the business of protocol/ alone. The dummies of tests/dummies/ follow the rules of the room that they
+would belong to.
 
 usage: scripts/check_includes.py [--summary] [--root FOLDER]
 Prints every offending include as FILE:LINE and exits with 1 if there is one.
@@ -174,7 +176,8 @@ def main():
     edges, lines = collections.defaultdict(set, {unit_of(file): set() for file in files}), {}
     arrows_up = list(include_problems(options.root, files, edges, lines))
     found = list(circle_problems(edges, lines))
-    problems = arrows_up + found + list(folder_problems(options.root, files)) + list(width_problems(options.root, files))
+    problems = arrows_up + found + list(folder_problems(options.root,
+                                                        files)) + list(width_problems(options.root, files))
     for problem in problems:
         print(problem)
     if (options.summary or problems) and files:

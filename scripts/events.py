@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What happened in a vehicle's run and when, its axles beside each other, and what a change of gear needs; from the series alone.
+"""What happened in a vehicle's run and when, its axles beside each other, and what a change of gear needs; from the
+series alone.
 
 usage: events.py DIR [--from T] [--to T] [--json]
 
@@ -39,17 +40,21 @@ def as_json(v, found, compared, balance):
 
     names = compared.names
     means = {row.what: {"unit": row.unit, **{name: of(one) for name, one in zip(names, row.axles)},
-                        **{f"{behind} - {before}": of(one) for before, behind, one in zip(names, names[1:], row.differences)}}
+                        **{f"{behind} - {before}": of(one) for before,
+                           behind, one in zip(names, names[1:], row.differences)}}
              for row in compared.rows}
     for row in compared.rows:
         for name, note in zip(names, row.notes):
             if note:
                 means[row.what][name]["leaves_out"] = note
-    return {"events": [{"time_s": e.time, "event": e.what, "of": e.subject, "value": number(float(e.value)), "unit": e.unit,
+    return {"events": [{"time_s": e.time, "event": e.what, "of": e.subject,
+                        "value": number(float(e.value)), "unit": e.unit,
                         "threshold": e.threshold} for e in found],
             "weight_N": v.weight,
-            "axles": {"from_s": compared.begin, "to_s": compared.end, "window": compared.chosen, "steady": not compared.unsteady,
-                      "unsteady_because": compared.unsteady, "share_in_ruts": dict(zip(names, compared.in_ruts)), "means": means},
+            "axles": {"from_s": compared.begin, "to_s": compared.end, "window": compared.chosen,
+                      "steady": not compared.unsteady,
+                      "unsteady_because": compared.unsteady, "share_in_ruts": dict(zip(names, compared.in_ruts)),
+                      "means": means},
             "gear_balance": balance and {
                 "shift_wheel_speed_m_per_s": balance.shift_speed, "limit_over_weight": number(balance.limit),
                 "throttle": balance.throttle, "largest_wheel_speed_m_per_s": balance.reached, "at_s": balance.time,
@@ -61,7 +66,8 @@ def tell(options):
     v = VehicleRun(Run(options.directory))
     for name, value in (("--from", options.begin), ("--to", options.end)):
         if value is not None and not 0.0 <= value <= v.time[-1]:
-            print(f"furrow: error: command line: key '{name}': is {value:g} s, expected 0 to {v.time[-1]:g} s, the end of the series",
+            print(f"furrow: error: command line: key '{name}': is {value:g} s, expected 0 to {v.time[-1]:g} s, the end "
+                  f"of the series",
                   file=sys.stderr)
             return 2
     found = events.events(v)
@@ -80,7 +86,8 @@ def tell(options):
     print(v.title + "\n")
     print(events.text(found))
     print(axles.text(compared) if compared else f"No means of the axles: {why}\n")
-    print(gear_balance.text(balance) if balance else f"No balance of a change of gear: {no_balance}", end="" if balance else "\n")
+    print(gear_balance.text(balance) if balance else f"No balance of a change of gear: {no_balance}",
+          end="" if balance else "\n")
     return 0
 
 
@@ -96,7 +103,8 @@ def main():
     except (OSError, ValueError, Missing) as error:
         print(f"furrow: error: {printable(options.directory)}: {printable(error)}", file=sys.stderr)
     except (ArithmeticError, AttributeError, LookupError, TypeError, csv.Error, RuntimeError) as error:
-        print(f"furrow: error: {printable(options.directory)}: a file in it is damaged: {printable(repr(error))}", file=sys.stderr)
+        print(f"furrow: error: {printable(options.directory)}: a file in it is damaged: {printable(repr(error))}",
+              file=sys.stderr)
     return 5
 
 

@@ -70,7 +70,8 @@ def main():
     parser = argparse.ArgumentParser(description="Frames of a run as VTP files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("--out", type=pathlib.Path, required=True, help="new folder for the files")
-    parser.add_argument("--progress", action="store_true", help="print the share that is done, 'progress 0.25', now and then")
+    parser.add_argument("--progress", action="store_true",
+                        help="print the share that is done, 'progress 0.25', now and then")
     arguments = parser.parse_args()
     out, taken = arguments.out, None
     try:

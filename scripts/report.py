@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions, of a study or of a calibration: PNG files in the run
+"""Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions, of a study
+or of a calibration: PNG files in the run
 directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet] [--progress]
        report.py DIR DIR... --out FOLDER    one report.html that compares the runs
 
-Every plot is made from what the directory holds; a plot whose data are missing is left out, and a message on stderr says so.
-Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
+Every plot is made from what the directory holds; a plot whose data are missing is left out, and a message on stderr
+says so. Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
 """
 import argparse
 import csv
@@ -24,7 +25,9 @@ matplotlib.use("Agg")
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
-from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,  # noqa: E402
+# noqa: E402
+from plot import (accounts, calibrate, charts, ground, kinematics, modes,
+                  press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,
                   vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.own_files import may_write, remove_own, write_whole  # noqa: E402
@@ -116,9 +119,12 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=RIDE_PLOTS | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS | SWEEP_PLOTS | BEDS_PLOTS | CALIBRATION_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", choices=RIDE_PLOTS
+                        | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS
+                        | SWEEP_PLOTS | BEDS_PLOTS | CALIBRATION_PLOTS, help="this plot only; may be repeated")
     parser.add_argument("--quiet", action="store_true", help="print errors only")
-    parser.add_argument("--progress", action="store_true", help="print the share that is done, 'progress 0.25', before each plot")
+    parser.add_argument("--progress", action="store_true",
+                        help="print the share that is done, 'progress 0.25', before each plot")
     arguments = parser.parse_args()
     global quiet
     quiet = arguments.quiet
@@ -133,14 +139,16 @@ def main():
         of_modes = (arguments.directory / "modes.csv").is_file()
         of_kinematics = (arguments.directory / "kinematics.csv").is_file()
         of_calibration = (arguments.directory / "calibration.json").is_file()
-        of = (calibrate.Calibration if of_calibration else soil.Soil if of_soil else sweep.Sweep if of_sweep else press.Press if of_press
+        of = (calibrate.Calibration if of_calibration else soil.Soil if of_soil
+              else sweep.Sweep if of_sweep else press.Press if of_press
               else modes.Modes if of_modes else kinematics.Kinematics if of_kinematics else Run)
         run = of(arguments.directory)
     except (OSError, ValueError) as error:
         print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
         return 5
     except (AttributeError, LookupError, TypeError, csv.Error) as error:
-        print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}", file=sys.stderr)
+        print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}",
+              file=sys.stderr)
         return 5
     if why := why_no_folder(out):
         print(f"furrow: error: {printable(out)}: {why}", file=sys.stderr)
@@ -172,7 +180,8 @@ def main():
             print(f"report: no {name}.png: there is not enough memory for it", file=sys.stderr)
             continue
         except (OSError, RuntimeError) as error:  # h5py's errors for a damaged file
-            print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}", file=sys.stderr)
+            print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}",
+                  file=sys.stderr)
             continue
         try:
             write = may_write(out, f"{name}.png")
@@ -198,12 +207,14 @@ def main():
         written += page.write(out, [run], may_write)
     print(json.dumps(written))
     if not written and in_the_way:
-        print(f"furrow: error: {printable(out)}: no plot was written, as other files have their names, expected another folder",
+        print(f"furrow: error: {printable(out)}: no plot was written, as other files have their names, expected "
+              f"another folder",
               file=sys.stderr)
     elif not written:
         before = arguments.directory / ".furrow-before"
         hint = f"; {before} holds earlier results, which 'furrow resume' brings back" if before.is_dir() else ""
-        print(f"furrow: error: {printable(arguments.directory)}: holds nothing to plot{printable(hint)}", file=sys.stderr)
+        print(f"furrow: error: {printable(arguments.directory)}: holds nothing to plot{printable(hint)}",
+              file=sys.stderr)
     return 0 if written else 5
 
 

@@ -26,7 +26,8 @@ def read_points(stream):
         except (TypeError, ValueError):
             fail(f"line {table.line_num}: expected two numbers, m")
         if not (-0.2 < point[0] < 1.0 and point[1] < 1.0):
-            fail(f"line {table.line_num}: {point[0]:g}, {point[1]:g} is no place on a tire, expected metres, both below 1")
+            fail(f"line {table.line_num}: {point[0]:g}, {point[1]:g} is no place on a tire, expected metres, both "
+                 f"below 1")
         if points and point == points[-1]:
             fail(f"line {table.line_num}: the point before once more, expected another one")
         points.append(point)

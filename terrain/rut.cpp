@@ -33,8 +33,8 @@ std::vector<double> transverse_profile(const HeightField& before, const HeightFi
 
 /// Mean of before − after across the cells within `half_width` of the wheel's plane, per row of cells along the travel;
 /// rows without grains are left out.
-std::vector<double> profile_along(const HeightField& before, const HeightField& after, double x_min,
-                                  double x_max, double lateral, double half_width) {
+std::vector<double> profile_along(const HeightField& before, const HeightField& after, double x_min, double x_max,
+                                  double lateral, double half_width) {
   std::vector<double> along;
   for (int ix = 0; ix < after.nx; ++ix) {
     const double x = after.x0 + ix * after.cell;
@@ -54,8 +54,7 @@ std::vector<double> profile_along(const HeightField& before, const HeightField& 
 
 /// Where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`; linear
 /// between cells. Cells without grains are passed over; the bin's edge ends the search.
-double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step,
-                double level) {
+double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step, double level) {
   FURROW_ASSERT(y.size() == profile.size() && in_range(from, y.size()), y.size(), profile.size(), from);
   FURROW_ASSERT(step == 1 || step == -1, step);
   const int count = static_cast<int>(y.size());
@@ -80,8 +79,8 @@ std::string why_not(const HeightField& before, const HeightField& after, const R
   if (before.nx != after.nx || before.ny != after.ny) return "the surface before the run is not known";
   const double travelled = o.direction * (o.axle - o.start), farthest = kFarthest * o.radius;
   if (travelled >= farthest) return "";
-  return fmt::format("the axle travelled {:.3g} m, and the rut is measured {:.3g} to {:.3g} m behind it",
-                     travelled, kNearest * o.radius, farthest);
+  return fmt::format("the axle travelled {:.3g} m, and the rut is measured {:.3g} to {:.3g} m behind it", travelled,
+                     kNearest * o.radius, farthest);
 }
 
 }  // namespace
@@ -90,13 +89,12 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
   FURROW_ASSERT(std::abs(o.direction) == 1.0 && o.radius > 0.0, o.direction, o.radius);
   FURROW_ASSERT(before.height.size() == static_cast<std::size_t>(before.nx) * before.ny, before.height.size(),
                 before.nx, before.ny);
-  FURROW_ASSERT(after.height.size() == static_cast<std::size_t>(after.nx) * after.ny, after.height.size(),
-                after.nx, after.ny);
+  FURROW_ASSERT(after.height.size() == static_cast<std::size_t>(after.nx) * after.ny, after.height.size(), after.nx,
+                after.ny);
   Rut rut;
   rut.missing = why_not(before, after, o);
   if (!rut.missing.empty()) return rut;
-  const double a = o.axle - o.direction * kNearest * o.radius,
-               b = o.axle - o.direction * kFarthest * o.radius;
+  const double a = o.axle - o.direction * kNearest * o.radius, b = o.axle - o.direction * kFarthest * o.radius;
   const double middle_half = 0.25 * o.tread_width;
   rut.profile = transverse_profile(before, after, std::min(a, b), std::max(a, b));
   rut.along = profile_along(before, after, std::min(a, b), std::max(a, b), o.lateral, middle_half);

@@ -21,13 +21,11 @@ struct RutOptions {
 struct Rut {
   bool measured = false;
   std::string missing;  // why there is no depth or no width, in words
-  double depth =
-      0.0;  // mean depth over the middle half of the tread width, 0.642 to 1.177 R behind the axle, m
-  double width =
-      0.0;  // distance of the points where the mean transverse profile falls below half the depth for two
-            // cells or more, m; NaN when the depth is not positive
+  double depth = 0.0;   // mean depth over the middle half of the tread width, 0.642 to 1.177 R behind the axle, m
+  double width = 0.0;   // distance of the points where the mean transverse profile falls below half the depth for two
+                        // cells or more, m; NaN when the depth is not positive
   std::vector<double> y, profile;  // mean transverse profile of (before − after) in that window, m
-  std::vector<double> along;  // depth of each row of cells across, in order along x, m; none of empty rows
+  std::vector<double> along;       // depth of each row of cells across, in order along x, m; none of empty rows
 };
 
 /// The stretch is that of the reference wheel, 0.30 to 0.55 m at R = 0.4673 m: it begins behind the contact of a wheel

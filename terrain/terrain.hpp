@@ -44,8 +44,7 @@ class Terrain {
   /// Declares the surface of tire `k` (k = 0, 1, … in order) before the first advance.
   /// @throws Error(bad_input) when mesh and positions do not belong together (terrain/surface/surface_check.hpp), the
   /// terrain's law has no use for the material, or the surface starts inside the terrain's solid boundary.
-  virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
-                      const SurfaceState& start) = 0;
+  virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) = 0;
 
   /// Advances by `duration` in `substeps` equal steps, or in more where its contacts need it. Each vertex moves
   /// linearly from where the terrain last had it to x + v·duration of targets[k], and its contact velocity is that
@@ -56,7 +55,7 @@ class Terrain {
                           std::span<NodalForces> forces, std::span<ContactSums> contact) = 0;
 
   virtual TerrainState state() const = 0;
-  virtual std::int64_t size() const = 0;  // grains
+  virtual std::int64_t size() const = 0;                       // grains
   virtual std::int64_t grains_here() const { return size(); }  // on this rank now
   virtual void frame(TerrainFrame& out) const = 0;
 

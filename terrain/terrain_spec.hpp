@@ -67,7 +67,7 @@ struct TerrainDescription {
 
 /// What a run will need, before any grain exists.
 struct TerrainEstimate {
-  std::string text;  // for people: "about 25260 grains of 6 mm, …"
+  std::string text;                                              // for people: "about 25260 grains of 6 mm, …"
   double stable_step = std::numeric_limits<double>::infinity();  // s
   std::string stable_reason;                                     // what limits it: "stiffness", "damping"
   std::int64_t grains = 0;

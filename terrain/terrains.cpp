@@ -76,9 +76,8 @@ std::vector<std::string> terrain_keys(unsigned roles) {
 }
 
 std::string engines_with_grains() {
-  return names_of([](const TerrainEntry& entry) {
-    return entry.read(nlohmann::json::object(), {})->grains() != nullptr;
-  });
+  return names_of(
+      [](const TerrainEntry& entry) { return entry.read(nlohmann::json::object(), {})->grains() != nullptr; });
 }
 
 Archive TerrainSpec::grain_state(std::vector<Archive> parts, const TerrainContext&) const {

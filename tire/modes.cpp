@@ -54,8 +54,8 @@ void write_mode_tables(const std::filesystem::path& folder, const ModesResults& 
   std::string text = "y_m,radius_m,y_to_m,radius_to_m,from,to\n";
   for (const auto& [from, to] : results.lines) {
     const SectionNode &a = results.section[from], &b = results.section[to];
-    fmt::format_to(std::back_inserter(text), "{:.6g},{:.6g},{:.6g},{:.6g},{},{}\n", a.y, a.radius, b.y,
-                   b.radius, from, to);
+    fmt::format_to(std::back_inserter(text), "{:.6g},{:.6g},{:.6g},{:.6g},{},{}\n", a.y, a.radius, b.y, b.radius, from,
+                   to);
   }
   write_whole_file(folder / "section.csv", text);
   text =
@@ -65,10 +65,9 @@ void write_mode_tables(const std::filesystem::path& folder, const ModesResults& 
     for (std::size_t j = 0; j < mode.shape.size(); ++j) {
       const SectionNode& node = results.section[j];
       const auto& [tangential, axial, radial] = mode.shape[j];
-      fmt::format_to(std::back_inserter(text),
-                     "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", mode.order,
-                     mode.number, j, node.y, node.radius, tangential.real(), tangential.imag(), axial.real(),
-                     axial.imag(), radial.real(), radial.imag());
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
+                     mode.order, mode.number, j, node.y, node.radius, tangential.real(), tangential.imag(),
+                     axial.real(), axial.imag(), radial.real(), radial.imag());
     }
   write_whole_file(folder / "shapes.csv", text);
 }

@@ -37,15 +37,13 @@ std::size_t NaturalSpline::span(double t) const {
 double NaturalSpline::value(double t) const {
   const std::size_t k = span(t);
   const double h = t_[k + 1] - t_[k], a = (t_[k + 1] - t) / h, b = 1.0 - a;
-  return a * y_[k] + b * y_[k + 1] +
-         ((a * a * a - a) * second_[k] + (b * b * b - b) * second_[k + 1]) * h * h / 6.0;
+  return a * y_[k] + b * y_[k + 1] + ((a * a * a - a) * second_[k] + (b * b * b - b) * second_[k + 1]) * h * h / 6.0;
 }
 
 double NaturalSpline::slope(double t) const {
   const std::size_t k = span(t);
   const double h = t_[k + 1] - t_[k], a = (t_[k + 1] - t) / h, b = 1.0 - a;
-  return (y_[k + 1] - y_[k]) / h +
-         ((1.0 - 3.0 * a * a) * second_[k] + (3.0 * b * b - 1.0) * second_[k + 1]) * h / 6.0;
+  return (y_[k + 1] - y_[k]) / h + ((1.0 - 3.0 * a * a) * second_[k] + (3.0 * b * b - 1.0) * second_[k + 1]) * h / 6.0;
 }
 
 }  // namespace furrow::tire

@@ -13,9 +13,7 @@ namespace furrow::tire {
 
 void require_outward(const SurfaceMesh& mesh, std::span<const Vec3> position, const Vec3& centre,
                      const std::string& who) {
-  const auto refuse = [&](const std::string& what) {
-    return input_error(who, "", "the contact surface " + what);
-  };
+  const auto refuse = [&](const std::string& what) { return input_error(who, "", "the contact surface " + what); };
   double volume = 0.0;                     // six times (1), m³
   std::vector<std::pair<int, int>> edges;  // as their triangles run through them
   for (const auto& triangle : mesh.triangles) {

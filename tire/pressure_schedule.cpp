@@ -8,9 +8,7 @@
 
 namespace furrow::tire {
 namespace {
-bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& b) {
-  return a.pressure < b.pressure;
-}
+bool by_pressure(const PressureSchedule::Knot& a, const PressureSchedule::Knot& b) { return a.pressure < b.pressure; }
 }  // namespace
 
 double PressureSchedule::at(double time) const {

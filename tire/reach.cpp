@@ -15,8 +15,7 @@ double inflated_reach(Tire& tire, double camber) {
   tire.surface(inflated);
   const double c = std::cos(camber), s = std::sin(camber);
   double most = 0.0;
-  for (const Vec3& x : inflated.position)
-    most = std::max(most, std::hypot(x.x(), x.z()) * c + std::abs(x.y() * s));
+  for (const Vec3& x : inflated.position) most = std::max(most, std::hypot(x.x(), x.z()) * c + std::abs(x.y() * s));
   return most;
 }
 

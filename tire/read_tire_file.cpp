@@ -13,8 +13,8 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
-#include "tire/tire_file_reader.hpp"
 #include "tire/tire_file_chrono.hpp"
+#include "tire/tire_file_reader.hpp"
 #include "tire/tire_profile.hpp"
 
 namespace furrow::tire {
@@ -131,9 +131,8 @@ void check(const TireFile& f) {
   if (std::abs(f.rim_radius + top - f.radius) > 0.01 * f.radius)
     throw input_error(
         f.path, "profile",
-        fmt::format(
-            "rises to {:.4f} m above the rim radius of {:.4f} m, expected the tire radius of {:.4f} m", top,
-            f.rim_radius, f.radius));
+        fmt::format("rises to {:.4f} m above the rim radius of {:.4f} m, expected the tire radius of {:.4f} m", top,
+                    f.rim_radius, f.radius));
   for (const LayerMaterial& material : f.materials) stiffness(material, f.path);
 }
 

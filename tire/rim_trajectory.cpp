@@ -60,8 +60,7 @@ RimKinematics RimTrajectory::at(double s) const {
   FURROW_ASSERT(s >= 0.0 && s <= 1.0, s);
   if (s >= 1.0 && duration_ == 0.0) return {end_, Vec3::Zero(), Vec3::Zero()};
   const Hermite x = hermite(start_.position, start_.velocity, end_.position, end_.velocity, duration_, s);
-  const Hermite phi =
-      hermite(Vec3::Zero(), start_.angular_velocity, turn_, end_.angular_velocity, duration_, s);
+  const Hermite phi = hermite(Vec3::Zero(), start_.angular_velocity, turn_, end_.angular_velocity, duration_, s);
   RimKinematics k;
   k.state.position = x.value;
   k.state.velocity = x.rate;

@@ -25,10 +25,8 @@ struct Corner {
   std::array<Vec3, 4> r, d;
   Corner(const ShellMesh& mesh, int j) {
     FURROW_ASSERT(in_range(j, mesh.elements_width()), j, mesh.elements_width());
-    FURROW_ASSERT(mesh.position.size() == static_cast<std::size_t>(mesh.rows), mesh.position.size(),
-                  mesh.rows);
-    FURROW_ASSERT(mesh.director.size() == static_cast<std::size_t>(mesh.rows), mesh.director.size(),
-                  mesh.rows);
+    FURROW_ASSERT(mesh.position.size() == static_cast<std::size_t>(mesh.rows), mesh.position.size(), mesh.rows);
+    FURROW_ASSERT(mesh.director.size() == static_cast<std::size_t>(mesh.rows), mesh.director.size(), mesh.rows);
     const Mat3 next = mesh.turn(1);
     r = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1], mesh.position[j + 1]};
     d = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1], mesh.director[j + 1]};
@@ -41,8 +39,7 @@ struct Corner {
     return g1.cross(g2).dot(blend(shape(xi, eta), d));
   }
   static std::array<double, 4> shape(double xi, double eta) {
-    return {(1 - xi) * (1 - eta) / 4, (1 + xi) * (1 - eta) / 4, (1 + xi) * (1 + eta) / 4,
-            (1 - xi) * (1 + eta) / 4};
+    return {(1 - xi) * (1 - eta) / 4, (1 + xi) * (1 - eta) / 4, (1 + xi) * (1 + eta) / 4, (1 - xi) * (1 + eta) / 4};
   }
 };
 
@@ -92,9 +89,8 @@ ShellMesh make_shell_mesh(const TireFile& file) {
       if (!(corner.jacobian(-1, -1, z) > 0.0 && corner.jacobian(-1, 1, z) > 0.0))
         throw input_error(
             file.path, "profile",
-            fmt::format(
-                "folds back between t = {:.3f} and {:.3f}: the curvature radius is below half the thickness",
-                static_cast<double>(j) / (mesh.rows - 1), static_cast<double>(j + 1) / (mesh.rows - 1)));
+            fmt::format("folds back between t = {:.3f} and {:.3f}: the curvature radius is below half the thickness",
+                        static_cast<double>(j) / (mesh.rows - 1), static_cast<double>(j + 1) / (mesh.rows - 1)));
   }
   return mesh;
 }
@@ -107,8 +103,7 @@ SurfaceMesh make_surface_mesh(const ShellMesh& mesh) {
   for (int i = 0; i < mesh.columns; ++i) {
     const int next = (i + 1) % mesh.columns;
     for (int j = 0; j < last; ++j) {
-      const int a = mesh.node(i, j), b = mesh.node(next, j), c = mesh.node(next, j + 1),
-                d = mesh.node(i, j + 1);
+      const int a = mesh.node(i, j), b = mesh.node(next, j), c = mesh.node(next, j + 1), d = mesh.node(i, j + 1);
       if (2 * j < last) {
         surface.triangles.push_back({a, b, c});
         surface.triangles.push_back({a, c, d});
@@ -144,9 +139,8 @@ std::vector<ElementMass> element_masses(const TireFile& file, const ShellMesh& m
           z += layer.thickness;
         }
         if (tread)
-          add_point(
-              m, kGauss[a], kGauss[b], z,
-              file.tread_mass_per_area * corner.jacobian(kGauss[a], kGauss[b], z) * kWeight[a] * kWeight[b]);
+          add_point(m, kGauss[a], kGauss[b], z,
+                    file.tread_mass_per_area * corner.jacobian(kGauss[a], kGauss[b], z) * kWeight[a] * kWeight[b]);
       }
     masses.push_back(m);
   }
@@ -156,8 +150,7 @@ std::vector<ElementMass> element_masses(const TireFile& file, const ShellMesh& m
 // T = ½ ωᵀ J ω with the nodal velocities ω × r and ω × d: J = Σ M_ab (x_a·x_b I − x_a x_bᵀ), x = r or d; the
 // sum over the columns averages the two axes across the spin.
 MassProperties rigid_mass(const ShellMesh& mesh, const std::vector<ElementMass>& masses) {
-  FURROW_ASSERT(masses.size() == static_cast<std::size_t>(mesh.elements_width()), masses.size(),
-                mesh.elements_width());
+  FURROW_ASSERT(masses.size() == static_cast<std::size_t>(mesh.elements_width()), masses.size(), mesh.elements_width());
   MassProperties properties;
   Mat3 one = Mat3::Zero();
   for (int j = 0; j < mesh.elements_width(); ++j) {

@@ -30,9 +30,8 @@ Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& m, const std::string&
       -nu.x() / e.x(), 1.0 / e.y(), -nu.z() / e.y(),   //
       -nu.y() / e.x(), -nu.z() / e.y(), 1.0 / e.z();
   if (s.llt().info() != Eigen::Success)
-    throw input_error(
-        file, "materials." + m.name + ".poisson_ratio",
-        "gives a material that is not stable (negative strain energy), expected smaller ratios");
+    throw input_error(file, "materials." + m.name + ".poisson_ratio",
+                      "gives a material that is not stable (negative strain energy), expected smaller ratios");
   const Mat3 c = s.inverse();
   Eigen::Matrix<double, 6, 6> full = Eigen::Matrix<double, 6, 6>::Zero();
   constexpr std::array<int, 3> kNormal{0, 1, 3};
@@ -46,8 +45,7 @@ Eigen::Matrix<double, 6, 6> stiffness(const LayerMaterial& m, const std::string&
 
 void set_elements_width(TireFile& f, int elements) {
   if (elements < 6 || elements % 2 != 0)
-    throw input_error(f.path, "elements_width",
-                      fmt::format("is {}, expected an even number of at least 6", elements));
+    throw input_error(f.path, "elements_width", fmt::format("is {}, expected an even number of at least 6", elements));
   const int side = elements / 2;
   const double scale = 2.0 * side / f.elements_width();
   const auto share = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
@@ -55,8 +53,7 @@ void set_elements_width(TireFile& f, int elements) {
   int sidewall = share(f.sidewall.elements_per_side);
   if (bead + sidewall >= side) sidewall = side - bead - 1;
   if (sidewall < 1)
-    throw input_error(f.path, "elements_width",
-                      fmt::format("is {}, too few for the tire's three sections", elements));
+    throw input_error(f.path, "elements_width", fmt::format("is {}, too few for the tire's three sections", elements));
   f.bead.elements_per_side = bead;
   f.sidewall.elements_per_side = sidewall;
   f.tread.elements_per_side = side - bead - sidewall;

@@ -28,8 +28,7 @@ LayerMaterial material(JsonReader reader, int index) {
     m.young_modulus = Vec3::Constant(reader.positive("E"));
     m.poisson_ratio = Vec3::Constant(reader.number("nu"));
     reader.skip("G");
-    const double g =
-        reader.has("G") ? reader.positive("G") : 0.5 * m.young_modulus.x() / (1.0 + m.poisson_ratio.x());
+    const double g = reader.has("G") ? reader.positive("G") : 0.5 * m.young_modulus.x() / (1.0 + m.poisson_ratio.x());
     m.shear_modulus = Vec3::Constant(g);
   } else if (type == "Orthotropic") {
     const auto e = reader.numbers("E", 3), nu = reader.numbers("nu", 3), g = reader.numbers("G", 3);
@@ -57,8 +56,7 @@ Section section(JsonReader reader, std::size_t materials) {
     if (!(thickness[l] > 0.0))
       reader.fail("Layer Thickness", fmt::format("holds {}, expected numbers above zero", thickness[l]));
     if (id[l] < 0 || id[l] >= static_cast<double>(materials) || id[l] != static_cast<int>(id[l]))
-      reader.fail("Material ID",
-                  fmt::format("holds {}, expected whole numbers from 0 to {}", id[l], materials - 1));
+      reader.fail("Material ID", fmt::format("holds {}, expected whole numbers from 0 to {}", id[l], materials - 1));
     s.layers.push_back({thickness[l], angle[l] * std::numbers::pi / 180.0, static_cast<int>(id[l])});
   }
   reader.finish();
@@ -100,8 +98,7 @@ TireFile read_chrono(JsonReader& reader) {
   f.name = reader.text_or("Name", "tire");
   reader.skip("Template");
   reader.skip("rim");  // read by tires.cpp, whatever the layout
-  if (const auto type = reader.text("Type"); type != "Tire")
-    reader.fail("Type", "is '" + type + "', expected 'Tire'");
+  if (const auto type = reader.text("Type"); type != "Tire") reader.fail("Type", "is '" + type + "', expected 'Tire'");
   if (reader.flag_or("8-Node Elements", false))
     reader.fail("8-Node Elements", "is true, only tires of 4-node elements (false) can be read");
   f.radius = length_of(reader, "Tire Radius");
@@ -110,8 +107,8 @@ TireFile read_chrono(JsonReader& reader) {
   f.contact = contact(reader.child("Contact Material"));
   const json& materials = reader.array("Materials");
   for (std::size_t m = 0; m < materials.size(); ++m)
-    f.materials.push_back(material(JsonReader(materials[m], reader.file(), fmt::format("Materials[{}]", m)),
-                                   static_cast<int>(m)));
+    f.materials.push_back(
+        material(JsonReader(materials[m], reader.file(), fmt::format("Materials[{}]", m)), static_cast<int>(m)));
   if (f.materials.empty()) reader.fail("Materials", "is empty, expected at least one material");
   f.structural_damping = reader.not_negative("Structural Damping Coefficient");
   f.pressure = reader.not_negative("Default Pressure");

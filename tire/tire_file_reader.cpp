@@ -21,8 +21,7 @@ int choice_of(JsonReader& reader, const std::string& key, std::string_view first
   const std::string given = reader.text_or(key, std::string(second));
   if (given == first) return 0;
   if (given == second) return 1;
-  reader.fail(key,
-              fmt::format("is '{}', expected {}", given, one_of({std::string(first), std::string(second)})));
+  reader.fail(key, fmt::format("is '{}', expected {}", given, one_of({std::string(first), std::string(second)})));
 }
 
 double length_of(JsonReader& reader, const std::string& key) {

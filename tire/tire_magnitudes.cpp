@@ -60,13 +60,12 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
       if (i == 0 || m.young_modulus[i] != m.young_modulus[i - 1])
         found.look("young_modulus", "materials." + m.name + ".young_modulus", m.young_modulus[i], kYoungModulus);
   }
-  for (const auto& [name, section] : {std::pair{"bead", &file.bead}, std::pair{"sidewall", &file.sidewall},
-                                      std::pair{"tread", &file.tread}})
+  for (const auto& [name, section] :
+       {std::pair{"bead", &file.bead}, std::pair{"sidewall", &file.sidewall}, std::pair{"tread", &file.tread}})
     for (std::size_t k = 0; k < section->layers.size(); ++k) {
       const std::string key = fmt::format("sections.{}.layers.{}", name, k);
       found.look(fmt::format("{}.thickness", name), key + ".thickness", section->layers[k].thickness, kThickness);
-      if (const double angle = section->layers[k].angle * 180.0 / std::numbers::pi;
-          std::abs(angle) > kMaxAngle)
+      if (const double angle = section->layers[k].angle * 180.0 / std::numbers::pi; std::abs(angle) > kMaxAngle)
         found.add(fmt::format("{}.angle", name), key + ".angle_deg",
                   fmt::format("is {:g}°, cords lie within ±90°", angle));
     }
@@ -75,9 +74,9 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
   look("rim_width", file.rim_width, kRimWidth);
   if (file.pressure != 0.0) look("pressure", file.pressure, kPressure);
   if (file.tread_mass_per_area > kMaxTreadMass)
-    found.add("tread_mass_per_area", "tread_mass_per_area",
-              fmt::format("is {:g} kg/m², tires have up to {:g}: another unit?", file.tread_mass_per_area,
-                          kMaxTreadMass));
+    found.add(
+        "tread_mass_per_area", "tread_mass_per_area",
+        fmt::format("is {:g} kg/m², tires have up to {:g}: another unit?", file.tread_mass_per_area, kMaxTreadMass));
   return found.all();
 }
 

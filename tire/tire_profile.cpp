@@ -48,8 +48,7 @@ std::vector<Point> drawn(const std::vector<ProfileKnot>& profile) {
 }
 
 /// A shell that passes through itself has no inside.
-void check_crossings(const std::vector<ProfileKnot>& profile, const JsonReader& reader,
-                     const std::string& key) {
+void check_crossings(const std::vector<ProfileKnot>& profile, const JsonReader& reader, const std::string& key) {
   const std::vector<Point> at = drawn(profile);
   for (std::size_t b = 2; b + 1 < at.size(); ++b)
     for (std::size_t a = 0; a + 1 < b; ++a)
@@ -59,10 +58,9 @@ void check_crossings(const std::vector<ProfileKnot>& profile, const JsonReader& 
         const auto there = [&](double from, double to) {  // to a tenth of a millimetre
           return std::round(1e4 * (from + share * (to - from))) / 1e4 + 0.0;
         };
-        reader.fail(
-            key, fmt::format("crosses itself at x = {:g} m, y = {:g} m, between t = {:.2f} and t = {:.2f}, "
-                             "expected a meridian without a loop",
-                             there(at[a].x, at[a + 1].x), there(at[a].y, at[a + 1].y), at[a].t, at[b].t));
+        reader.fail(key, fmt::format("crosses itself at x = {:g} m, y = {:g} m, between t = {:.2f} and t = {:.2f}, "
+                                     "expected a meridian without a loop",
+                                     there(at[a].x, at[a + 1].x), there(at[a].y, at[a + 1].y), at[a].t, at[b].t));
       }
 }
 
@@ -84,8 +82,7 @@ std::vector<ProfileKnot> read_profile(JsonReader& reader, const std::string& key
   if (profile.size() < 4 || profile.size() > kMaxKnots)
     reader.fail(key, fmt::format("has {} knots, expected 4 to {}", profile.size(), kMaxKnots));
   if (std::abs(profile.front().t) > 1e-9 || std::abs(profile.back().t - 1.0) > 1e-9)
-    reader.fail(key,
-                fmt::format("runs from t = {} to {}, expected 0 to 1", profile.front().t, profile.back().t));
+    reader.fail(key, fmt::format("runs from t = {} to {}, expected 0 to 1", profile.front().t, profile.back().t));
   if (!(profile.back().y > profile.front().y))
     reader.fail(key, "expected y to run from the left (negative) to the right bead");
   check_crossings(profile, reader, key);

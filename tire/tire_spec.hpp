@@ -49,19 +49,19 @@ void visit_fields(Visit&& visit, FieldsOf<TireOptions> auto& s) {
 /// What is known of a tire before its model is made. How far it reaches once inflated only the model can say
 /// (reach.hpp).
 struct TireDescription {
-  std::string kind;             // as results name it: "ancf", "rigid"
-  std::string name;             // for people: "layered shell"
-  std::string details;          // for people: mesh, unknowns, pressure
-  double radius = 0.0;          // undeformed, m
-  double width = 0.0;           // overall, m
-  double tread_width = 0.0;     // m
-  int coordinates = 0;          // unknowns
-  int vertices = 0;             // of the contact surface
-  int facets = 0;               // equal pieces around the circumference
-  MassProperties mass;          // undeformed, about the rim's centre
-  double memory = 0.0;          // that the model needs, bytes
-  double saved_bytes = 0.0;     // in a checkpoint
-  bool takes_tangents = false;  // contact forces may answer to its motion
+  std::string kind;                // as results name it: "ancf", "rigid"
+  std::string name;                // for people: "layered shell"
+  std::string details;             // for people: mesh, unknowns, pressure
+  double radius = 0.0;             // undeformed, m
+  double width = 0.0;              // overall, m
+  double tread_width = 0.0;        // m
+  int coordinates = 0;             // unknowns
+  int vertices = 0;                // of the contact surface
+  int facets = 0;                  // equal pieces around the circumference
+  MassProperties mass;             // undeformed, about the rim's centre
+  double memory = 0.0;             // that the model needs, bytes
+  double saved_bytes = 0.0;        // in a checkpoint
+  bool takes_tangents = false;     // contact forces may answer to its motion
   std::vector<std::string> takes;  // names in TireOptions of what the model takes from the scenario: "pressure"
   /// Contact forces come one step late, which feeds a tire whose own damping is slower: steps of at most
   /// `step_share` of `damping_time` are good; with a share of 0 any step is.
@@ -69,7 +69,7 @@ struct TireDescription {
   double step_share = 0.0;    // -
   /// Why this tire can be pressed but not made and run: "whose key 'integrator' is …"; empty: it can.
   std::string static_only;
-  NamedValues model;          // what else there is to know of this model: "layers"
+  NamedValues model;  // what else there is to know of this model: "layers"
 };
 
 /// The undeformed tire in rim axes, origin at the rim's centre.
@@ -87,8 +87,8 @@ struct TireContext {
   int threads = 1;
   std::optional<double> tolerance = {};  // of the solver's residual, relative
   std::optional<double> renewal = {};    // change of shape at which the solver renews its factors
-  Vec3 gravity = standard_gravity();  // m/s²
-  std::function<void()> alive = {};   // called now and then while the tire is inflated; may throw to stop
+  Vec3 gravity = standard_gravity();     // m/s²
+  std::function<void()> alive = {};      // called now and then while the tire is inflated; may throw to stop
 };
 
 class TireSpec;

@@ -43,9 +43,8 @@ const TireModel& model_of(const json& document, const std::string& file) {
     valid.emplace_back(model.name);
   }
   const bool later = std::find(kLater.begin(), kLater.end(), name) != kLater.end();
-  reader.fail("model",
-              fmt::format("is '{}', {}expected {}", name,
-                          later ? "which is not available in this version, " : "", one_of(valid)));
+  reader.fail("model", fmt::format("is '{}', {}expected {}", name,
+                                   later ? "which is not available in this version, " : "", one_of(valid)));
 }
 
 /// The block `rim` of any model's file.
@@ -69,8 +68,7 @@ void check(const PressureSchedule& schedule, const std::string& key, const std::
     const PressureSchedule::Knot& knot = schedule.knots[k];
     const std::string here = fmt::format("{}.{}", key, k);
     if (knot.pressure < 0.0)
-      throw input_error(file, here + ".1",
-                        fmt::format("is {} Pa, expected 0 or more", number_text(knot.pressure)));
+      throw input_error(file, here + ".1", fmt::format("is {} Pa, expected 0 or more", number_text(knot.pressure)));
     if (k > 0 && !(knot.time > schedule.knots[k - 1].time))
       throw input_error(file, here + ".0",
                         fmt::format("is {} s, expected a time after that of the entry before, {} s",
@@ -100,9 +98,9 @@ std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext
   std::shared_ptr<const TireSpec> spec = read_tire(options);
   if (!options.contact_tangent) return spec;
   if (const TireDescription tire = spec->describe(); !tire.takes_tangents)
-    throw input_error(context.file, context.key("contact_tangent"),
-                      fmt::format("is true, expected false for a {}{}", tire.name,
-                                  tire.name.ends_with("tire") ? "" : " tire"));
+    throw input_error(
+        context.file, context.key("contact_tangent"),
+        fmt::format("is true, expected false for a {}{}", tire.name, tire.name.ends_with("tire") ? "" : " tire"));
   return spec;
 }
 

@@ -14,8 +14,7 @@ WheelAxes wheel_axes(const RimState& rim, const Vec3& travel, double ground) {
   FURROW_ASSERT(std::abs(travel.norm() - 1.0) < 1e-9, travel.transpose());
   FURROW_ASSERT((rim.orientation * Vec3::UnitY()).cross(Vec3::UnitZ()).norm() > 1e-6,
                 rim.orientation.coeffs().transpose());
-  FURROW_ASSERT((rim.orientation * Vec3::UnitY()).dot(Vec3::UnitZ().cross(travel)) != 0.0,
-                travel.transpose());
+  FURROW_ASSERT((rim.orientation * Vec3::UnitY()).dot(Vec3::UnitZ().cross(travel)) != 0.0, travel.transpose());
   FURROW_ASSERT(std::isfinite(ground), ground);
   WheelAxes w;
   Vec3 axle = rim.orientation * Vec3::UnitY();

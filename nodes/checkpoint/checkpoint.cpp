@@ -50,10 +50,8 @@ Json to_json(const CheckpointManifest& m) {
   for (const CheckpointPart& part : m.parts)
     json["parts"].push_back({{"file", part.file}, {"checksum", part.checksum}});
   for (const SeriesMark& mark : m.series)
-    json["series"].push_back({{"subject", mark.subject},
-                              {"bytes", mark.bytes},
-                              {"lines", mark.lines},
-                              {"checksum", mark.checksum}});
+    json["series"].push_back(
+        {{"subject", mark.subject}, {"bytes", mark.bytes}, {"lines", mark.lines}, {"checksum", mark.checksum}});
   json["frames"] = {
       {"every", m.frames.every}, {"first_step", m.frames.first_step}, {"first_index", m.frames.first_index}};
   json["segments"] = segments_json(m.segments);
@@ -63,8 +61,8 @@ Json to_json(const CheckpointManifest& m) {
 }
 
 /// A whole number of a size that a run may come to. @throws Error(io)
-std::int64_t whole(const std::string& file, const Json& object, const std::string& key,
-                   std::int64_t least = 0, std::int64_t most = kMostSteps) {
+std::int64_t whole(const std::string& file, const Json& object, const std::string& key, std::int64_t least = 0,
+                   std::int64_t most = kMostSteps) {
   const Json& value = object.at(key);
   if (value.is_number_integer() && value >= least && value <= most) return value.get<std::int64_t>();
   throw io_error(file, fmt::format("is damaged: '{}' is {}, expected a whole number from {} to {}", key,
@@ -72,8 +70,7 @@ std::int64_t whole(const std::string& file, const Json& object, const std::strin
 }
 
 FrameClock frames_from(const std::string& file, const Json& json, std::int64_t step) {
-  return {whole(file, json, "every"), whole(file, json, "first_step", 0, step),
-          whole(file, json, "first_index")};
+  return {whole(file, json, "every"), whole(file, json, "first_step", 0, step), whole(file, json, "first_index")};
 }
 
 void check_segments(const std::string& file, const Json& segments) {
@@ -95,11 +92,10 @@ CheckpointManifest from_json(const std::string& file, const Json& json) {
   m.bytes = whole(file, json, "bytes");
   m.write_s = json.at("write_s");
   for (const Json& part : json.at("parts"))
-    m.parts.push_back(
-        {m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
+    m.parts.push_back({m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
   for (const Json& mark : json.at("series"))
-    m.series.push_back({whole(file, mark, "bytes"), whole(file, mark, "lines"),
-                        mark.at("checksum").get<std::string>(), mark.at("subject").get<std::string>()});
+    m.series.push_back({whole(file, mark, "bytes"), whole(file, mark, "lines"), mark.at("checksum").get<std::string>(),
+                        mark.at("subject").get<std::string>()});
   m.frames = frames_from(file, json.at("frames"), m.step);
   check_segments(file, json.at("segments"));
   m.segments = segments_from_json(json.at("segments"));
@@ -117,23 +113,20 @@ void require_readable(const fs::path& path) {
 CheckpointManifest read_manifest(const fs::path& file) {
   std::error_code error;
   require_readable(file);
-  if (!fs::is_regular_file(file, error))
-    throw io_error(file.string(), "is missing: the checkpoint is not complete");
+  if (!fs::is_regular_file(file, error)) throw io_error(file.string(), "is missing: the checkpoint is not complete");
   Json json = read_json_if_whole(file);
   if (!json.is_object()) throw io_error(file.string(), "is not valid JSON: the checkpoint is damaged");
   try {
     if (json.value("kind", "") != kKind) throw io_error(file.string(), "is not a checkpoint of furrow");
     const Json& format = json.at("format_version");
     if (format > kFormatVersion)
-      throw io_error(file.string(),
-                     fmt::format("format_version {} is newer than this program reads, which is {}",
-                                 format.dump(), kFormatVersion));
+      throw io_error(file.string(), fmt::format("format_version {} is newer than this program reads, which is {}",
+                                                format.dump(), kFormatVersion));
     if (format < kFormatVersion)
-      throw io_error(
-          file.string(),
-          fmt::format("was written by an older version of furrow, format {}; this program reads format {}: "
-                      "continue the run with that version, or start it again with furrow run",
-                      format.dump(), kFormatVersion));
+      throw io_error(file.string(),
+                     fmt::format("was written by an older version of furrow, format {}; this program reads format {}: "
+                                 "continue the run with that version, or start it again with furrow run",
+                                 format.dump(), kFormatVersion));
     const std::string checksum = json.at("checksum");
     json.erase("checksum");
     if (text_hash(json.dump()) != checksum)
@@ -155,8 +148,7 @@ constexpr const char* kFileForms[] = {kManifest, "rig.h5", "tire%1d.h5", "terrai
 
 /// Removes what is a checkpoint's in its folder, and the folder unless somebody else's files stand there.
 void remove_checkpoint(const fs::path& run, const fs::path& folder) {
-  launch::remove_listed(run, launch::RunList(checkpoint_forms()),
-                        "checkpoints/" + folder.filename().string() + "/");
+  launch::remove_listed(run, launch::RunList(checkpoint_forms()), "checkpoints/" + folder.filename().string() + "/");
   std::error_code error;
   fs::remove(folder, error);
 }
@@ -237,8 +229,7 @@ std::vector<fs::path> list_checkpoints(const fs::path& run) {
   require_readable(checkpoints_folder(run));
   for (const auto& entry : fs::directory_iterator(checkpoints_folder(run), error))
     if (step_of(entry.path()) >= 0) found.push_back(entry.path());
-  std::sort(found.begin(), found.end(),
-            [](const fs::path& a, const fs::path& b) { return step_of(a) > step_of(b); });
+  std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) { return step_of(a) > step_of(b); });
   return found;
 }
 
@@ -247,8 +238,7 @@ void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
     std::error_code error;
     std::vector<fs::path> doomed;
     for (const auto& entry : fs::directory_iterator(checkpoints_folder(run), error))
-      if (step_of(entry.path()) > step ||
-          launch::is_of_form(entry.path().filename().string(), kFolderForms[1]))
+      if (step_of(entry.path()) > step || launch::is_of_form(entry.path().filename().string(), kFolderForms[1]))
         doomed.push_back(entry.path());
     for (const fs::path& folder : doomed) remove_checkpoint(run, folder);
   } catch (...) {
@@ -268,8 +258,7 @@ std::string cpu_model() {
   return "unknown";
 }
 
-std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads,
-                                    const ResumePoint* resume) {
+std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads, const ResumePoint* resume) {
   FURROW_ASSERT(resume == nullptr || step >= resume->manifest.step, step);
   FURROW_ASSERT(threads > 0, threads);
   std::vector<Segment> segments;

@@ -39,7 +39,7 @@ struct CheckpointManifest {
 struct ResumePoint {
   std::filesystem::path folder;  // of the checkpoint
   CheckpointManifest manifest;
-  std::string changed;  // JSON object: keys that are changed from here on
+  std::string changed;     // JSON object: keys that are changed from here on
   std::string finer_than;  // Segment::finer_than
 };
 

@@ -94,15 +94,13 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
 void count_in_steps_of(double step, double before, const fs::path& run, CheckpointManifest& manifest) {
   const auto ratio = static_cast<std::int64_t>(std::llround(before / step));
   if (ratio < 1 || std::abs(before - static_cast<double>(ratio) * step) > 1e-9 * before)
-    throw input_error(
-        run.string(), "run.step",
-        fmt::format("is {} s but the run was computed with {} s, expected a half, a third, … of it",
-                    number_text(step), number_text(before)));
+    throw input_error(run.string(), "run.step",
+                      fmt::format("is {} s but the run was computed with {} s, expected a half, a third, … of it",
+                                  number_text(step), number_text(before)));
   const auto count = [&](std::int64_t& steps) {
     if (steps > kMostSteps / ratio)
-      throw input_error(
-          run.string(), "run.step",
-          fmt::format("is {} s, too many steps to be counted, expected more", number_text(step)));
+      throw input_error(run.string(), "run.step",
+                        fmt::format("is {} s, too many steps to be counted, expected more", number_text(step)));
     steps *= ratio;
   };
   count(manifest.step), count(manifest.frames.every), count(manifest.frames.first_step);
@@ -116,9 +114,8 @@ void check_finer(const fs::path& run, const json& before, const json& changed) {
     const json::json_pointer pointer("/" + key.substr(0, key.find('.')) + "/substeps");
     const auto was = before.value(pointer, 1);
     if (value.is_number_integer() && value.get<int>() < was)
-      throw input_error(
-          run.string(), key,
-          fmt::format("is {} but the run was computed with {}, expected more", value.get<int>(), was));
+      throw input_error(run.string(), key,
+                        fmt::format("is {} but the run was computed with {}, expected more", value.get<int>(), was));
   }
 }
 
@@ -155,13 +152,11 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 /// The bed between two passes lies in the study's folder, and where that was moved, its name leads nowhere.
 Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
   const json document = read_json_if_whole(file);
-  const json named =
-      document.is_object() ? document.value(json::json_pointer("/terrain/bed"), json()) : json();
+  const json named = document.is_object() ? document.value(json::json_pointer("/terrain/bed"), json()) : json();
   std::error_code error;
   if (!named.is_string() || fs::exists(named.get<std::string>(), error)) return {};
   const fs::path whole = fs::canonical(run, error);
-  const fs::path bed =
-      whole.parent_path().parent_path() / "beds" / fs::path(named.get<std::string>()).filename();
+  const fs::path bed = whole.parent_path().parent_path() / "beds" / fs::path(named.get<std::string>()).filename();
   if (error || !fs::is_regular_file(bed, error)) return {};
   return {{"terrain.bed", bed.string()}};
 }
@@ -171,9 +166,8 @@ Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
 void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, ResumePlan& plan) try {
   ResumePoint& point = plan.point;
   const json now = json::parse(plan.scenario.completed);
-  const json before =
-      with_places_of(scenario::completed_now(point.manifest.scenario),  // perhaps of an earlier version
-                     now, plan.scenario);
+  const json before = with_places_of(scenario::completed_now(point.manifest.scenario),  // perhaps of an earlier version
+                                     now, plan.scenario);
   const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
   const json changed = changes(run, before, now, physics);
   if (!changed.empty()) point.changed = changed.dump();
@@ -254,18 +248,17 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   take_changes(run, read_failed_summary(run), plan);
   check_files(plan.scenario, manifest);
   if (const terrain::TerrainDescription terrain = plan.scenario.terrain->describe(); !terrain.exact_restart)
-    plan.warnings.push_back(
-        fmt::format("{}: the engine '{}' continues with the same physics, not with the same bits",
-                    run.string(), terrain.engine));
+    plan.warnings.push_back(fmt::format("{}: the engine '{}' continues with the same physics, not with the same bits",
+                                        run.string(), terrain.engine));
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
-    throw input_error(run.string(), "run.end",
-                      fmt::format("is {} s, but the run has reached {} s, expected that or later",
-                                  number_text(plan.scenario.run.end),
-                                  number_text(static_cast<double>(reached) * plan.scenario.run.step)));
+    throw input_error(
+        run.string(), "run.end",
+        fmt::format("is {} s, but the run has reached {} s, expected that or later", number_text(plan.scenario.run.end),
+                    number_text(static_cast<double>(reached) * plan.scenario.run.step)));
   if (manifest.build != build_id())
-    plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" +
-                            manifest.version + "): the run continues, but not bit for bit");
+    plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" + manifest.version +
+                            "): the run continues, but not bit for bit");
   else if (manifest.cpu != cpu_model())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another processor (" + manifest.cpu +
                             "): the run continues, perhaps not bit for bit");

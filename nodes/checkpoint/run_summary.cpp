@@ -62,8 +62,8 @@ Json value_at(const Json& summary, const std::string& path) {
   for (std::size_t from = 0; from <= path.size();) {
     const std::size_t to = std::min(path.find('.', from), path.size());
     const std::string part = path.substr(from, to - from);
-    const bool index = !part.empty() && part.size() <= kMaxDigits &&
-                       part.find_first_not_of("0123456789") == std::string::npos;
+    const bool index =
+        !part.empty() && part.size() <= kMaxDigits && part.find_first_not_of("0123456789") == std::string::npos;
     if (at->is_array() && index && std::stoul(part) < at->size())
       at = &(*at)[std::stoul(part)];
     else if (at->is_object() && at->contains(part))

@@ -25,8 +25,7 @@ struct Segment {
 inline nlohmann::ordered_json segments_json(const std::vector<Segment>& segments) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Segment& s : segments) {
-    list.push_back(
-        {{"from_step", s.from_step}, {"to_step", s.to_step}, {"wall_s", s.wall_s}, {"threads", s.threads}});
+    list.push_back({{"from_step", s.from_step}, {"to_step", s.to_step}, {"wall_s", s.wall_s}, {"threads", s.threads}});
     if (!s.changed.empty()) list.back()["changed"] = nlohmann::ordered_json::parse(s.changed);
     if (!s.finer_than.empty()) list.back()["finer_than"] = s.finer_than;
   }

@@ -44,10 +44,10 @@ struct ModesArguments {
   std::filesystem::path out;  // empty: a fresh folder under results/
   bool overwrite = false;
   bool plots = true;
-  bool csv = false, json = false;  // printed, in place of a folder
-  std::optional<int> orders;       // highest circumferential order; none: 8, or half of the elements around
-  std::optional<int> count;        // frequencies of each order; none: 3, or the unknowns of a section
-  std::optional<double> pressure;  // gauge, Pa; none: the file's
+  bool csv = false, json = false;     // printed, in place of a folder
+  std::optional<int> orders;          // highest circumferential order; none: 8, or half of the elements around
+  std::optional<int> count;           // frequencies of each order; none: 3, or the unknowns of a section
+  std::optional<double> pressure;     // gauge, Pa; none: the file's
   std::optional<int> around, across;  // elements; none: the file's
 };
 

@@ -21,9 +21,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o,
-              const terrain::dem::PreparedBed& prepared, const terrain::dem::BedStatistics& bed,
-              double wall_s) {
+json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, const terrain::dem::PreparedBed& prepared,
+              const terrain::dem::BedStatistics& bed, double wall_s) {
   const double mass = o.density * bed.grain_volume;
   const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
   json j;
@@ -77,8 +76,8 @@ ExitCode bed_command(const scenario::Scenario& scenario) {
   const terrain::dem::PreparedBed prepared = terrain::dem::prepare_bed(grains, progress);
   terrain::dem::GrainSolver solver(terrain::dem::solver_params(grains));
   terrain::dem::restore_bed(solver, prepared);
-  const terrain::dem::BedStatistics statistics = terrain::dem::bed_statistics(
-      terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius, progress);
+  const terrain::dem::BedStatistics statistics =
+      terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius, progress);
   const double wall = wall_clock() - begin;
   display.clear();
   if (!prepared.settled.settled)

@@ -8,8 +8,7 @@
 namespace furrow::commands {
 
 struct GrainBench {
-  std::string bed =
-      "default";  // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
+  std::string bed = "default";      // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
   std::string law = "mindlin";      // mindlin | hertz_tanh
   std::string precision = "mixed";  // mixed | double
   double cohesion = 0.0;            // Pa

@@ -38,8 +38,7 @@ terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   options.precision = bench.precision;
   options.step = bench.step;
   options.threads = options.settle_threads = bench.threads;
-  const terrain::dem::StableStep stable =
-      terrain::dem::stable_at(options, terrain::dem::stated_overlap(options));
+  const terrain::dem::StableStep stable = terrain::dem::stable_at(options, terrain::dem::stated_overlap(options));
   if (bench.step > stable.step)
     throw input_error("command line", "--step",
                       fmt::format("is {:g} s, expected at most the stable step of {:.3g} s ({})", bench.step,

@@ -43,8 +43,7 @@ void check(const TireBench& bench) {
   require(bench.steps >= 0, "--steps", "0 (one revolution) or more");
   require(bench.warm >= 0.0, "--warm", "0 or more, s");
   require(bench.step > 0.0 && bench.step <= 1e-2, "--step", "a positive number, at most 0.01 s");
-  require(bench.speed >= 0.0 && (bench.speed > 0.0 || bench.steps > 0), "--speed",
-          "above 0 rad/s, or 0 and --steps");
+  require(bench.speed >= 0.0 && (bench.speed > 0.0 || bench.steps > 0), "--speed", "above 0 rad/s, or 0 and --steps");
   require(bench.pressure >= 0.0, "--pressure", "0 or more, Pa");
   require(bench.columns == 0 || (bench.columns >= 8 && bench.columns <= 2000), "--elements-circumference",
           "8 to 2000, or 0 for the file's");
@@ -76,8 +75,7 @@ std::unique_ptr<tire::TireSpec> read_tire(const TireBench& bench) {
 }
 
 /// Processor time of the tire's parts per step since `before`, and the rest of `total`, ms.
-nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& before, long steps,
-                             double total) {
+nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& before, long steps, double total) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   double rest = total;
   for (const tire::NamedValue& part : tire.times()) {
@@ -93,8 +91,7 @@ nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& be
 double quantile(const std::vector<double>& sorted, double p) {
   FURROW_ASSERT(!sorted.empty() && std::is_sorted(sorted.begin(), sorted.end()), sorted.size());
   FURROW_ASSERT(p >= 0.0 && p <= 1.0, p);
-  return sorted[std::min(sorted.size() - 1,
-                         static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
 }
 
 }  // namespace
@@ -113,9 +110,8 @@ std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
   }
 
   const double turn = 2.0 * std::numbers::pi;
-  const long steps = bench.steps > 0
-                         ? bench.steps
-                         : std::lround(std::ceil(turn / (std::max(bench.speed, 1.0) * bench.step)));
+  const long steps =
+      bench.steps > 0 ? bench.steps : std::lround(std::ceil(turn / (std::max(bench.speed, 1.0) * bench.step)));
   const tire::NamedValues times = tire->times(), start = tire->figures();
   std::vector<double> wall(steps), processor(steps);
   double load = 0.0, pull = 0.0, moment = 0.0, height = 0.0, worst = 0.0;

@@ -14,8 +14,8 @@
 #include "nodes/launch/signals.hpp"
 #include "nodes/study/calibrate.hpp"
 #include "nodes/study/calibrate_check.hpp"
-#include "nodes/study/calibrate_files.hpp"
 #include "nodes/study/calibrate_evaluations.hpp"
+#include "nodes/study/calibrate_files.hpp"
 #include "protocol/files/digits.hpp"
 
 namespace furrow::commands {
@@ -73,9 +73,9 @@ std::string result_text(const Json& summary) {
   for (const Json& target : summary["targets"]) text += target_line(target, "fitted");
   for (const Json& target : summary["held_out_targets"]) text += target_line(target, "predicted");
   if (summary.contains("processor_s"))
-    text += fmt::format("furrow: {} evaluations, {:.2g} minutes of processor time: {}\n",
-                        summary["evaluations"].get<int>(), summary["processor_s"].get<double>() / 60.0,
-                        summary["ended"].get<std::string>());
+    text +=
+        fmt::format("furrow: {} evaluations, {:.2g} minutes of processor time: {}\n", summary["evaluations"].get<int>(),
+                    summary["processor_s"].get<double>() / 60.0, summary["ended"].get<std::string>());
   return text;
 }
 
@@ -127,8 +127,7 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
     const bool replaces = directory.replaces();
     if (replaces) {
       directory.discard();
-      std::fprintf(stderr, "furrow: nothing had been evaluated; %s holds the earlier results again\n",
-                   folder.c_str());
+      std::fprintf(stderr, "furrow: nothing had been evaluated; %s holds the earlier results again\n", folder.c_str());
     }
     if (error.code() != ExitCode::stopped) throw;
     std::fprintf(stderr, "furrow: stopped by a signal; run the same command to %s\n",

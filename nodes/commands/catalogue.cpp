@@ -63,16 +63,14 @@ Json catalogue(const std::string& only) {
     if (!only.empty() && only != kind.name) continue;
     const std::filesystem::path folder = data_folder() / kind.folder;
     if (!std::filesystem::is_directory(folder))
-      throw io_error(
-          folder.string(),
-          "is missing, expected the folder that comes with furrow (FURROW_HOME names the folder above it)");
+      throw io_error(folder.string(),
+                     "is missing, expected the folder that comes with furrow (FURROW_HOME names the folder above it)");
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       if (entry.path().extension() == ".json" && !entry.path().stem().string().ends_with(".schema"))
         files.push_back(entry.path());
     std::sort(files.begin(), files.end());
-    Json& listed =
-        all[kind.name] = {{"folder", folder.string()}, {"use", kind.use}, {"files", Json::object()}};
+    Json& listed = all[kind.name] = {{"folder", folder.string()}, {"use", kind.use}, {"files", Json::object()}};
     for (const std::filesystem::path& path : files)
       if (const Json file = load_json<Json>(path, "a file that comes with furrow"); kind_of_file(file) == kind.holds)
         listed["files"][path.filename().string()] = line_of(file);
@@ -90,8 +88,7 @@ ExitCode list_command(const std::string& only, bool json) {
     known = known || only == kind.name;
   }
   if (!known)
-    throw input_error("command line", "KIND",
-                      fmt::format("is {}, expected one of {}", value_text(Json(only)), kinds));
+    throw input_error("command line", "KIND", fmt::format("is {}, expected one of {}", value_text(Json(only)), kinds));
   const Json all = catalogue(only);
   if (json) {
     std::cout << all.dump(2) << "\n";
@@ -111,8 +108,7 @@ ExitCode list_command(const std::string& only, bool json) {
 ExitCode new_command(const NewArguments& arguments) {
   std::filesystem::path file = arguments.name;
   if (const std::string name = file.filename().string(); name.empty() || name[0] == '-' || name[0] == '.')
-    throw input_error("command line", "NAME",
-                      "is '" + arguments.name.string() + "', expected a name for a file");
+    throw input_error("command line", "NAME", "is '" + arguments.name.string() + "', expected a name for a file");
   if (file.extension() != ".json") file += ".json";
   scenario::write_starter(file, {.tire = arguments.tire,
                                  .soil = arguments.soil,
@@ -121,9 +117,8 @@ ExitCode new_command(const NewArguments& arguments) {
                                  .load = arguments.load.value_or(0.0)});
   std::cout << file.string() << "\n";
   const std::string name = scenario::shell_quoted(file.string());
-  launch::say(
-      fmt::format("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n",
-                  file.string(), name, name));
+  launch::say(fmt::format("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n",
+                          file.string(), name, name));
   return ExitCode::done;
 }
 

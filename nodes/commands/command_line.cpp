@@ -32,16 +32,14 @@ void add_quiet(CLI::App& app) {
     if (!command->get_subcommands(all).empty())
       add_quiet(*command);
     else if (name != "list" && name != "explain" && name != "events")
-      command->add_flag_callback(
-          "--quiet", launch::silence_messages,
-          "Print errors only on standard error; what goes to standard output stays the same.");
+      command->add_flag_callback("--quiet", launch::silence_messages,
+                                 "Print errors only on standard error; what goes to standard output stays the same.");
   }
 }
 
 /// The command whose help says more, with a blank after it.
 std::string asked_command(const CLI::App& app) {
-  for (const CLI::App* command : app.get_subcommands())
-    return command->get_name() + " " + asked_command(*command);
+  for (const CLI::App* command : app.get_subcommands()) return command->get_name() + " " + asked_command(*command);
   return {};
 }
 
@@ -52,8 +50,7 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
     commands.push_back(command->get_name());
   const std::string first = argc > 1 ? argv[1] : "";
   if (first.empty())
-    return fmt::format("no command is given, expected one of: {}; see furrow --help",
-                       fmt::join(commands, ", "));
+    return fmt::format("no command is given, expected one of: {}; see furrow --help", fmt::join(commands, ", "));
   if (first[0] != '-' && std::find(commands.begin(), commands.end(), first) == commands.end()) {
     const std::vector<std::string> similar = nearest_words(first, commands);
     return fmt::format("unknown command '{}'; {}", excerpt(first),
@@ -106,8 +103,7 @@ CommandLine::CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
   add_quiet(app_);
 }
 
-CLI::App& CommandLine::add(CLI::App& parent, const char* name, const char* purpose,
-                           std::function<ExitCode()> action) {
+CLI::App& CommandLine::add(CLI::App& parent, const char* name, const char* purpose, std::function<ExitCode()> action) {
   CLI::App& command = *parent.add_subcommand(name, purpose);
   command.footer(closing_words(&parent == &app_ ? name : parent.get_name() + " " + name));
   command.callback([this, action = std::move(action)] { chosen_ = action; });

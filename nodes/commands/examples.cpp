@@ -53,8 +53,7 @@ std::string examples_of(std::string_view command) {
     if (example.command == command) width = std::max(width, example.line.size());
   std::string text;
   for (const Example& example : kExamples)
-    if (example.command == command)
-      text += fmt::format("  furrow {:{}}  {}\n", example.line, width, example.purpose);
+    if (example.command == command) text += fmt::format("  furrow {:{}}  {}\n", example.line, width, example.purpose);
   return text;
 }
 

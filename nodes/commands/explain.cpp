@@ -1,7 +1,7 @@
 // `furrow explain`: what a key of a scenario or of a calibration study means.
+#include "nodes/scenario/explain.hpp"
 #include "nodes/commands/questions.hpp"
 #include "nodes/commands/wrapped.hpp"
-#include "nodes/scenario/explain.hpp"
 #include "nodes/study/calibrate_explain.hpp"
 #include "protocol/core/error.hpp"
 
@@ -10,8 +10,7 @@ namespace furrow::commands {
 ExitCode explain_command(const std::string& key) {
   if (key.ends_with(".json"))
     throw input_error("explain", key, "is the name of a file, expected a key; 'furrow validate' checks a file");
-  const std::string text =
-      study::explains_calibrations(key) ? study::explain_calibration(key) : scenario::explain(key);
+  const std::string text = study::explains_calibrations(key) ? study::explain_calibration(key) : scenario::explain(key);
   print_text(text, Piped::whole_lines);
   return ExitCode::done;
 }

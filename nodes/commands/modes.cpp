@@ -23,17 +23,14 @@ constexpr int kFormatVersion = 1;
 constexpr int kMostAround = 2000, kMostAcross = 400;
 constexpr double kMostPressure = 1e8;  // Pa
 
-Error refused(const char* option, const std::string& what) {
-  return input_error("command line", option, what);
-}
+Error refused(const char* option, const std::string& what) { return input_error("command line", option, what); }
 
 std::unique_ptr<tire::TireSpec> tire_of(const ModesArguments& arguments) {
   tire::TireOptions options;
   options.file = find_file(arguments.tire, "TIRE", "command line");
   if (arguments.pressure) {
     if (!(*arguments.pressure >= 0.0 && *arguments.pressure <= kMostPressure))
-      throw refused("--pressure",
-                    fmt::format("is {:g}, expected 0 to {:g} Pa", *arguments.pressure, kMostPressure));
+      throw refused("--pressure", fmt::format("is {:g}, expected 0 to {:g} Pa", *arguments.pressure, kMostPressure));
     options.pressure.knots = {{0.0, *arguments.pressure}};
   }
   const auto elements = [](const char* option, const std::optional<int>& value, int most) {
@@ -60,8 +57,8 @@ tire::ModesOptions modes_options(const ModesArguments& arguments, const tire::Mo
     throw refused("--orders",
                   fmt::format("is {}, expected 0 to {}, half of the elements around", options.orders, most));
   if (options.count < 1 || options.count > test.unknowns())
-    throw refused("--count", fmt::format("is {}, expected 1 to {}, the unknowns of a section", options.count,
-                                         test.unknowns()));
+    throw refused("--count",
+                  fmt::format("is {}, expected 1 to {}, the unknowns of a section", options.count, test.unknowns()));
   return options;
 }
 
@@ -79,8 +76,7 @@ tire::ModesResults compute(const tire::ModalTest& test, const tire::ModesOptions
 /// The lowest frequency of all in a line, or what is not stable.
 std::string result_line(const tire::ModesResults& results) {
   const auto lowest = std::ranges::min_element(results.modes, {}, &tire::Mode::frequency);
-  return fmt::format("furrow: lowest frequency {} Hz, of order {}\n", digits(lowest->frequency),
-                     lowest->order);
+  return fmt::format("furrow: lowest frequency {} Hz, of order {}\n", digits(lowest->frequency), lowest->order);
 }
 
 void warn_of_unstable(const tire::ModesResults& results) {
@@ -119,8 +115,7 @@ ExitCode modes_command(const ModesArguments& arguments) {
     std::cout << summary.dump(2) << "\n";
     return ExitCode::done;
   }
-  launch::RunDirectory directory(spec->options().file.stem().string() + "-modes", arguments.out,
-                                 arguments.overwrite);
+  launch::RunDirectory directory(spec->options().file.stem().string() + "-modes", arguments.out, arguments.overwrite);
   try {
     directory.add({"modes.csv", "section.csv", "shapes.csv", "summary.json"});
     tire::write_mode_tables(directory.path(), results);

@@ -17,8 +17,8 @@ CLI::Validator above_zero() {
 
 CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
                                 const std::string& usual) {
-  CLI::Option* option = command.add_option(
-      "--out", out, "Write the results to this new folder (default: results/" + usual + ").");
+  CLI::Option* option =
+      command.add_option("--out", out, "Write the results to this new folder (default: results/" + usual + ").");
   command.add_flag("--overwrite", overwrite, "Replace the results of an earlier run in the folder of --out.");
   return option;
 }
@@ -29,24 +29,18 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
                   "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, "
                   "y from 0 to 0.6 and z ≥ 0. 'default' is the reference bed.")
       ->capture_default_str();
-  command.add_option("--law", bench.law, "Choose the contact law: mindlin or hertz_tanh.")
+  command.add_option("--law", bench.law, "Choose the contact law: mindlin or hertz_tanh.")->capture_default_str();
+  command.add_option("--precision", bench.precision, "Choose the precision of the contact law: mixed or double.")
       ->capture_default_str();
-  command
-      .add_option("--precision", bench.precision, "Choose the precision of the contact law: mixed or double.")
-      ->capture_default_str();
-  command.add_option("--cohesion", bench.cohesion, "Set the cohesion of the contacts, Pa.")
-      ->capture_default_str();
-  command
-      .add_option("--rolling-friction", bench.rolling_friction, "Set the coefficient of rolling resistance.")
+  command.add_option("--cohesion", bench.cohesion, "Set the cohesion of the contacts, Pa.")->capture_default_str();
+  command.add_option("--rolling-friction", bench.rolling_friction, "Set the coefficient of rolling resistance.")
       ->capture_default_str();
   command.add_option("--threads", bench.threads, "Use this number of threads.")->capture_default_str();
   command.add_option("--steps", bench.steps, "Time this number of steps.")->capture_default_str();
-  command.add_option("--warm", bench.warm, "Take this number of steps before the timed ones.")
-      ->capture_default_str();
+  command.add_option("--warm", bench.warm, "Take this number of steps before the timed ones.")->capture_default_str();
   command.add_option("--settle", bench.settle, "Let the bed settle first, for at most this time, s.")
       ->capture_default_str();
-  command.add_option("--save-bed", bench.save,
-                     "Write the positions before the timed steps to this CSV file.");
+  command.add_option("--save-bed", bench.save, "Write the positions before the timed steps to this CSV file.");
   command.add_option("--step", bench.step, "Set the time step, s.")->capture_default_str();
 }
 
@@ -58,14 +52,11 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
       ->capture_default_str();
   command.add_option("--step", bench.step, "Set the time step, s.")->capture_default_str();
   command
-      .add_option("--warm", bench.warm,
-                  "Roll for this time before the timed steps, so that the touch-down is over, s.")
+      .add_option("--warm", bench.warm, "Roll for this time before the timed steps, so that the touch-down is over, s.")
       ->capture_default_str();
-  command.add_option("--pressure", bench.pressure, "Set the inflation pressure (gauge), Pa.")
-      ->capture_default_str();
+  command.add_option("--pressure", bench.pressure, "Set the inflation pressure (gauge), Pa.")->capture_default_str();
   command.add_option("--load", bench.load, "Set the mass that the tire carries, kg.")->capture_default_str();
-  command.add_option("--speed", bench.speed, "Set the angular speed of the rim, rad/s.")
-      ->capture_default_str();
+  command.add_option("--speed", bench.speed, "Set the angular speed of the rim, rad/s.")->capture_default_str();
   command
       .add_option("--tolerance", bench.tolerance,
                   "Set the tolerance of the free residual, relative to the norm of the pressure forces.")
@@ -80,8 +71,7 @@ void add_tire_bench(CLI::App& command, TireBench& bench) {
                   "Set the number of elements around the tire; 0 keeps the file's.")
       ->capture_default_str();
   command
-      .add_option("--elements-width", bench.width,
-                  "Set the number of elements across the tire; 0 keeps the file's.")
+      .add_option("--elements-width", bench.width, "Set the number of elements across the tire; 0 keeps the file's.")
       ->capture_default_str();
 }
 
@@ -95,14 +85,11 @@ void add_press_options(CLI::App& command, PressArguments& press) {
   command.add_option("--camber", press.camber,
                      "Tilt the wheel about its forward axis, rad; positive leans the top to the right of "
                      "travel. Shell tires only (press.camber).");
-  command.add_option("--cleat-height", press.cleat_height,
-                     "Set the height of the cleat, m (press.cleat_height).");
-  command.add_option(
-      "--cleat-width", press.cleat_width,
-      "Set the width of the cleat's top along the direction of travel, m (press.cleat_width).");
-  command.add_option(
-      "--cleat-position", press.cleat_position,
-      "Set the position of the cleat's middle, forward of the axle, m (press.cleat_position).");
+  command.add_option("--cleat-height", press.cleat_height, "Set the height of the cleat, m (press.cleat_height).");
+  command.add_option("--cleat-width", press.cleat_width,
+                     "Set the width of the cleat's top along the direction of travel, m (press.cleat_width).");
+  command.add_option("--cleat-position", press.cleat_position,
+                     "Set the position of the cleat's middle, forward of the axle, m (press.cleat_position).");
   command.add_option(
       "--profile", press.profile,
       "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs --on "
@@ -110,17 +97,14 @@ void add_press_options(CLI::App& command, PressArguments& press) {
 }
 
 void add_modes_options(CLI::App& command, ModesArguments& modes) {
-  command.add_option("TIRE", modes.tire, "Read this tire file (JSON), as given or in tire/data/.")
-      ->required();
+  command.add_option("TIRE", modes.tire, "Read this tire file (JSON), as given or in tire/data/.")->required();
   CLI::Option* out = add_folder_options(command, modes.out, modes.overwrite, "<tire>-modes-NNN");
-  command.add_option(
-      "--orders", modes.orders,
-      "Compute circumferential orders from 0 to this one (default: 8, or half of the elements around).");
+  command.add_option("--orders", modes.orders,
+                     "Compute circumferential orders from 0 to this one (default: 8, or half of the elements around).");
   command.add_option(
       "--count", modes.count,
       "Compute this number of frequencies of each order (default: 3, or all that a section of the tire has).");
-  command.add_option("--pressure", modes.pressure,
-                     "Set the inflation pressure (gauge), Pa (default: the file's).");
+  command.add_option("--pressure", modes.pressure, "Set the inflation pressure (gauge), Pa (default: the file's).");
   command.add_option("--elements-circumference", modes.around,
                      "Set the number of elements around the tire (default: the file's).");
   command.add_option("--elements-width", modes.across,
@@ -136,15 +120,12 @@ void add_modes_options(CLI::App& command, ModesArguments& modes) {
 
 void add_soil_options(CLI::App& command, SoilArguments& soil) {
   add_folder_options(command, soil.out, soil.overwrite, "<scenario>-soil-NNN");
-  command
-      .add_option("--seeds", soil.seeds,
-                  "Repeat each test on this number of beds, with run.seed, run.seed + 1, …")
+  command.add_option("--seeds", soil.seeds, "Repeat each test on this number of beds, with run.seed, run.seed + 1, …")
       ->capture_default_str();
   command.add_option("--speed", soil.speed, "Move plate, shear box and cone at this speed, m/s.")
       ->capture_default_str();
   command
-      .add_option("--only", soil.only,
-                  "Run this test only: plate, shear, cone or repose. The option may be repeated.")
+      .add_option("--only", soil.only, "Run this test only: plate, shear, cone or repose. The option may be repeated.")
       ->take_all()
       ->allow_extra_args(false);
   command
@@ -154,9 +135,8 @@ void add_soil_options(CLI::App& command, SoilArguments& soil) {
                   "50 and 100 kPa, less for soft grains).")
       ->take_all()
       ->allow_extra_args(false);
-  command.add_flag(
-      "--quick", soil.quick,
-      "Use small boxes and one seed, for an impression within seconds. Do not quote its results.");
+  command.add_flag("--quick", soil.quick,
+                   "Use small boxes and one seed, for an impression within seconds. Do not quote its results.");
 }
 
 void add_slurm_options(CLI::App& command, bool& wanted, SlurmArguments& job) {
@@ -164,22 +144,19 @@ void add_slurm_options(CLI::App& command, bool& wanted, SlurmArguments& job) {
                                         "Print a batch script for sbatch. It saves the run before its time "
                                         "is over, and continues when it is queued again.");
   const auto of_slurm = [&](CLI::Option* option) { option->needs(slurm); };
-  of_slurm(command
-               .add_option("--nodes", job.nodes,
-                           "Use this number of nodes; the ranks are spread over them in order.")
-               ->capture_default_str());
+  of_slurm(
+      command.add_option("--nodes", job.nodes, "Use this number of nodes; the ranks are spread over them in order.")
+          ->capture_default_str());
   of_slurm(command
                .add_option("--cores-per-node", job.cores_per_node,
                            "Use this number of cores on each node (default: all of them).")
                ->check(above_zero()));
-  of_slurm(
-      command.add_option("--partition", job.partition, "Submit to this partition (default: the cluster's)."));
+  of_slurm(command.add_option("--partition", job.partition, "Submit to this partition (default: the cluster's)."));
   of_slurm(command.add_option("--time", job.time,
                               "Limit one start of the job to this time, in minutes, as hh:mm:ss or as "
                               "days-hh:mm:ss. A longer run takes "
                               "several starts (default: the partition's limit)."));
-  of_slurm(
-      command.add_option("--account", job.account, "Charge the job to this account (default: your own)."));
+  of_slurm(command.add_option("--account", job.account, "Charge the job to this account (default: your own)."));
   of_slurm(command.add_option(
       "--out", job.out,
       "Write the results to this new folder (default: results/<scenario>-job<number> where you submit)."));

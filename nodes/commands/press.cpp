@@ -33,8 +33,7 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   require(on == "plate" || on == "cleat" || on == "profile", "--on",
           "is '" + on + "', expected plate, cleat or profile");
   const bool profile = on == "profile";
-  require(!profile || !arguments.profile.empty(), "--profile",
-          "is missing, expected a CSV file for --on profile");
+  require(!profile || !arguments.profile.empty(), "--profile", "is missing, expected a CSV file for --on profile");
   require(profile || arguments.profile.empty(), "--profile",
           "is given for --on " + on + ", expected it for --on profile alone");
   const auto of_cleat = [&](const std::optional<double>& given, const char* key) {
@@ -64,8 +63,7 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   within(std::abs(position) <= 1.0, "--cleat-position", position, "-1 to 1 m");
   if (on == "cleat") o.obstacle.height = height, o.obstacle.width = width, o.obstacle.position = position;
   if (profile) o.obstacle.profile = tire::read_press_profile(arguments.profile);
-  if (!arguments.deflection)
-    o.deflection_from = scenario.file.string(), o.deflection_key = "press.deflection";
+  if (!arguments.deflection) o.deflection_from = scenario.file.string(), o.deflection_key = "press.deflection";
   if (!arguments.camber) o.camber_from = scenario.file.string(), o.camber_key = "press.camber";
   return o;
 }
@@ -83,9 +81,7 @@ std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario
 /// The answer in a line, from the summary; empty where the load was not reached.
 std::string result_line(const nlohmann::ordered_json& summary) {
   if (summary["deflection_m"].is_null()) return "";
-  const auto in = [](const nlohmann::ordered_json& value, double unit) {
-    return digits(value.get<double>() / unit);
-  };
+  const auto in = [](const nlohmann::ordered_json& value, double unit) { return digits(value.get<double>() / unit); };
   const auto& footprint = summary["footprint"];
   std::string patch;
   if (footprint["length_m"].is_number()) patch = fmt::format(", footprint {} mm long", in(footprint["length_m"], 1e-3));
@@ -117,8 +113,8 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
   const tire::PressOptions options = press_options(scenario, arguments);
   const tire::PressureSchedule& pressure = scenario.tires.front()->options().pressure;
   if (pressure.varies())
-    print_warning(fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa",
-                              pressure.at(0.0)));
+    print_warning(
+        fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0)));
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   std::string ended;

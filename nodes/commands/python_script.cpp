@@ -60,7 +60,9 @@ Finished run_program(std::vector<std::string> command, const PythonScript& scrip
   const int nothing = open("/dev/null", O_WRONLY | O_CLOEXEC);
   const pid_t child = launch::start_child({.command = std::move(command),
                                            .out = out.write,
-                                           .err = script.quiet ? nothing : watched ? err.write : -1,
+                                           .err = script.quiet ? nothing
+                                                  : watched    ? err.write
+                                                               : -1,
                                            .death_signal = SIGKILL});
   close(nothing);
   out.close_write();

@@ -52,8 +52,7 @@ class RankReporter {
   /// Memory or threads may run out where nothing can be said any more.
   void prepare_last_words(void (&end_where)(const std::string&, int), const Error& words) const {
     if (supervised_)
-      end_where(launch::encode({launch::RankLine::Kind::error, rank_, words.what(), words.code(), {}}),
-                STDOUT_FILENO);
+      end_where(launch::encode({launch::RankLine::Kind::error, rank_, words.what(), words.code(), {}}), STDOUT_FILENO);
     else
       end_where(std::string("furrow: error: ") + words.what() + "\n", STDERR_FILENO);
   }
@@ -66,8 +65,7 @@ class RankReporter {
   void error(const Error& error) {
     if (supervised_) {
       send({launch::RankLine::Kind::error, rank_, error.what(), error.code(), {}});
-      std::this_thread::sleep_for(
-          kTimeForNews);  // mpirun may drop the last words of a rank that ends at once
+      std::this_thread::sleep_for(kTimeForNews);  // mpirun may drop the last words of a rank that ends at once
       return;
     }
     display_.clear();
@@ -120,15 +118,13 @@ bool told_by_another(Transport& transport, const Error& error, bool supervised) 
 /// Another run may have had the folder until now, and continued from where this one meant to.
 void require_same_start(const std::filesystem::path& run, const checkpoint::ResumePoint& resume) {
   if (checkpoint::last_checkpoint(run).manifest.step != resume.manifest.step)
-    throw input_error(run.string(), "",
-                      "was continued by another run until now, expected furrow resume once more");
+    throw input_error(run.string(), "", "was continued by another run until now, expected furrow resume once more");
 }
 
 /// The rig's rank creates the folder, unless a supervisor has, and sends its name to the others.
 std::filesystem::path agree_on_directory(Transport& transport, const scenario::Scenario& scenario,
                                          const checkpoint::ResumePoint* resume, const RunArguments& arguments,
-                                         const RankReporter& reporter,
-                                         std::optional<launch::RunDirectory>& made) {
+                                         const RankReporter& reporter, std::optional<launch::RunDirectory>& made) {
   if (reporter.supervised()) return arguments.out;
   const Address rig{Role::rig, 0};
   if (transport.self() != rig) return receive<RunFolder>(transport, rig).path;
@@ -145,9 +141,8 @@ std::filesystem::path agree_on_directory(Transport& transport, const scenario::S
 }
 
 /// @param held by ranks with a supervisor, from their beginning
-ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
-                       const checkpoint::ResumePoint* resume, const RunArguments& arguments,
-                       RankReporter& reporter, std::optional<launch::HeldFolder>& held) {
+ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario, const checkpoint::ResumePoint* resume,
+                       const RunArguments& arguments, RankReporter& reporter, std::optional<launch::HeldFolder>& held) {
   std::optional<launch::RunDirectory> made;
   try {
     ranks::RunContext context;
@@ -162,8 +157,8 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
       transport.announce_failure(error.code(), error.what());
       throw;
     }
-    const launch::ThreadPlan plan = launch::plan_threads(
-        transport, scenario.run.threads, scenario.terrain->estimate(scenario.terrain_context()).grains);
+    const launch::ThreadPlan plan = launch::plan_threads(transport, scenario.run.threads,
+                                                         scenario.terrain->estimate(scenario.terrain_context()).grains);
     launch::apply(plan);
     if (!plan.note.empty()) reporter.note(plan.note);
     context.threads = plan.threads;
@@ -208,8 +203,7 @@ void read_task(const RunArguments& arguments, Task& task) try {
   task.scenario =
       arguments.resume ? task.plan.scenario : scenario::load_scenario(arguments.scenario, arguments.settings);
   scenario::require_runnable(*task.scenario);
-  if (launched_rank() > static_cast<int>(task.scenario->tires.size()))
-    scenario::require_memory(*task.scenario);
+  if (launched_rank() > static_cast<int>(task.scenario->tires.size())) scenario::require_memory(*task.scenario);
 } catch (const std::bad_alloc&) {
   throw scenario::out_of_memory();
 }
@@ -236,8 +230,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::catch_stop_signals();
   RankReporter reporter;
   if (reporter.supervised()) launch::end_on_loss_of_supervisor();
-  if (!launch::supervisor_lives())
-    return ExitCode::stopped;  // killed while mpirun could not hand the signal on yet
+  if (!launch::supervisor_lives()) return ExitCode::stopped;  // killed while mpirun could not hand the signal on yet
   reporter.stage(launch::RankLine::Kind::begun);
   hdf5::prepare();  // it opens itself on first use, and crashes where memory has run out by then
   Task task;
@@ -254,8 +247,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return ExitCode::done;
   }
   const scenario::Scenario& scenario = *task.scenario;
-  reporter.prepare_last_words(launch::end_where_memory_runs_out,
-                              scenario::out_of_memory(scenario.memory.all));
+  reporter.prepare_last_words(launch::end_where_memory_runs_out, scenario::out_of_memory(scenario.memory.all));
   if (!reporter.supervised() && reporter.rank() == 0)
     for (const auto* warnings : {&scenario.warnings, &std::as_const(task.plan).warnings})
       for (const std::string& warning : *warnings) print_warning(warning);
@@ -263,8 +255,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   fault_point("start");
   std::unique_ptr<Transport> transport;
   try {
-    transport =
-        make_mpi_transport(&argc, &argv, static_cast<int>(scenario.tires.size()), scenario.terrain_ranks);
+    transport = make_mpi_transport(&argc, &argv, static_cast<int>(scenario.tires.size()), scenario.terrain_ranks);
   } catch (const Error& error) {
     if (launched_rank() == 0) reporter.error(error);
     return error.code();
@@ -273,8 +264,8 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   // After the session of MPI has begun: its end is not waited for then, and its failures are not taken for these.
   reporter.prepare_last_words(launch::end_where_no_thread_starts, limit_error(launch::kNoThread));
   reporter.stage(launch::RankLine::Kind::started);
-  const ExitCode code = run_this_node(*transport, scenario, arguments.resume ? &task.plan.point : nullptr,
-                                      arguments, reporter, held);
+  const ExitCode code =
+      run_this_node(*transport, scenario, arguments.resume ? &task.plan.point : nullptr, arguments, reporter, held);
   transport.reset();  // leaves MPI
   reporter.stage(launch::RankLine::Kind::ended, code);
   return code;

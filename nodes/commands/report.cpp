@@ -24,14 +24,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kAddressSpace =
-    512e6;  // bytes; a plot takes 300 MB, and numpy's BLAS waits forever for less
+constexpr double kAddressSpace = 512e6;        // bytes; a plot takes 300 MB, and numpy's BLAS waits forever for less
 constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked for
-constexpr std::chrono::seconds kShort{5};  // what takes no longer needs no progress, unless it was asked for
+constexpr std::chrono::seconds kShort{5};      // what takes no longer needs no progress, unless it was asked for
 
 /// Shows how far the script is. `display` outlives it.
-void show_progress(PythonScript& script, launch::ProgressDisplay& display, const std::string& phase,
-                   bool unasked) {
+void show_progress(PythonScript& script, launch::ProgressDisplay& display, const std::string& phase, bool unasked) {
   const Clock::time_point shown_from = Clock::now() + (unasked ? kShort : std::chrono::seconds{0});
   script.progress = [&display, phase, shown_from](double share) {
     if (Clock::now() >= shown_from) display.show({.phase = phase, .share = share});
@@ -66,23 +64,20 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   if (launch::stop_signalled() && !report.unasked)
     throw Error(ExitCode::stopped, run.string() + ": the plots were stopped by a signal");
   if (WIFSIGNALED(finished.status) && !finished.too_late && !report.unasked)
-    throw io_error(run.string(),
-                   fmt::format("the plots were ended by signal {} ({})", WTERMSIG(finished.status),
-                               strsignal(WTERMSIG(finished.status))));
+    throw io_error(run.string(), fmt::format("the plots were ended by signal {} ({})", WTERMSIG(finished.status),
+                                             strsignal(WTERMSIG(finished.status))));
   if (finished.too_late)
-    throw io_error(run.string(),
-                   fmt::format("the plots took more than {} s; 'furrow report {}' waits for them",
-                               kPatience.count(), scenario::shell_path(run.string())));
+    throw io_error(run.string(), fmt::format("the plots took more than {} s; 'furrow report {}' waits for them",
+                                             kPatience.count(), scenario::shell_path(run.string())));
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
   if (code == static_cast<int>(ExitCode::io) && !report.unasked) return {};
   if (code != 0 || !list.is_array())
     throw io_error(run.string(), launch::stop_signalled() ? "the plots were interrupted"
-                                 : report.unasked ? fmt::format("made no plots; 'furrow report {}' says why",
-                                                                scenario::shell_path(run.string()))
-                                                  : "made no plots, expected the results of a run");
+                                 : report.unasked         ? fmt::format("made no plots; 'furrow report {}' says why",
+                                                                        scenario::shell_path(run.string()))
+                                                          : "made no plots, expected the results of a run");
   std::vector<std::filesystem::path> plots;
-  for (const auto& name : list)
-    plots.push_back((report.out.empty() ? run : report.out) / name.get<std::string>());
+  for (const auto& name : list) plots.push_back((report.out.empty() ? run : report.out) / name.get<std::string>());
   return plots;
 }
 

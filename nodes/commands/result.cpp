@@ -21,8 +21,7 @@ using json = nlohmann::ordered_json;
 constexpr double kDeep = 0.5, kHigh = 0.05;  // sinkage, radii, beyond which a wheel is warned of
 
 double number(const json& object, const char* key) {
-  return object.is_object() && object.contains(key) && object[key].is_number() ? object[key].get<double>()
-                                                                               : NAN;
+  return object.is_object() && object.contains(key) && object[key].is_number() ? object[key].get<double>() : NAN;
 }
 
 json summary_of(const std::filesystem::path& run) {
@@ -39,8 +38,8 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
     return "furrow: the tire did not touch the terrain in the averaging window: nothing was measured\n";
   std::string text =
       fmt::format("furrow: drawbar pull {} N, {:.1f} % of the load of {} N, mean over {:.3g} to {:.3g} s\n",
-                  with_error(mean, number(pull, "sem")), 100.0 * mean / load, digits(load),
-                  number(pull, "from_s"), number(pull, "to_s"));
+                  with_error(mean, number(pull, "sem")), 100.0 * mean / load, digits(load), number(pull, "from_s"),
+                  number(pull, "to_s"));
   if (const terrain::dem::DemOptions* grains = scenario.terrain->grains())
     text += fmt::format("furrow: ± is one standard error within this bed; {}\n",
                         grains->bed.empty() ? "the spread from bed to bed is not in it: furrow run --seeds 5"
@@ -50,16 +49,14 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
   } else {
     const json reasons = pull.value("unsteady_because", json::array());
     if (reasons.empty()) text += "furrow: the pull is not steady\n";
-    for (const json& reason : reasons)
-      text += "furrow: the pull is not steady: " + reason.get<std::string>() + "\n";
+    for (const json& reason : reasons) text += "furrow: the pull is not steady: " + reason.get<std::string>() + "\n";
     text +=
         "furrow: another stretch of the run may give another mean (rigs/README.md, \"Steady or not\")\n"
         "furrow: average over more of it: set a later run.end";
     const bool ends = json::parse(scenario.completed)["terrain"].contains("length");  // hard ground has none
     text += ends ? " and a longer terrain.length\n" : "\n";
   }
-  return text + expected_text(scenario.expected, 1, mean, number(summary, "sinkage_m"),
-                              number(summary, "rut_depth_m"));
+  return text + expected_text(scenario.expected, 1, mean, number(summary, "sinkage_m"), number(summary, "rut_depth_m"));
 }
 
 /// What each rank did; a table where there are more than rig, one tire and terrain.
@@ -67,34 +64,32 @@ std::string ranks_text(const json& summary) {
   std::vector<std::string> parts;
   const json ranks = summary.value("ranks", json::array());
   if (ranks.size() > 3) {
-    std::string table = fmt::format("\nfurrow: {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>6}\n", "node",
-                                    "size", "step, s", "threads", "comp., s", "comm., s", "wait, s", "busy");
+    std::string table = fmt::format("\nfurrow: {:<10} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>6}\n", "node", "size",
+                                    "step, s", "threads", "comp., s", "comm., s", "wait, s", "busy");
     for (const json& rank : ranks)
       table += fmt::format("furrow: {:<10} {:>9} {:>9.3g} {:>7} {:>9.1f} {:>9.1f} {:>9.1f} {:>4.0f} %\n",
                            rank.value("node", std::string("?")), rank.value("size", std::int64_t{0}),
                            number(rank, "step_s"), rank.value("threads", 0), number(rank, "compute_s"),
-                           number(rank, "communicate_s"), number(rank, "wait_s"),
-                           100.0 * number(rank, "busy_share"));
+                           number(rank, "communicate_s"), number(rank, "wait_s"), 100.0 * number(rank, "busy_share"));
     return table;
   }
   for (const json& rank : summary.value("ranks", json::array()))
-    parts.push_back(fmt::format("{} {:.0f} % busy", rank.value("node", std::string("?")),
-                                100.0 * number(rank, "busy_share")));
+    parts.push_back(
+        fmt::format("{} {:.0f} % busy", rank.value("node", std::string("?")), 100.0 * number(rank, "busy_share")));
   return parts.empty() ? "\n" : fmt::format(": {}\n", fmt::join(parts, ", "));
 }
 
 /// Whether the run's accounts close, and what fails if they do not.
 std::string accounts_line(const json& summary) {
   const json accounts = summary.value("accounts", json::object());
-  const json energy = accounts.value("energy", json::object()),
-             momentum = accounts.value("momentum", json::object());
+  const json energy = accounts.value("energy", json::object()), momentum = accounts.value("momentum", json::object());
   if (!std::isfinite(number(energy, "turnover"))) return "";
   std::string text = fmt::format(
       "furrow: accounts: energy residual {:.2g} % of {} J turned over, momentum residual {:.2g} of the "
       "largest "
       "impulse, {} N s\n",
-      100.0 * number(energy, "residual_share"), digits(number(energy, "turnover")),
-      number(momentum, "residual_share"), digits(number(momentum, "largest")));
+      100.0 * number(energy, "residual_share"), digits(number(energy, "turnover")), number(momentum, "residual_share"),
+      digits(number(momentum, "largest")));
   if (!energy.value("closes", false)) {
     const json parts = energy.value("residual_of", json::object());
     text += fmt::format(
@@ -150,12 +145,11 @@ std::string place_warning(const json& wheel, bool soil) {
 std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
   const std::string reason = summary.value("end_reason", std::string("run_end"));
   if (reason == "run_end") return "";
-  const std::string why = reason == "overturned"
-                              ? "the vehicle has turned over"
-                              : fmt::format("a tire came near {} wall (rig.stop_before_wall)",
-                                            reason == "end_wall" ? "the end" : "a side");
-  std::string text = fmt::format("furrow: the run ended at {:g} s, before {:g} s: {}\n",
-                                 number(summary, "end_time_s"), scenario.run.end, why);
+  const std::string why = reason == "overturned" ? "the vehicle has turned over"
+                                                 : fmt::format("a tire came near {} wall (rig.stop_before_wall)",
+                                                               reason == "end_wall" ? "the end" : "a side");
+  std::string text = fmt::format("furrow: the run ended at {:g} s, before {:g} s: {}\n", number(summary, "end_time_s"),
+                                 scenario.run.end, why);
   if (number(summary, "average_from_s") != scenario.run.average_from)
     text += fmt::format("furrow: so means are from {:.3g} s on, not from run.average_from = {:g} s\n",
                         number(summary, "average_from_s"), scenario.run.average_from);
@@ -181,8 +175,8 @@ std::string event_lines(const json& summary) {
   }
   std::string text;
   for (const auto& [name, kind] : kinds)
-    text += fmt::format("furrow: {}: {} times, {:.3g} s in all, first at {:g} s{}\n", name, kind.count,
-                        kind.time, kind.first, kind.wheel);
+    text += fmt::format("furrow: {}: {} times, {:.3g} s in all, first at {:g} s{}\n", name, kind.count, kind.time,
+                        kind.first, kind.wheel);
   return text;
 }
 
@@ -198,10 +192,9 @@ std::string expected_text(const scenario::ExpectedResult& expected, int beds, do
     const char* unit;
   };
   std::vector<std::string> parts, outside;
-  for (const Figure& f :
-       {Figure{"pull", expected.drawbar_pull, expected.drawbar_pull_spread, pull, 1.0, "N"},
-        Figure{"sinkage", expected.sinkage, expected.sinkage_spread, sinkage, 1e3, "mm"},
-        Figure{"rut", expected.rut_depth, expected.rut_depth_spread, rut_depth, 1e3, "mm"}}) {
+  for (const Figure& f : {Figure{"pull", expected.drawbar_pull, expected.drawbar_pull_spread, pull, 1.0, "N"},
+                          Figure{"sinkage", expected.sinkage, expected.sinkage_spread, sinkage, 1e3, "mm"},
+                          Figure{"rut", expected.rut_depth, expected.rut_depth_spread, rut_depth, 1e3, "mm"}}) {
     if (f.spread <= 0.0) continue;  // not stated
     const double spread = f.spread / std::sqrt(beds);
     parts.push_back(fmt::format("{} {} {}", f.name, with_error(f.scale * f.value, f.scale * spread), f.unit));
@@ -242,9 +235,8 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
   text += subject_lines(summary, number(summary, "average_from_s"));
   text += end_lines(summary, scenario) + event_lines(summary);
   text += accounts_line(summary);
-  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}",
-                      number(summary, "wall_s"), number(summary, "simulated_s"),
-                      number(summary, "settle_wall_s"), ranks_text(summary));
+  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}", number(summary, "wall_s"),
+                      number(summary, "simulated_s"), number(summary, "settle_wall_s"), ranks_text(summary));
   return text;
 }
 

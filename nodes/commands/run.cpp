@@ -30,8 +30,7 @@ namespace {
 
 constexpr const char* kDone = "summary.json";  // is in the folder if and only if the run is done
 
-std::vector<std::string> rank_arguments(const RunArguments& arguments,
-                                        const std::filesystem::path& directory) {
+std::vector<std::string> rank_arguments(const RunArguments& arguments, const std::filesystem::path& directory) {
   std::vector<std::string> list{arguments.resume ? "resume" : "run"};
   if (!arguments.resume) list.push_back("--out=" + directory.string());
   for (const auto& [key, value] : arguments.settings) list.push_back("--set=" + key + "=" + value);
@@ -46,9 +45,8 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
   if (!plots) return;
   const auto made = make_report_or_warn(directory);
   if (made.empty()) return;
-  const auto page = std::find_if(made.begin(), made.end(), [](const std::filesystem::path& file) {
-    return file.extension() == ".html";
-  });
+  const auto page = std::find_if(made.begin(), made.end(),
+                                 [](const std::filesystem::path& file) { return file.extension() == ".html"; });
   if (page != made.end())
     launch::say(fmt::format("furrow: open {} in a browser to see the whole run; {} plots are beside it\n",
                             page->string(), made.size() - 1));
@@ -67,11 +65,10 @@ void tell_how_to_continue(const std::filesystem::path& directory, const launch::
     std::fprintf(stderr, "furrow: there is no checkpoint yet; start again with furrow run --overwrite%s\n",
                  physics ? ", perhaps with a smaller run.step" : "");
   else if (physics)
-    std::fprintf(
-        stderr,
-        "furrow: a resumed run would fail at the same step; to continue from the last checkpoint "
-        "with a smaller step: furrow resume %s --set run.step=%s\n",
-        folder.c_str(), number_text(0.5 * scenario.run.step).c_str());
+    std::fprintf(stderr,
+                 "furrow: a resumed run would fail at the same step; to continue from the last checkpoint "
+                 "with a smaller step: furrow resume %s --set run.step=%s\n",
+                 folder.c_str(), number_text(0.5 * scenario.run.step).c_str());
   else
     std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n", folder.c_str());
 }
@@ -100,8 +97,7 @@ void write_failure(const std::filesystem::path& file, const scenario::Scenario& 
       {"version", FURROW_VERSION},
       {"scenario", scenario.name},
       {"scenario_digest", scenario.digest},
-      {"failed",
-       {{"exit_code", static_cast<int>(result.code)}, {"error", result.error}, {"time_s", nullptr}}}};
+      {"failed", {{"exit_code", static_cast<int>(result.code)}, {"error", result.error}, {"time_s", nullptr}}}};
   try {
     write_whole_file(file, json.dump(2) + "\n");
   } catch (const Error&) {
@@ -118,12 +114,11 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     directory.add({"run.log", "summary_failed.json"});
     directory.lock().share();
     launch::ProgressDisplay display;
-    result =
-        launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
-                           scenario.terrain_ranks > 1 ? static_cast<std::size_t>(scenario.terrain_ranks) : 0,
-                           directory.path() / "run.log", directory.lock().descriptor(),
-                           launch::start_patience(), scenario.run.peer_timeout},
-                          display);
+    result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
+                                scenario.terrain_ranks > 1 ? static_cast<std::size_t>(scenario.terrain_ranks) : 0,
+                                directory.path() / "run.log", directory.lock().descriptor(), launch::start_patience(),
+                                scenario.run.peer_timeout},
+                               display);
   } catch (const Error&) {
     directory.discard();
     throw;
@@ -141,8 +136,8 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   const bool replaces = result.code != ExitCode::done && directory.replaces();
   if (result.code == ExitCode::bad_input || nothing_done || replaces) directory.discard();
   if (replaces && result.code != ExitCode::bad_input) {
-    tell_end(result, "the run had not begun to step; " + directory.path().string() +
-                         " holds the earlier results again");
+    tell_end(result,
+             "the run had not begun to step; " + directory.path().string() + " holds the earlier results again");
     return result.code;
   }
   const bool finished_before = result.code != ExitCode::done && result.code != ExitCode::bad_input &&
@@ -154,8 +149,7 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     return result.code;
   }
   if (result.code == ExitCode::stopped) {
-    std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(),
-                 directory.path().c_str());
+    std::fprintf(stderr, "furrow: %s; partial results are in %s\n", result.error.c_str(), directory.path().c_str());
     tell_how_to_continue(directory.path(), result, scenario);
   } else if (result.code != ExitCode::done) {
     print_error(result.error);
@@ -179,11 +173,10 @@ void refuse_tasks_without_mpi() {
   const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
   if (!tasks || std::atoi(tasks) < 2) return;
   const char* task = std::getenv("SLURM_PROCID");
-  const Error error = input_error(
-      "srun", "",
-      fmt::format("started {} tasks without MPI, expected srun --mpi=pmix, or furrow run "
-                  "without srun, which starts its own ranks",
-                  tasks));
+  const Error error = input_error("srun", "",
+                                  fmt::format("started {} tasks without MPI, expected srun --mpi=pmix, or furrow run "
+                                              "without srun, which starts its own ranks",
+                                              tasks));
   if (task && std::atoi(task) > 0 && first_rank_speaks()) std::exit(static_cast<int>(error.code()));
   throw error;
 }

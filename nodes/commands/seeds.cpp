@@ -42,8 +42,7 @@ double number(const Json& summary, const std::string& path) {
 }
 
 /// "sinkage 21.0 ± 0.6 mm", empty where it was not measured.
-std::string figure_text(const Json& wheel, const char* words, const char* figure, double scale,
-                        const char* unit) {
+std::string figure_text(const Json& wheel, const char* words, const char* figure, double scale, const char* unit) {
   const double mean = number(wheel, std::string(figure) + ".mean");
   if (!std::isfinite(mean)) return "";
   const double half = number(wheel, std::string(figure) + ".half_width_95");
@@ -55,16 +54,16 @@ std::string wheel_text(const Json& wheel, int beds, const scenario::Scenario& sc
     return fmt::format(
         "furrow: {} beds: the tire did not touch the terrain in the averaging window: nothing was measured\n", beds);
   std::vector<std::string> parts;
-  for (const std::string& part : {figure_text(wheel, "drawbar pull", "drawbar_pull_N", 1.0, "N"),
-                                  figure_text(wheel, "sinkage", "sinkage_m", 1e3, "mm"),
-                                  figure_text(wheel, "rut", "rut_depth_m", 1e3, "mm")})
+  for (const std::string& part :
+       {figure_text(wheel, "drawbar pull", "drawbar_pull_N", 1.0, "N"),
+        figure_text(wheel, "sinkage", "sinkage_m", 1e3, "mm"), figure_text(wheel, "rut", "rut_depth_m", 1e3, "mm")})
     if (!part.empty()) parts.push_back(part);
   std::string text =
       fmt::format("furrow: {} beds: {} (mean over beds and 95 % interval)\n", beds, fmt::join(parts, ", "));
   if (const double sd = number(wheel, "drawbar_pull_N.sd"); std::isfinite(sd))
     text += fmt::format("furrow: from bed to bed the pull varies by {} N (standard deviation)\n", digits(sd));
-  text += expected_text(scenario.expected, beds, number(wheel, "drawbar_pull_N.mean"),
-                        number(wheel, "sinkage_m.mean"), number(wheel, "rut_depth_m.mean"));
+  text += expected_text(scenario.expected, beds, number(wheel, "drawbar_pull_N.mean"), number(wheel, "sinkage_m.mean"),
+                        number(wheel, "rut_depth_m.mean"));
   return text;
 }
 
@@ -83,9 +82,8 @@ std::string beds_text(const Json& summary, const scenario::Scenario& scenario) {
     text += wheel_text(wheels[k], beds, scenario);
   }
   if (!unsteady.empty())
-    text += fmt::format(
-        "furrow: NOT STEADY on {}; the means are over these beds too (see not_steady and runs in {})\n",
-        joined(unsteady), failed.empty() ? "summary.json" : "summary_failed.json");
+    text += fmt::format("furrow: NOT STEADY on {}; the means are over these beds too (see not_steady and runs in {})\n",
+                        joined(unsteady), failed.empty() ? "summary.json" : "summary_failed.json");
   if (!failed.empty())
     text += fmt::format("furrow: {} failed; the means are over the other {} beds\n", joined(failed), beds);
   return text;
@@ -94,15 +92,14 @@ std::string beds_text(const Json& summary, const scenario::Scenario& scenario) {
 ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& scenario,
                      const RunArguments& arguments) {
   const std::filesystem::path& folder = directory.path();
-  study::Sweep sweep(study::study_of_beds(arguments.scenario, scenario.name, arguments.settings,
-                                          scenario.run.seed, arguments.seeds),
-                     {folder, arguments.jobs});
+  study::Sweep sweep(
+      study::study_of_beds(arguments.scenario, scenario.name, arguments.settings, scenario.run.seed, arguments.seeds),
+      {folder, arguments.jobs});
   sweep.require_places();
   study::begin_beds(directory, scenario.digest, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
-  launch::say(
-      fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, arguments.seeds, folder.string()));
+  launch::say(fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, arguments.seeds, folder.string()));
   const ExitCode code = sweep.run(directory.lock());
   if (code != ExitCode::done && directory.replaces()) {
     const std::vector<study::Sweep::Outcome> outcomes = sweep.outcomes();
@@ -110,8 +107,7 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
         std::find_if(outcomes.begin(), outcomes.end(), [](const auto& bed) { return !bed.problem.empty(); });
     directory.discard();
     if (failed != outcomes.end()) print_error(failed->folder.string() + ": " + failed->problem);
-    std::fprintf(stderr, "furrow: no bed had begun to step; %s holds the earlier results again\n",
-                 folder.c_str());
+    std::fprintf(stderr, "furrow: no bed had begun to step; %s holds the earlier results again\n", folder.c_str());
     return code;
   }
   if (code == ExitCode::stopped) {

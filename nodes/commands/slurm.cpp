@@ -16,17 +16,14 @@
 namespace furrow::commands {
 namespace {
 
-constexpr int kWarning =
-    360;  // s before its end that Slurm signals the job: a checkpoint and Slurm's own delays
-constexpr int kLeastWork = 120;          // s that a start has before that
-constexpr int kMostRestarts = 3;         // of a job that never came to its first checkpoint
+constexpr int kWarning = 360;     // s before its end that Slurm signals the job: a checkpoint and Slurm's own delays
+constexpr int kLeastWork = 120;   // s that a start has before that
+constexpr int kMostRestarts = 3;  // of a job that never came to its first checkpoint
 constexpr double kMemoryMargin = 1.3;    // of the estimate
 constexpr double kMemoryOfRank = 256e6;  // bytes beside it, of libraries and files
 constexpr double kMebibyte = 1048576.0;
 
-Error wrong(const std::string& option, const std::string& what) {
-  return input_error("command line", option, what);
-}
+Error wrong(const std::string& option, const std::string& what) { return input_error("command line", option, what); }
 
 void check_word(const std::string& option, const std::string& value) {
   static const std::regex kWord("[A-Za-z0-9_.,:@+-]+");
@@ -44,8 +41,7 @@ std::optional<double> seconds_of(const std::string& time) {
   const auto part = [&found](std::size_t k) { return found[k].matched ? std::stod(found[k].str()) : 0.0; };
   if (std::regex_match(time, found, kShort)) return 60.0 * part(1) + part(2);
   if (std::regex_match(time, found, kHours)) return 3600.0 * part(1) + 60.0 * part(2) + part(3);
-  if (std::regex_match(time, found, kDays))
-    return 86400.0 * part(1) + 3600.0 * part(2) + 60.0 * part(3) + part(4);
+  if (std::regex_match(time, found, kDays)) return 86400.0 * part(1) + 3600.0 * part(2) + 60.0 * part(3) + part(4);
   return {};
 }
 
@@ -54,9 +50,8 @@ void check_time(const std::string& time) {
   const std::optional<double> seconds = seconds_of(time);
   if (!seconds) throw wrong("--time", "is '" + time + "', expected minutes, hh:mm:ss or days-hh:mm:ss");
   if (*seconds < kWarning + kLeastWork)
-    throw wrong("--time",
-                fmt::format("is '{}', expected {} minutes or more: the run saves its state {} minutes before",
-                            time, (kWarning + kLeastWork) / 60, kWarning / 60));
+    throw wrong("--time", fmt::format("is '{}', expected {} minutes or more: the run saves its state {} minutes before",
+                                      time, (kWarning + kLeastWork) / 60, kWarning / 60));
 }
 
 /// How the ranks fall on the nodes: `each` on every one, in their order, fewer on the last.
@@ -70,22 +65,19 @@ int tasks_of_node(const Layout& layout) { return layout.nodes == 1 ? 1 : layout.
 Layout layout_of(const scenario::Scenario& scenario, const SlurmArguments& job) {
   const int ranks = static_cast<int>(scenario::rank_table(scenario).size());
   if (job.nodes < 1 || job.nodes > ranks)
-    throw wrong("--nodes",
-                fmt::format("is {}, expected 1 to {}: this scenario has {} ranks", job.nodes, ranks, ranks));
+    throw wrong("--nodes", fmt::format("is {}, expected 1 to {}: this scenario has {} ranks", job.nodes, ranks, ranks));
   const Layout layout{ranks, job.nodes, (ranks + job.nodes - 1) / job.nodes};
   if (const int used = (ranks + layout.each - 1) / layout.each; used < job.nodes)
-    throw wrong("--nodes",
-                fmt::format("is {}, expected {}: {} ranks, {} on each node, leave the others empty",
-                            job.nodes, used, ranks, layout.each));
+    throw wrong("--nodes", fmt::format("is {}, expected {}: {} ranks, {} on each node, leave the others empty",
+                                       job.nodes, used, ranks, layout.each));
   const int least = std::max(1, job.nodes == 1 ? ranks - 1 : layout.each);  // the rig hardly computes
   if (job.cores_per_node != 0 && job.cores_per_node < least)
-    throw wrong("--cores-per-node", fmt::format("is {}, expected {} or more: {} ranks on each node",
-                                                job.cores_per_node, least, layout.each));
+    throw wrong("--cores-per-node", fmt::format("is {}, expected {} or more: {} ranks on each node", job.cores_per_node,
+                                                least, layout.each));
   if (const int tasks = tasks_of_node(layout); job.cores_per_node % tasks != 0)
-    throw wrong("--cores-per-node",
-                fmt::format("is {}, expected {} or another multiple of the {} ranks on each node: "
-                            "Slurm gives each of them as many cores",
-                            job.cores_per_node, job.cores_per_node / tasks * tasks, tasks));
+    throw wrong("--cores-per-node", fmt::format("is {}, expected {} or another multiple of the {} ranks on each node: "
+                                                "Slurm gives each of them as many cores",
+                                                job.cores_per_node, job.cores_per_node / tasks * tasks, tasks));
   return layout;
 }
 
@@ -117,8 +109,7 @@ std::string rank_lines(const scenario::Scenario& scenario, const SlurmArguments&
       const auto place = static_cast<std::size_t>(entry.rank - node * layout.each);
       threads = std::to_string(launch::plan_threads(host, place, scenario.run.threads).threads);
     }
-    text +=
-        fmt::format("# {:>4}  {:>4}  {:>7}  {:<9} {}\n", entry.rank, node, threads, entry.node, entry.does);
+    text += fmt::format("# {:>4}  {:>4}  {:>7}  {:<9} {}\n", entry.rank, node, threads, entry.node, entry.does);
   }
   return text;
 }
@@ -192,8 +183,7 @@ exit "$code"
 
 }  // namespace
 
-std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job,
-                         const Settings& settings) {
+std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job, const Settings& settings) {
   check_word("--partition", job.partition);
   check_word("--account", job.account);
   check_time(job.time);
@@ -208,18 +198,16 @@ std::string slurm_script(const scenario::Scenario& scenario, const SlurmArgument
 
   std::string text = "#!/bin/bash\n";
   text += directives(scenario, job, layout);
-  text += fmt::format(
-      "# {} ranks on {} node{} of {}; each binds itself to its share of the cores.\n", layout.ranks,
-      layout.nodes, layout.nodes > 1 ? "s" : "",
-      job.cores_per_node > 0 ? fmt::format("{} cores", job.cores_per_node) : "any number of cores");
+  text += fmt::format("# {} ranks on {} node{} of {}; each binds itself to its share of the cores.\n", layout.ranks,
+                      layout.nodes, layout.nodes > 1 ? "s" : "",
+                      job.cores_per_node > 0 ? fmt::format("{} cores", job.cores_per_node) : "any number of cores");
   text += rank_lines(scenario, job, layout) + "\nset -u\n";
   text += "program=" + full(program) + "\n";
   text += "scenario=" + full(scenario.file) + "\n";
   text += "settings=(" + list + ")\n";
   // The folder of the results: the same each time that this job is started.
   text += "run=" +
-          (job.out.empty() ? "results/" + scenario::shell_quoted(scenario.name) + "-job$SLURM_JOB_ID"
-                           : full(job.out)) +
+          (job.out.empty() ? "results/" + scenario::shell_quoted(scenario.name) + "-job$SLURM_JOB_ID" : full(job.out)) +
           "\n";
   return text + fmt::format(kBody, kMostRestarts);
 }

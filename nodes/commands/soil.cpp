@@ -18,8 +18,7 @@
 namespace furrow::commands {
 namespace {
 
-terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains,
-                                        const SoilArguments& arguments) {
+terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains, const SoilArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
     if (!ok) throw input_error("command line", key, what);
   };
@@ -74,16 +73,13 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
                       .what());
   launch::RunDirectory directory(scenario.name + "-soil", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
-  launch::say(
-      fmt::format("furrow: soil tests of {}, results in {}\n", scenario.name, directory.path().string()));
+  launch::say(fmt::format("furrow: soil tests of {}, results in {}\n", scenario.name, directory.path().string()));
   try {
     launch::ProgressDisplay display;
     const double begin = wall_clock();
-    const terrain::soil::SoilResults results =
-        terrain::soil::run_soil_tests(options, plan, shown_on(display));
+    const terrain::soil::SoilResults results = terrain::soil::run_soil_tests(options, plan, shown_on(display));
     display.clear();
-    const terrain::soil::SoilRun run{scenario.name, scenario.digest, options,
-                                     plan,          results,         wall_clock() - begin};
+    const terrain::soil::SoilRun run{scenario.name, scenario.digest, options, plan, results, wall_clock() - begin};
     const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
     launch::say(terrain::soil::soil_text(soil));  // before the files: the disk may be full
     std::cout << soil.dump(2) << std::endl;

@@ -15,8 +15,7 @@ namespace furrow::commands {
 ExitCode sweep_command(const SweepArguments& arguments) {
   study::Study study = study::load_study(arguments.study);
   if (arguments.jobs < 1 || arguments.jobs > 1024)
-    throw input_error("command line", "--jobs",
-                      "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
+    throw input_error("command line", "--jobs", "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
   const bool to_plot = study.passes > 0 || !study.plot.is_null();
@@ -25,10 +24,10 @@ ExitCode sweep_command(const SweepArguments& arguments) {
   study::require_no_beds(folder);
   sweep.require_places();
   if (const std::size_t others = sweep.runs_of_another_study(); others > 0)
-    print_warning(fmt::format(
-        "{}: held {} run{} of another study, or of this one before it was changed, and is replaced; "
-        "they stay in {}, and that study's sweep makes its table again",
-        (folder / "sweep.csv").string(), others, others > 1 ? "s" : "", (folder / "runs").string()));
+    print_warning(
+        fmt::format("{}: held {} run{} of another study, or of this one before it was changed, and is replaced; "
+                    "they stay in {}, and that study's sweep makes its table again",
+                    (folder / "sweep.csv").string(), others, others > 1 ? "s" : "", (folder / "runs").string()));
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   const ExitCode code = sweep.run(directory.lock());
@@ -38,8 +37,7 @@ ExitCode sweep_command(const SweepArguments& arguments) {
     std::fprintf(stderr, "furrow: stopped by a signal; run the same command to continue\n");
   }
   if (code != ExitCode::done && code != ExitCode::stopped)
-    print_error((folder / "sweep.csv").string() +
-                ": not every run finished; the first that failed has exit code " +
+    print_error((folder / "sweep.csv").string() + ": not every run finished; the first that failed has exit code " +
                 std::to_string(static_cast<int>(code)));
   std::cout << folder.string() << "\n";
   return code;

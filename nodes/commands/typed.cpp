@@ -34,8 +34,7 @@ Settings settings_of(const Typed& typed) {
     if (value.empty()) return;
     for (const auto& [other, unused] : settings)
       if (other == key)
-        throw input_error("command line", option,
-                          fmt::format("is given with --set {}, expected one of them", key));
+        throw input_error("command line", option, fmt::format("is given with --set {}, expected one of them", key));
     settings.emplace_back(key, value);
   };
   add("--threads", typed.threads, "run.threads");

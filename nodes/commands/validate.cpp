@@ -37,8 +37,7 @@ ExitCode validate_command(Typed& typed) {
   return ExitCode::done;
 }
 
-ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm,
-                       const std::vector<std::string>& command_line) {
+ExitCode ranks_command(Typed& typed, const SlurmArguments& slurm, const std::vector<std::string>& command_line) {
   const scenario::Scenario scenario = load(typed);
   scenario::require_runnable(scenario);
   if (typed.slurm) {

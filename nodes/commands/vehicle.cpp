@@ -47,19 +47,17 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
   launch::ProgressDisplay display;
   const auto tires = scenario::tires_of(spec);
   const auto stop_if_signalled = [](const char* doing) {
-    if (launch::stop_signalled())
-      throw Error(ExitCode::stopped, fmt::format("stopped by a signal while {}", doing));
+    if (launch::stop_signalled()) throw Error(ExitCode::stopped, fmt::format("stopped by a signal while {}", doing));
   };
   const auto standing = scenario::standing_tires(spec, tires, [&](const std::string& what, double share) {
     stop_if_signalled("tires were pressed");
     display.show({.phase = what + " the tires", .share = share});
   });
   const double pressed = wall_clock();
-  vehicle::VehiclePage page =
-      vehicle::vehicle_page(spec, standing, [&](const std::string& what, double share) {
-        stop_if_signalled("the vehicle was made to stand");
-        if (wall_clock() - pressed > kQuiet) display.show({.phase = what, .share = share});
-      });
+  vehicle::VehiclePage page = vehicle::vehicle_page(spec, standing, [&](const std::string& what, double share) {
+    stop_if_signalled("the vehicle was made to stand");
+    if (wall_clock() - pressed > kQuiet) display.show({.phase = what, .share = share});
+  });
   display.clear();
   for (const auto& [key, what] : vehicle::stops_at_rest(spec, page.trim))
     print_warning(input_error(spec.file, key, what).what());
@@ -70,32 +68,27 @@ std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, cons
                                           const vehicle::KinematicsOptions& options) {
   launch::ProgressDisplay display;
   const ProgressCall show = [&](const std::string& what, double share) {
-    if (launch::stop_signalled())
-      throw Error(ExitCode::stopped, "stopped by a signal while suspensions were moved");
+    if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while suspensions were moved");
     display.show({.phase = what, .share = share});
   };
   try {
     std::vector<vehicle::KinematicsRow> rows = vehicle::kinematics(spec, page.loaded_radii, options, show);
     if (rows.empty())
-      throw input_error(spec.file, "axles",
-                        "has no wheel that travels, expected a suspension other than fixed");
+      throw input_error(spec.file, "axles", "has no wheel that travels, expected a suspension other than fixed");
     return rows;
   } catch (const Error& error) {
     if (error.code() != ExitCode::physics) throw;
     throw input_error("command line", "--travel",
-                      fmt::format("is {:.4g} m: {}, expected a travel that every axle of {} can follow",
-                                  options.travel, error.what(), spec.file));
+                      fmt::format("is {:.4g} m: {}, expected a travel that every axle of {} can follow", options.travel,
+                                  error.what(), spec.file));
   }
 }
 
 nlohmann::ordered_json summary(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,
                                const vehicle::KinematicsOptions& options) {
-  nlohmann::ordered_json json = {{"format_version", kFormatVersion},
-                                 {"version", FURROW_VERSION},
-                                 {"vehicle", spec.name},
-                                 {"file", spec.file},
-                                 {"travel_m", options.travel},
-                                 {"points", options.points}};
+  nlohmann::ordered_json json = {
+      {"format_version", kFormatVersion}, {"version", FURROW_VERSION}, {"vehicle", spec.name}, {"file", spec.file},
+      {"travel_m", options.travel},       {"points", options.points}};
   vehicle::KinematicsOptions drawn = options;
   drawn.points = 1;
   json["as_drawn"] = nlohmann::ordered_json::array();

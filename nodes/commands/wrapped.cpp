@@ -10,8 +10,8 @@
 namespace furrow::commands {
 namespace {
 
-constexpr std::size_t kWidest = 120;      // columns of a text that can be read
-constexpr std::size_t kNarrowest = 60;    // below which the terminal breaks the lines
+constexpr std::size_t kWidest = 120;       // columns of a text that can be read
+constexpr std::size_t kNarrowest = 60;     // below which the terminal breaks the lines
 constexpr std::size_t kSecondColumn = 40;  // a second column begins before this one
 
 /// Columns of UTF-8: a character of several bytes is one.

@@ -35,9 +35,7 @@ constexpr useconds_t kPause = 50000;     // µs between two tries
 constexpr std::size_t kMaxNamed = 4;     // processes in a message
 constexpr std::size_t kMaxCommand = 60;  // characters of each one's command line
 
-bool same_file(const struct stat& a, const struct stat& b) {
-  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
-}
+bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
 /// "process 4711 (furrow run small.json)".
 std::string process_text(pid_t process) {
@@ -56,11 +54,9 @@ std::vector<pid_t> processes_with(const struct stat& file) {
   std::error_code error;
   for (const auto& process : fs::directory_iterator("/proc", error)) {
     const std::string name = process.path().filename().string();
-    if (name.find_first_not_of("0123456789") != std::string::npos || name == std::to_string(getpid()))
-      continue;
+    if (name.find_first_not_of("0123456789") != std::string::npos || name == std::to_string(getpid())) continue;
     std::error_code hidden;
-    for (fs::directory_iterator at(process.path() / "fd", hidden), end; !hidden && at != end;
-         at.increment(hidden)) {
+    for (fs::directory_iterator at(process.path() / "fd", hidden), end; !hidden && at != end; at.increment(hidden)) {
       struct stat open_file {};
       if (stat(at->path().c_str(), &open_file) != 0 || !same_file(open_file, file)) continue;
       found.push_back(std::atoi(name.c_str()));
@@ -94,9 +90,8 @@ bool end_left_launchers(const struct stat& file) {
 Error taken(const fs::path& folder, const std::string& key, const struct stat& list) {
   return input_error(
       folder.string(), key,
-      fmt::format(
-          "is in use by a run that has not ended: {}; expected another folder, or that they end first",
-          holders_text(list)));
+      fmt::format("is in use by a run that has not ended: {}; expected another folder, or that they end first",
+                  holders_text(list)));
 }
 
 }  // namespace
@@ -116,8 +111,7 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
     const bool replaced = own && !stands();  // the process that had it removed it when it ended
     if (own && !replaced) return;
     close(std::exchange(handle_, -1));
-    if (replaced && !fs::exists(folder))
-      throw io_error(folder.string(), "was removed while it was waited for");
+    if (replaced && !fs::exists(folder)) throw io_error(folder.string(), "was removed while it was waited for");
     if (replaced) continue;
     if (mode == Mode::together) throw taken(folder, key, list);
     if (wall_clock() - begin > patience) {
@@ -147,9 +141,7 @@ bool FolderLock::try_to_take(int operation) const {
 }
 
 FolderLock::FolderLock(FolderLock&& other) noexcept
-    : folder_(std::move(other.folder_)),
-      key_(std::move(other.key_)),
-      handle_(std::exchange(other.handle_, -1)) {}
+    : folder_(std::move(other.folder_)), key_(std::move(other.key_)), handle_(std::exchange(other.handle_, -1)) {}
 
 FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
   std::swap(folder_, other.folder_);

@@ -22,8 +22,7 @@ class FolderLock {
   /// @param key for messages
   /// @throws Error(bad_input) when others keep it; they are named
   /// @throws Error(io) when the list cannot be opened
-  FolderLock(const std::filesystem::path& folder, const std::string& key, Mode mode,
-             double patience = kPatience);
+  FolderLock(const std::filesystem::path& folder, const std::string& key, Mode mode, double patience = kPatience);
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;
   ~FolderLock();

@@ -15,16 +15,14 @@ HeldFolder::HeldFolder(const std::filesystem::path& folder)
 
 void HeldFolder::check() {
   if (!lock_.stands())
-    throw io_error(
-        folder_.string(),
-        "was moved, removed or emptied while the run was under way; the run ends here and writes nothing "
-        "elsewhere");
+    throw io_error(folder_.string(),
+                   "was moved, removed or emptied while the run was under way; the run ends here and writes nothing "
+                   "elsewhere");
   for (Part& part : parts_) {
     struct stat now {};
     const bool there = stat(part.folder.c_str(), &now) == 0 && S_ISDIR(now.st_mode);
     if (part.number != 0 && (!there || now.st_dev != part.device || now.st_ino != part.number))
-      throw io_error(part.folder.string(),
-                     "was moved or removed while the run was under way; the run ends here");
+      throw io_error(part.folder.string(), "was moved or removed while the run was under way; the run ends here");
     if (there) part.device = now.st_dev, part.number = now.st_ino;
   }
 }

@@ -42,8 +42,7 @@ std::string too_little_processor_time(const std::string& limit) {
   return "a process may use " + limit + " of processor time (ulimit -t)";
 }
 
-constexpr useconds_t kTimeForNews =
-    300'000;  // µs; mpirun may drop the last words of a rank that ends at once
+constexpr useconds_t kTimeForNews = 300'000;  // µs; mpirun may drop the last words of a rank that ends at once
 
 /// A line that is kept ready for where none can be made.
 class LastWords {
@@ -87,14 +86,13 @@ void look_at_end(int status, void* /*unused*/) {
 
 void require_stack(char** argv) {
   rlimit limit{};
-  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= kStack)
-    return;
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= kStack) return;
   const rlim_t given = limit.rlim_cur;
   limit.rlim_cur = kStack;
   limit.rlim_max = std::max<rlim_t>(limit.rlim_max, kStack);  // root may
   if (setrlimit(RLIMIT_STACK, &limit) != 0)
-    throw limit_error(fmt::format("the stack may take {} kB (ulimit -s), expected {} kB or more", given >> 10,
-                                  kStack >> 10));
+    throw limit_error(
+        fmt::format("the stack may take {} kB (ulimit -s), expected {} kB or more", given >> 10, kStack >> 10));
   std::array<char, PATH_MAX> path{};
   if (readlink("/proc/self/exe", path.data(), path.size() - 1) > 0) execv(path.data(), argv);
 }
@@ -106,9 +104,8 @@ void require_files(std::size_t ranks) {
   const rlim_t given = limit.rlim_cur;
   limit.rlim_cur = std::min(needed, limit.rlim_max);
   if (limit.rlim_max >= needed && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
-  throw limit_error(
-      fmt::format("a process may open {} files (ulimit -n), expected {} or more to start {} ranks", given,
-                  needed, ranks));
+  throw limit_error(fmt::format("a process may open {} files (ulimit -n), expected {} or more to start {} ranks", given,
+                                needed, ranks));
 }
 
 std::string cause_of(int signal, double processor_time, bool& certain) {
@@ -117,8 +114,7 @@ std::string cause_of(int signal, double processor_time, bool& certain) {
   const bool used_up = !limit.empty() && processor_time >= kSurely * static_cast<double>(seconds);
   certain = signal == SIGXCPU || (signal == SIGKILL && used_up);
   if (certain)
-    return limit.empty() ? "a limit of processor time is reached (ulimit -t)"
-                         : too_little_processor_time(limit);
+    return limit.empty() ? "a limit of processor time is reached (ulimit -t)" : too_little_processor_time(limit);
   if (signal == SIGKILL) return "the system does that when memory runs out";
   if (signal == SIGBUS) return little_room();
   return {};
@@ -131,8 +127,8 @@ std::string little_room() {
   if (statvfs(folder.c_str(), &room) != 0) return {};
   const double free = static_cast<double>(room.f_bavail) * static_cast<double>(room.f_frsize);
   if (free > kRoom) return {};
-  return fmt::format("the folder for temporary files, TMPDIR {}, has room for {:.2g} MB, expected {:.2g} MB",
-                     folder, 1e-6 * free, 1e-6 * kRoom);
+  return fmt::format("the folder for temporary files, TMPDIR {}, has room for {:.2g} MB, expected {:.2g} MB", folder,
+                     1e-6 * free, 1e-6 * kRoom);
 }
 
 double processor_time_of_children() {
@@ -155,10 +151,9 @@ void end_where_processor_time_runs_out() {
   rlimit limit{};
   if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
   processor_time_given = limit.rlim_cur;
-  where_processor_time_ran_out.keep(
-      "furrow: error: " + too_little_processor_time(fmt::format("{} s", limit.rlim_cur)) +
-          ", expected a higher limit\n",
-      STDERR_FILENO);
+  where_processor_time_ran_out.keep("furrow: error: " + too_little_processor_time(fmt::format("{} s", limit.rlim_cur)) +
+                                        ", expected a higher limit\n",
+                                    STDERR_FILENO);
   std::signal(SIGXCPU, [](int) { where_processor_time_ran_out.say_and_end(); });
   // At the upper limit the kernel ends a process without asking, and shells set both to the same.
   if (limit.rlim_cur < limit.rlim_max || limit.rlim_cur < 2) return;

@@ -25,8 +25,7 @@ constexpr const char* kKinematics = "kinematics.csv";  // of `furrow kc`
 constexpr const char* kModes = "modes.csv";            // of `furrow modes`
 
 Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
-  return input_error(folder.string(), key,
-                     fmt::format("holds no run's list of its files ({}): {}", kRunList, why));
+  return input_error(folder.string(), key, fmt::format("holds no run's list of its files ({}): {}", kRunList, why));
 }
 
 /// What one command makes, and what the list of its folder holds from the start.
@@ -56,9 +55,8 @@ fs::path way_to(const fs::path& out) {
   for (const fs::path& part : out) {
     if (part.empty()) continue;
     if (missing && part == "..")
-      throw input_error(
-          out.string(), "--out",
-          "leads through '" + way.string() + "', which does not exist, expected a way without it");
+      throw input_error(out.string(), "--out",
+                        "leads through '" + way.string() + "', which does not exist, expected a way without it");
     way /= part;
     std::error_code error;
     missing = missing || !fs::exists(way, error);
@@ -69,9 +67,8 @@ fs::path way_to(const fs::path& out) {
 /// Whether the folder has a list, or nothing at all: another process may be about to begin the list.
 bool may_be_own(const fs::path& folder) {
   std::error_code error;
-  const bool bare =
-      std::all_of(fs::directory_iterator(folder, error), fs::directory_iterator(),
-                  [](const fs::directory_entry& entry) { return entry.path().filename() == kRunList; });
+  const bool bare = std::all_of(fs::directory_iterator(folder, error), fs::directory_iterator(),
+                                [](const fs::directory_entry& entry) { return entry.path().filename() == kRunList; });
   return bare || has_run_list(folder);
 }
 
@@ -82,8 +79,7 @@ bool stands(const fs::path& at) {
 
 }  // namespace
 
-RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite,
-                           const fs::path& reads) {
+RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite, const fs::path& reads) {
   try {
     bool made = false;
     for (int number = 1; out.empty() && !made && number < kMaxNumbers; ++number) {
@@ -146,10 +142,9 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
         throw input_error(folder.string(), "--out",
                           fmt::format("exists and is not a folder, expected a new one or that of a {}", kind.name));
       if (!may_be_own(path_))
-        throw no_list(
-            folder, "--out",
-            fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder",
-                        kind.name));
+        throw no_list(folder, "--out",
+                      fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder",
+                                  kind.name));
       require_writable("--out");
       lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
       take_back(path_);
@@ -167,9 +162,7 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
   existing_ = !set_aside_;
 }
 
-RunDirectory RunDirectory::of_study(const fs::path& folder) {
-  return {Continued{kStudy, "study"}, folder, false, {}};
-}
+RunDirectory RunDirectory::of_study(const fs::path& folder) { return {Continued{kStudy, "study"}, folder, false, {}}; }
 
 RunDirectory RunDirectory::of_calibration(const fs::path& folder, bool overwrite,
                                           const std::vector<std::string>& files) {
@@ -187,15 +180,13 @@ void RunDirectory::require_no_links(bool continues) const {
   const RunList list = RunList::read(path_);
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     const std::string name = entry.path().filename().string();
-    const bool written_on =
-        continues && (name == "run.log" || name.starts_with("timeseries")) && list.holds(name);
+    const bool written_on = continues && (name == "run.log" || name.starts_with("timeseries")) && list.holds(name);
     if (written_on && !fs::is_regular_file(entry.status(error)))
       throw input_error(entry.path().string(), "", "is not a file, expected one, or none at this place");
     if (!fs::is_symlink(entry.symlink_status(error)) || !(written_on || list.holds(name + "/"))) continue;
-    throw input_error(
-        entry.path().string(), "",
-        "is a link, expected what it leads to: results are not written through links; move the whole "
-        "folder of the run instead");
+    throw input_error(entry.path().string(), "",
+                      "is a link, expected what it leads to: results are not written through links; move the whole "
+                      "folder of the run instead");
   }
 }
 
@@ -221,9 +212,8 @@ bool RunDirectory::make() {
     if (reason == EEXIST && folder != missing.back()) continue;  // another run made it at the same time
     discard();
     if (reason == EEXIST) return false;
-    throw input_error(
-        path_.string(), "--out",
-        fmt::format("cannot be made ({}), expected a place that can be written", std::strerror(reason)));
+    throw input_error(path_.string(), "--out",
+                      fmt::format("cannot be made ({}), expected a place that can be written", std::strerror(reason)));
   }
   return true;
 }
@@ -231,8 +221,7 @@ bool RunDirectory::make() {
 void RunDirectory::begin() {
   if (!lock_.stands()) lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
   if (has_run_list(path_) && !RunList::read(path_).forms().empty())
-    throw input_error(path_.string(), "--out",
-                      "was taken by another run as this one began, expected a new folder");
+    throw input_error(path_.string(), "--out", "was taken by another run as this one began, expected a new folder");
   fresh_ = true;
   begin_run_list(path_, {});
   begun_ = true;

@@ -67,8 +67,7 @@ void append(const fs::path& folder, const std::string& text) {
   errno = 0;
   bool good = whole == size || ftruncate(handle, whole) == 0;
   size = whole;
-  good = good && write(handle, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-         fsync(handle) == 0;
+  good = good && write(handle, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && fsync(handle) == 0;
   const int reason = errno == 0 ? ENOSPC : errno;  // a write that stops halfway has none
   if (!good && ftruncate(handle, size) != 0) {
     // The line that stays is cut short, and taken away when the next one is added.
@@ -140,10 +139,10 @@ RunList RunList::read(const fs::path& folder) {
                         fmt::format("is of version '{}', expected {}: another version of furrow wrote it",
                                     line.substr(kKind.size()), kVersion));
     if (!begun || !is_inside(line))
-      throw input_error(
-          file.string() + ":" + place_in_text(text, from), "",
-          begun ? "is not the name of a file below its folder, expected one: the list is damaged"
-                : "is not a list of a run's files, expected '" + head().substr(0, head().size() - 1) + "'");
+      throw input_error(file.string() + ":" + place_in_text(text, from), "",
+                        begun
+                            ? "is not the name of a file below its folder, expected one: the list is damaged"
+                            : "is not a list of a run's files, expected '" + head().substr(0, head().size() - 1) + "'");
     forms.push_back(line);
   }
   return RunList(std::move(forms));
@@ -151,8 +150,7 @@ RunList RunList::read(const fs::path& folder) {
 
 bool RunList::holds(std::string_view name) const {
   const auto listed = [&](std::string_view n) {
-    return std::any_of(forms_.begin(), forms_.end(),
-                       [&](const std::string& form) { return is_of_form(n, form); });
+    return std::any_of(forms_.begin(), forms_.end(), [&](const std::string& form) { return is_of_form(n, form); });
   };
   if (listed(name)) return true;
   const std::size_t slash = name.rfind('/') + 1;  // 0: none
@@ -191,10 +189,9 @@ void require_own(const fs::path& folder, const std::vector<std::string>& forms) 
   const RunList before = has_run_list(folder) ? RunList::read(folder) : RunList();
   for (const std::string& name : RunList(forms).find(folder).files)
     if (!before.holds(name))
-      throw input_error(
-          (folder / name).string(), "",
-          "stands where a result is to be written, and furrow did not write it, expected another place "
-          "for it, or another folder for the results");
+      throw input_error((folder / name).string(), "",
+                        "stands where a result is to be written, and furrow did not write it, expected another place "
+                        "for it, or another folder for the results");
 }
 
 void add_to_run_list(const fs::path& folder, const std::vector<std::string>& forms) {
@@ -202,8 +199,7 @@ void add_to_run_list(const fs::path& folder, const std::vector<std::string>& for
   const RunList before = listed ? RunList::read(folder) : RunList();
   std::vector<std::string> added;
   for (const std::string& form : forms)
-    if (std::find(before.forms().begin(), before.forms().end(), form) == before.forms().end())
-      added.push_back(form);
+    if (std::find(before.forms().begin(), before.forms().end(), form) == before.forms().end()) added.push_back(form);
   if (added.empty()) return;
   require_own(folder, added);
   std::error_code error;

@@ -25,9 +25,8 @@ bool StartWatch::too_late() {
 
 std::string StartWatch::standing() const {
   const auto of_all = [&](std::size_t count) {
-    return count == ranks_
-               ? fmt::format("all {} ranks", ranks_)
-               : fmt::format("{} of {} ranks", count == 0 ? "none" : std::to_string(count), ranks_);
+    return count == ranks_ ? fmt::format("all {} ranks", ranks_)
+                           : fmt::format("{} of {} ranks", count == 0 ? "none" : std::to_string(count), ranks_);
   };
   if (begun_.size() < ranks_) return of_all(begun_.size()) + " began";
   return fmt::format("all {} ranks began, but MPI connected {}", ranks_, of_all(started_.size()));
@@ -39,8 +38,7 @@ double start_patience() {
   char* end = nullptr;
   const double seconds = std::strtod(text, &end);
   if (*end != '\0' || !(seconds > 0.0) || !std::isfinite(seconds))
-    throw input_error("environment", kVariable,
-                      fmt::format("is '{}', expected a number of seconds above 0", text));
+    throw input_error("environment", kVariable, fmt::format("is '{}', expected a number of seconds above 0", text));
   return seconds;
 }
 

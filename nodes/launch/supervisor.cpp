@@ -36,17 +36,15 @@ namespace furrow::launch {
 namespace {
 
 constexpr const char* kTooManyProcesses = "system limit exceeded on number of processes";  // Open MPI
-constexpr double kStopPatience =
-    300.0;  // s from the request to stop until mpirun is terminated: time for a checkpoint
+constexpr double kStopPatience = 300.0;  // s from the request to stop until mpirun is terminated: time for a checkpoint
 constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
 constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kEndPatience = 10.0;    // s from the end of all ranks until mpirun is killed
-constexpr double kFailurePatience =
-    20.0;  // s beside the time-out of peers, from a failure until mpirun is killed
-constexpr double kScarce = 0.5e9;        // bytes of address space: MPI may not begin with so little
-constexpr double kDrainPatience = 1.0;   // s to read what is left once mpirun has ended
-constexpr double kLogInterval = 5.0;     // s between lines of progress in the log
-constexpr int kPollInterval = 100;       // ms
+constexpr double kFailurePatience = 20.0;  // s beside the time-out of peers, from a failure until mpirun is killed
+constexpr double kScarce = 0.5e9;          // bytes of address space: MPI may not begin with so little
+constexpr double kDrainPatience = 1.0;     // s to read what is left once mpirun has ended
+constexpr double kLogInterval = 5.0;       // s between lines of progress in the log
+constexpr int kPollInterval = 100;         // ms
 
 /// Cuts what a pipe delivers into lines.
 class Lines {
@@ -116,7 +114,7 @@ void set_environment(const std::string& supervisor, bool yield) {
   setenv(kSupervisedVariable, supervisor.c_str(), 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  setenv("OMPI_MCA_orte_forward_job_control", "1", 0);  // mpirun hands stops and continuations on
+  setenv("OMPI_MCA_orte_forward_job_control", "1", 0);        // mpirun hands stops and continuations on
   if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // otherwise protocol/mpi_yield.hpp
   // Open MPI will not begin without a way to other machines, even where it needs none.
   if (!on_path("ssh") && !on_path("rsh")) setenv("OMPI_MCA_plm_rsh_agent", "/bin/false", 0);
@@ -267,8 +265,7 @@ void Supervisor::take_output(std::string_view text) {
       break;
     case RankLine::Kind::error:
       log_ << fmt::format("rank {}: {}\n", line->rank, line->text);
-      if (!error_ || (error_->code == ExitCode::rank_lost && line->code != ExitCode::rank_lost))
-        error_ = line;
+      if (!error_ || (error_->code == ExitCode::rank_lost && line->code != ExitCode::rank_lost)) error_ = line;
       end_.failed();
       break;
   }
@@ -343,21 +340,17 @@ LaunchResult Supervisor::outcome() const {
   const bool exited = WIFEXITED(status_);
   const int status = exited ? WEXITSTATUS(status_) : -1;
   if (late_ && stop_seen_ == 0.0) {
-    const std::string said = launcher_said(), little = little_room(),
-                      room = little.empty() ? "" : "; " + little;
-    const std::string text =
-        fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}", start_.standing(),
-                    launch_.patience, said) +
-        room;
-    if (said.find(std::strerror(ENOMEM)) == std::string::npos && !memory_is_scarce())
-      return {ExitCode::io, text};
+    const std::string said = launcher_said(), little = little_room(), room = little.empty() ? "" : "; " + little;
+    const std::string text = fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
+                                         start_.standing(), launch_.patience, said) +
+                             room;
+    if (said.find(std::strerror(ENOMEM)) == std::string::npos && !memory_is_scarce()) return {ExitCode::io, text};
     return out_of_memory(text);
   }
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
   const bool told_all = hung_ && end_.all_ended();  // what mpirun would have
   if (told_all && end_.code() == ExitCode::done) return {};
-  const bool stopped =
-      told_all ? end_.code() == ExitCode::stopped : status == static_cast<int>(ExitCode::stopped);
+  const bool stopped = told_all ? end_.code() == ExitCode::stopped : status == static_cast<int>(ExitCode::stopped);
   if (stop_seen_ > 0.0 && (stopped || ended_ > 0.0))
     return {ExitCode::stopped,
             ended_ > 0.0 ? "stopped by a signal before the ranks could finish" : "stopped by a signal"};
@@ -365,8 +358,7 @@ LaunchResult Supervisor::outcome() const {
     const int signal = launcher_.lost()->signal;
     bool limit = false;
     const std::string cause = cause_of(signal, processor_time_of_children(), limit);
-    LaunchResult lost =
-        lost_rank(launcher_.lost()->rank, signal_name(signal) + (cause.empty() ? "" : "; " + cause));
+    LaunchResult lost = lost_rank(launcher_.lost()->rank, signal_name(signal) + (cause.empty() ? "" : "; " + cause));
     if (limit) lost.code = ExitCode::limit;
     return lost;
   }
@@ -377,10 +369,8 @@ LaunchResult Supervisor::outcome() const {
                                    : "mpirun was " + signal_name(WTERMSIG(status_));
   const std::string text = how + " and " + launcher_said();
   if (start_.count() > 0) return {ExitCode::rank_lost, text};
-  if (text.find(kTooManyProcesses) != std::string::npos)
-    return {ExitCode::limit, "no rank could be started: " + text};
-  if (was_killed(status_))
-    return {ExitCode::rank_lost, "the ranks were lost while they were being started: " + text};
+  if (text.find(kTooManyProcesses) != std::string::npos) return {ExitCode::limit, "no rank could be started: " + text};
+  if (was_killed(status_)) return {ExitCode::rank_lost, "the ranks were lost while they were being started: " + text};
   if (memory_is_scarce()) return out_of_memory("no rank could be started: " + text);
   std::vector<std::string> suspects = launcher_settings();
   suspects.insert(suspects.begin(), {"PATH", "TMPDIR"});
@@ -393,8 +383,7 @@ LaunchResult Supervisor::outcome() const {
 std::filesystem::path find_mpirun() {
   if (const char* wanted = std::getenv("FURROW_MPIRUN"); wanted && *wanted) {
     if (access(wanted, X_OK) == 0) return wanted;
-    throw io_error(wanted,
-                   "is not a program that can be run, but FURROW_MPIRUN names it; expected Open MPI's mpirun");
+    throw io_error(wanted, "is not a program that can be run, but FURROW_MPIRUN names it; expected Open MPI's mpirun");
   }
   if (access(FURROW_MPIEXEC, X_OK) == 0) return FURROW_MPIEXEC;
   if (const auto found = on_path("mpirun")) return *found;

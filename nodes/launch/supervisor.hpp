@@ -18,8 +18,8 @@ struct Launch {
   std::vector<scenario::RankEntry> ranks;
   std::size_t polling = 0;    // ranks of one terrain of several: they poll for each other inside its engine
   std::filesystem::path log;  // everything that ranks and launcher say
-  int hold = -1;  // descriptor of the folder's lock, which the launcher keeps as long as it lives; −1: none
-  double patience = 120.0;    // s without news of ranks that are to start
+  int hold = -1;            // descriptor of the folder's lock, which the launcher keeps as long as it lives; −1: none
+  double patience = 120.0;  // s without news of ranks that are to start
   double peer_timeout = 60.0;  // s after which ranks give each other up
 };
 

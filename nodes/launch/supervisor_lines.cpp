@@ -27,8 +27,7 @@ std::string encode(const RankLine& line) {
   FURROW_ASSERT(in_range(static_cast<int>(line.kind), kKinds.size()), static_cast<int>(line.kind));
   FURROW_ASSERT(line.rank >= 0, line.rank);
   json j{{"kind", kKinds[static_cast<std::size_t>(line.kind)]}, {"rank", line.rank}};
-  if (line.kind == RankLine::Kind::error || line.kind == RankLine::Kind::ended)
-    j["code"] = static_cast<int>(line.code);
+  if (line.kind == RankLine::Kind::error || line.kind == RankLine::Kind::ended) j["code"] = static_cast<int>(line.code);
   if (line.kind == RankLine::Kind::progress) {
     const Progress& p = line.progress;
     j["phase"] = p.phase;

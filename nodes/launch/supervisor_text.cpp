@@ -19,8 +19,7 @@ constexpr std::string_view kUsual = "It looks like MPI_INIT failed for some reas
 constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer one would take the stack
 
 bool is_rule(std::string_view line) {
-  return line.size() > 10 &&
-         std::all_of(line.begin(), line.end(), [](char c) { return c == '-' || c == '='; });
+  return line.size() > 10 && std::all_of(line.begin(), line.end(), [](char c) { return c == '-' || c == '='; });
 }
 
 /// What the launcher logs of itself, and what ranks say as they abort: it hides the cause, but is better than nothing.
@@ -64,9 +63,7 @@ void LauncherText::add(std::string_view line) {
 
 std::string LauncherText::words() const {
   std::string text, internal;
-  const auto add_to = [](std::string& sort, const std::string& line) {
-    sort += (sort.empty() ? "" : " ") + line;
-  };
+  const auto add_to = [](std::string& sort, const std::string& line) { sort += (sort.empty() ? "" : " ") + line; };
   for (const std::string& line : lines_) add_to(is_internal(line) ? internal : text, line);
   for (const std::string& line : usual_) add_to(text, line);
   if (text.empty()) text = internal;

@@ -49,8 +49,7 @@ Demand demand(const HostView& host, int cores, int terrain_threads) {
   if (terrain_threads > 0) {
     d.terrain_threads = terrain_threads;
   } else if (d.terrain_ranks > 0) {
-    d.terrain_threads =
-        scenario::auto_terrain_threads(cores, d.rig_cores + d.tires, d.terrain_ranks, host.grains);
+    d.terrain_threads = scenario::auto_terrain_threads(cores, d.rig_cores + d.tires, d.terrain_ranks, host.grains);
   }
   return d;
 }
@@ -123,11 +122,9 @@ ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terr
 
 int machine_cores() {
   cpu_set_t before;
-  if (sched_getaffinity(0, sizeof before, &before) != 0)
-    return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+  if (sched_getaffinity(0, sizeof before, &before) != 0) return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   // Share of CPUs per core, as seen on the cores we may use, holds for the whole machine.
-  const double per_core =
-      static_cast<double>(CPU_COUNT(&before)) / static_cast<double>(allowed_cores().size());
+  const double per_core = static_cast<double>(CPU_COUNT(&before)) / static_cast<double>(allowed_cores().size());
   return std::max(1, static_cast<int>(std::lround(sysconf(_SC_NPROCESSORS_ONLN) / per_core)));
 }
 
@@ -136,8 +133,7 @@ double cpu_limit() {
   double quota = 0.0, period = 0.0;
   std::ifstream v2("/sys/fs/cgroup/cpu.max");
   if (v2 >> quota >> period && period > 0.0) return quota / period;  // "max 100000" fails to read a number
-  std::ifstream v1_quota("/sys/fs/cgroup/cpu/cpu.cfs_quota_us"),
-      v1_period("/sys/fs/cgroup/cpu/cpu.cfs_period_us");
+  std::ifstream v1_quota("/sys/fs/cgroup/cpu/cpu.cfs_quota_us"), v1_period("/sys/fs/cgroup/cpu/cpu.cfs_period_us");
   if (v1_quota >> quota && v1_period >> period && quota > 0.0 && period > 0.0) return quota / period;
   return 0.0;
 }
@@ -181,8 +177,8 @@ ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_thre
   plan.note = pinning_note(host, node, terrain ? terrain_threads : 1);
   const int own = static_cast<int>(host.nodes[node].cores.size());
   if (plan.note.empty() && plan.threads > own)
-    plan.note = fmt::format("{} runs {} threads on {} cores; fewer are faster",
-                            to_string(host.nodes[node].node), plan.threads, own);
+    plan.note = fmt::format("{} runs {} threads on {} cores; fewer are faster", to_string(host.nodes[node].node),
+                            plan.threads, own);
   return plan;
 }
 
@@ -215,9 +211,7 @@ void apply(const ThreadPlan& plan) {
   }
 }
 
-std::vector<std::string> passive_environment() {
-  return {"OMP_WAIT_POLICY=passive", "OPENBLAS_NUM_THREADS=1"};
-}
+std::vector<std::string> passive_environment() { return {"OMP_WAIT_POLICY=passive", "OPENBLAS_NUM_THREADS=1"}; }
 
 void wait_passively(char** argv) {
   FURROW_ASSERT(argv != nullptr && argv[0] != nullptr, "argv");

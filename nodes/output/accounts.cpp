@@ -68,8 +68,8 @@ void add_terrain(const TerrainEnergies& start, const TerrainEnergies& now, Energ
   l.opening = now.opening_loss - start.opening_loss;
   l.sleep = now.sleep_loss - start.sleep_loss;
   l.surface_lag -= now.surface_work - start.surface_work;
-  a.terrain_residual = now.surface_work - start.surface_work + a.work.walls -
-                       (now.stored() - start.stored()) - (now.losses() - start.losses());
+  a.terrain_residual = now.surface_work - start.surface_work + a.work.walls - (now.stored() - start.stored()) -
+                       (now.losses() - start.losses());
   a.sample_error = now.sample_error;
 }
 
@@ -109,9 +109,7 @@ double tire_residual(const TireAccount& start, const TireAccount& now) {
 
 double EnergyAccount::residual() const { return sums(work).first - sums(stored).first - sums(lost).first; }
 
-double EnergyAccount::turnover() const {
-  return 0.5 * (sums(work).second + sums(stored).second + sums(lost).second);
-}
+double EnergyAccount::turnover() const { return 0.5 * (sums(work).second + sums(stored).second + sums(lost).second); }
 
 double EnergyAccount::bound() const { return kEnergyShare * turnover() + kSampleErrors * sample_error; }
 
@@ -163,16 +161,15 @@ Vec3 MomentumAccount::residual() const {
 
 double MomentumAccount::largest() const {
   double largest = 0.0;
-  for (const Vec3& one : {grains, tires, carrier, terrain_gravity, tire_gravity, carrier_gravity, walls,
-                          guide, sleep, surface_of_tires, spindle_of_tires})
+  for (const Vec3& one : {grains, tires, carrier, terrain_gravity, tire_gravity, carrier_gravity, walls, guide, sleep,
+                          surface_of_tires, spindle_of_tires})
     largest = std::max(largest, one.norm());
   return largest;
 }
 
 bool MomentumAccount::closes() const {
   const double round_off = kMomentumShare * largest(), most = round_off + sleep.norm();
-  return residual().norm() <= most && surface_difference().norm() <= most &&
-         spindle_difference().norm() <= round_off;
+  return residual().norm() <= most && surface_difference().norm() <= most && spindle_difference().norm() <= round_off;
 }
 
 TireAccount Accounts::account_of(const Reports& r, std::size_t k) const {

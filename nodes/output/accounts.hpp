@@ -23,10 +23,10 @@ struct TireAccount {
   Vec3 gravity_impulse = Vec3::Zero();        // N s
   Vec3 terrain_impulse = Vec3::Zero();        // on the tire as it received it, N s
   Vec3 spindle_impulse = Vec3::Zero();        // on the rim by the tire, N s
-  Vec3 sent_by_terrain = Vec3::Zero();  // what the terrain has given and the tire has not felt yet, now, N s
-  Vec3 sent_to_rig = Vec3::Zero();      // what the tire has given and the rig has not felt yet, now, N s
-  double added_energy = 0.0;  // of the tire's rigid-body mass on the rig: kinetic and of gravity, now, J
-  Vec3 added_momentum = Vec3::Zero();         // of the same, now, kg m/s
+  Vec3 sent_by_terrain = Vec3::Zero();        // what the terrain has given and the tire has not felt yet, now, N s
+  Vec3 sent_to_rig = Vec3::Zero();            // what the tire has given and the rig has not felt yet, now, N s
+  double added_energy = 0.0;           // of the tire's rigid-body mass on the rig: kinetic and of gravity, now, J
+  Vec3 added_momentum = Vec3::Zero();  // of the same, now, kg m/s
   Vec3 added_gravity_impulse = Vec3::Zero();  // of the same, N s
   Vec3 rim_velocity = Vec3::Zero();           // now, m/s
 };
@@ -81,8 +81,8 @@ void visit_fields(Visit&& visit, FieldsOf<WorkAccount> auto& s) {
 
 /// What is stored, beyond what was stored at the start, J.
 struct StoredAccount {
-  double terrain_kinetic = 0.0, terrain_rotational = 0.0, terrain_potential = 0.0,
-         terrain_elastic_normal = 0.0, terrain_elastic_tangential = 0.0, terrain_cohesion = 0.0;
+  double terrain_kinetic = 0.0, terrain_rotational = 0.0, terrain_potential = 0.0, terrain_elastic_normal = 0.0,
+         terrain_elastic_tangential = 0.0, terrain_cohesion = 0.0;
   double tire_kinetic = 0.0, tire_elastic = 0.0, tire_pressure = 0.0, tire_potential = 0.0;
   double rig_kinetic_and_potential = 0.0;  // without the tires' added masses
 };

@@ -27,8 +27,7 @@ std::string key_of(const Column& column) {
 template <HasFields S>
 Json entries_json(const S& entries) {
   Json json;
-  visit_fields([&](const Column& column, const double& value) { json[key_of(column)] = json_number(value); },
-               entries);
+  visit_fields([&](const Column& column, const double& value) { json[key_of(column)] = json_number(value); }, entries);
   return json;
 }
 
@@ -46,12 +45,11 @@ Json momentum_json(const Accounts& accounts) {
   Json tires = Json::array();
   for (std::size_t k = 0; k < accounts.now().tires.size(); ++k) {
     const TireAccount &start = accounts.start().tires[k], &now = accounts.now().tires[k];
-    tires.push_back(
-        {{"momentum", vector_json(now.model.momentum - start.model.momentum)},
-         {"gravity", vector_json(now.gravity_impulse - start.gravity_impulse)},
-         {"terrain", vector_json(now.terrain_impulse - start.terrain_impulse)},
-         {"on_the_rim", vector_json(now.spindle_impulse - start.spindle_impulse)},
-         {"of_it_left_by_the_solver", vector_json(now.model.solver_impulse - start.model.solver_impulse)}});
+    tires.push_back({{"momentum", vector_json(now.model.momentum - start.model.momentum)},
+                     {"gravity", vector_json(now.gravity_impulse - start.gravity_impulse)},
+                     {"terrain", vector_json(now.terrain_impulse - start.terrain_impulse)},
+                     {"on_the_rim", vector_json(now.spindle_impulse - start.spindle_impulse)},
+                     {"of_it_left_by_the_solver", vector_json(now.model.solver_impulse - start.model.solver_impulse)}});
   }
   return {{"unit", "N s"},
           {"grains", vector_json(m.grains)},
@@ -66,10 +64,10 @@ Json momentum_json(const Accounts& accounts) {
           {"largest", json_number(m.largest())},
           {"residual_share", json_number(m.largest() > 0.0 ? m.residual().norm() / m.largest() : 0.0)},
           {"closes", m.closes()},
-          {"surface", sides_json("grains", m.surface_of_grains, "tires", m.surface_of_tires,
-                                 m.surface_under_way, m.surface_difference())},
-          {"spindle", sides_json("tires", m.spindle_of_tires, "carrier", m.spindle_of_carrier,
-                                 m.spindle_under_way, m.spindle_difference())},
+          {"surface", sides_json("grains", m.surface_of_grains, "tires", m.surface_of_tires, m.surface_under_way,
+                                 m.surface_difference())},
+          {"spindle", sides_json("tires", m.spindle_of_tires, "carrier", m.spindle_of_carrier, m.spindle_under_way,
+                                 m.spindle_difference())},
           {"each_tire", tires}};
 }
 

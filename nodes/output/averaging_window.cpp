@@ -49,9 +49,8 @@ Window averaging_window(const Table& table, std::span<const WheelRow> rows, doub
   const double facet = 2.0 * std::numbers::pi / facets;
   const double turn_last = std::abs(rows.back().spin) * (rows.back().time - rows[rows.size() - 2].time);
   const std::size_t part = (rows.size() - first) / kPartLeftOut;
-  const std::size_t of_facet = facet < turn_last * static_cast<double>(part)
-                                   ? static_cast<std::size_t>(std::ceil(facet / turn_last))
-                                   : part;
+  const std::size_t of_facet =
+      facet < turn_last * static_cast<double>(part) ? static_cast<std::size_t>(std::ceil(facet / turn_last)) : part;
   const std::size_t left_out = std::max(kLinesLeftOut, of_facet);
   double turned = 0.0, least = INFINITY;
   std::size_t chosen = first;

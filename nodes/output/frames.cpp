@@ -18,7 +18,7 @@ namespace {
 
 std::filesystem::path new_frame(const std::filesystem::path& run, const FrameName& name) {
   const auto folder = run / "frames";
-  std::error_code ignored;  // if the folder cannot be made, creating the file says so
+  std::error_code ignored;                             // if the folder cannot be made, creating the file says so
   std::filesystem::create_directory(folder, ignored);  // never the run's: it was moved or removed
   return folder / frame_file(name);
 }
@@ -33,8 +33,8 @@ std::vector<float> flatten(const std::vector<Vec3>& vectors) {
   return flat;
 }
 
-void put(Hdf5Writer& file, const std::string& name, std::span<const float> values,
-         const std::vector<std::string>& axes, const std::string& units) {
+void put(Hdf5Writer& file, const std::string& name, std::span<const float> values, const std::vector<std::string>& axes,
+         const std::string& units) {
   std::vector<hsize_t> shape{values.size()};
   if (axes.size() == 2) shape = {values.size() / 3, 3};
   file.put(name, values, shape);
@@ -58,8 +58,7 @@ std::vector<std::string> frame_forms() {
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
                       const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces) {
   FURROW_ASSERT(tire >= 0, tire);
-  FURROW_ASSERT(surface.velocity.size() == surface.position.size(), surface.velocity.size(),
-                surface.position.size());
+  FURROW_ASSERT(surface.velocity.size() == surface.position.size(), surface.velocity.size(), surface.position.size());
   FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
   FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
                             [&](int v) { return in_range(v, surface.position.size()); }),
@@ -68,8 +67,7 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
   std::vector<Vec3> dense(count, Vec3::Zero());
   for (std::size_t i = 0; i < forces.vertex.size(); ++i) dense[forces.vertex[i]] = forces.force[i];
   std::vector<std::int32_t> triangles;
-  for (const auto& triangle : mesh.triangles)
-    triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+  for (const auto& triangle : mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
 
   Hdf5Writer file(new_frame(run, {fmt::format("tire{}", tire), index}));
   file.attribute("time_s", time);
@@ -103,8 +101,8 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
   file.finish();
 }
 
-checkpoint::FrameClock continued_frames(const std::filesystem::path& run,
-                                        const checkpoint::CheckpointManifest& from, std::int64_t every) {
+checkpoint::FrameClock continued_frames(const std::filesystem::path& run, const checkpoint::CheckpointManifest& from,
+                                        std::int64_t every) {
   if (from.frames.every == every) return from.frames;
   std::error_code none;
   const bool written =
@@ -131,8 +129,7 @@ void remove_frames_from(const std::filesystem::path& run, std::int64_t index) {
   for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error)) {
     const std::string name = entry.path().filename().string();
     const auto frame = frame_name(name);
-    if ((frame && frame->index >= index) || frame_name(name_in_the_making(name)))
-      doomed.push_back(entry.path());
+    if ((frame && frame->index >= index) || frame_name(name_in_the_making(name))) doomed.push_back(entry.path());
   }
   for (const auto& file : doomed) std::filesystem::remove(file, error);
 }

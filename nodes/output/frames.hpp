@@ -28,8 +28,8 @@ void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, d
                          const terrain::TerrainFrame& frame);
 
 /// Frames of a run that continues with one every so many steps. @throws Error(io)
-checkpoint::FrameClock continued_frames(const std::filesystem::path& run,
-                                        const checkpoint::CheckpointManifest& from, std::int64_t every);
+checkpoint::FrameClock continued_frames(const std::filesystem::path& run, const checkpoint::CheckpointManifest& from,
+                                        std::int64_t every);
 
 /// Flushes the names of all frames to the disk. @throws Error(io)
 void sync_frames(const std::filesystem::path& run);

@@ -35,8 +35,7 @@ void LineBuilder::save(Archive& archive, const std::string& folder) const {
 }
 
 void LineBuilder::restore(const Archive& archive, const std::string& folder) {
-  for (std::size_t i = 0; i < columns_.size(); ++i)
-    values_[i] = archive.get_double(folder + columns_[i].name);
+  for (std::size_t i = 0; i < columns_.size(); ++i) values_[i] = archive.get_double(folder + columns_[i].name);
   count_ = archive.get_double(folder + kCount);
 }
 

@@ -55,8 +55,7 @@ void write_profile(const std::filesystem::path& file, std::span<const FinalRepor
       }
     }
   }
-  write_whole_file(file,
-                   nlohmann::ordered_json{{"displayTimeUnit", "ms"}, {"traceEvents", events}}.dump() + "\n");
+  write_whole_file(file, nlohmann::ordered_json{{"displayTimeUnit", "ms"}, {"traceEvents", events}}.dump() + "\n");
 }
 
 }  // namespace furrow::output

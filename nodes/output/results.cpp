@@ -24,8 +24,7 @@ const checkpoint::SeriesMark& mark_of(const checkpoint::ResumePoint& resume, con
   throw io_error(resume.folder.string(), "knows no table of '" + subject + "'");
 }
 
-void label(Hdf5Writer& file, const std::string& dataset, const std::string& units,
-           const std::string& long_name) {
+void label(Hdf5Writer& file, const std::string& dataset, const std::string& units, const std::string& long_name) {
   file.attribute_of(dataset, "units", units);
   file.attribute_of(dataset, "long_name", long_name);
 }
@@ -51,8 +50,8 @@ void put_height_axes(Hdf5Writer& file, const HeightField& field) {
 /// @pre their axes were put for a field on the same grid
 void put_heights(Hdf5Writer& file, const std::string& when, const HeightField& field) {
   const std::string name = "terrain/height_" + when;
-  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, name,
-                field.height.size(), field.nx, field.ny);
+  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, name, field.height.size(),
+                field.nx, field.ny);
   if (field.nx == 0) return;
   file.put(name, field.height, {static_cast<hsize_t>(field.nx), static_cast<hsize_t>(field.ny)});
   label(file, name, "m", "height of the surface " + when + " the run");
@@ -79,8 +78,7 @@ void put_table(Hdf5Writer& file, const Table& table) {
 /// The tables of the wheels are the first ones, in the order of the rig's.
 void put_wheel_names(Hdf5Writer& file, std::span<const Table> tables, const rigs::RigDescription& rig) {
   for (std::size_t k = 0; k < rig.wheels.size(); ++k)
-    if (!rig.wheels[k].name.empty())
-      file.attribute_of("series/" + tables[k].subject, "name", rig.wheels[k].name);
+    if (!rig.wheels[k].name.empty()) file.attribute_of("series/" + tables[k].subject, "name", rig.wheels[k].name);
 }
 
 /// They show an end that the run is no longer at.
@@ -120,8 +118,7 @@ std::filesystem::path Results::file_of(const Table& table) const {
 
 /// Before any rank writes one of them: the others wait for the rig until they are placed.
 void Results::list_files() const {
-  std::vector<std::string> names{"scenario.json", "results.h5", "results.xdmf", "summary.json",
-                                 "summary_failed.json"};
+  std::vector<std::string> names{"scenario.json", "results.h5", "results.xdmf", "summary.json", "summary_failed.json"};
   for (const Table& table : tables_) names.push_back(file_of(table).filename().string());
   for (const auto& forms : {frame_forms(), checkpoint::checkpoint_forms()})
     names.insert(names.end(), forms.begin(), forms.end());
@@ -199,8 +196,7 @@ SummaryInput Results::summary_input(const RunEnd& end) const {
           setup_,
           tables_,
           end,
-          checkpoint::segments_until(steps, end.wall, cards_[scenario::terrain_rank(scenario_)].threads,
-                                     resume_)};
+          checkpoint::segments_until(steps, end.wall, cards_[scenario::terrain_rank(scenario_)].threads, resume_)};
 }
 
 std::string Results::finish(const RunEnd& end, bool stopped) {
@@ -223,8 +219,7 @@ std::string Results::finish(const RunEnd& end, bool stopped) {
 }
 
 void Results::fail(const RunEnd& end, const Failure& failure) {
-  FURROW_ASSERT(end.reports.empty() && end.wheels.size() <= tables_.size(), end.reports.size(),
-                end.wheels.size());
+  FURROW_ASSERT(end.reports.empty() && end.wheels.size() <= tables_.size(), end.reports.size(), end.wheels.size());
   flush();
   SummaryInput input = summary_input(end);
   input.failure = &failure;

@@ -32,8 +32,8 @@ struct RunEnd {
   std::span<const WheelEnd> wheels;      // empty: it failed before its first step
   const TerrainState& terrain;           // the last one
   const Accounts& accounts;
-  double time = 0.0;                     // simulated, s
-  double wall = 0.0;                     // of this segment, s
+  double time = 0.0;  // simulated, s
+  double wall = 0.0;  // of this segment, s
   EndReason reason = EndReason::run_end;
   rigs::RigFindings findings = {};
 };

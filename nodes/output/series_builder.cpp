@@ -31,11 +31,7 @@ void forget_interval(WheelRow& row) {
 }  // namespace
 
 SeriesBuilder::SeriesBuilder(double radius, double ground, double step)
-    : radius_(radius),
-      ground_(ground),
-      step_(step),
-      lines_(columns_of<WheelRow>()),
-      values_(lines_.columns().size()) {}
+    : radius_(radius), ground_(ground), step_(step), lines_(columns_of<WheelRow>()), values_(lines_.columns().size()) {}
 
 void SeriesBuilder::add(const StepReports& r) {
   FURROW_ASSERT(std::abs(r.heading.norm() - 1.0) < 1e-9, r.heading.transpose());
@@ -135,8 +131,7 @@ void SeriesBuilder::measure_instants(const StepReports& r) {
   row.carried_energy = 0.5 * mass * (w * w + u * u) - (mass * r.wheel.gravity).dot(r.rim.position);
   row.contacts_tire = static_cast<double>(r.contact.contacts);
   row.contacts_terrain = static_cast<double>(r.terrain.contacts);
-  row.active_share =
-      r.grains > 0 ? static_cast<double>(r.terrain.active) / static_cast<double>(r.grains) : 1.0;
+  row.active_share = r.grains > 0 ? static_cast<double>(r.terrain.active) / static_cast<double>(r.grains) : 1.0;
   row.newton_iterations = static_cast<double>(r.tire.newton_iterations);
   row.factorizations = static_cast<double>(r.tire.factorizations);
 }

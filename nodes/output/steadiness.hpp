@@ -16,7 +16,7 @@ struct SteadyWindow {
   double duration = 0.0;       // s
   double travel = 0.0;         // of the axle or of the tread, whichever is longer, m
   double radius = 0.0;         // undeformed tire radius, m
-  bool whole_facets = false;  // the window holds a whole number of tire facets, within one line of the series
+  bool whole_facets = false;   // the window holds a whole number of tire facets, within one line of the series
 };
 
 /// Period in which a loaded wheel bounces on its tire and soil, s: T = 2π √(m/k) = 2π √(z/(κ g)) with k = κ W/z. z is

@@ -24,10 +24,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMaxLate =
-    0.05;  // of load × speed: energy error of the interface of a run that can be trusted
-constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have come to
-constexpr double kLeastRolled = 1e-3;       // of the radius: a wheel that went less stands
+constexpr double kMaxLate = 0.05;      // of load × speed: energy error of the interface of a run that can be trusted
+constexpr double kLeastWindow = 0.1;   // of the planned averaging window, that a run must have come to
+constexpr double kLeastRolled = 1e-3;  // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 
 /// What the summary of one wheel is computed from.
@@ -63,16 +62,16 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
   const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
   const double rolled = std::max(travel, turned), rolling = load * rolled / w.duration();
   if (rolled < kLeastRolled * radius && !w.rows.empty())
-    reasons.push_back(fmt::format(
-        "the wheel neither rolls nor slips: {:.2g} mm in the averaging window, expected at least {:g} % of "
-        "its radius; so the share of load × speed that late contact forces feed is not known",
-        1e3 * rolled, 100.0 * kLeastRolled));
+    reasons.push_back(
+        fmt::format("the wheel neither rolls nor slips: {:.2g} mm in the averaging window, expected at least {:g} % of "
+                    "its radius; so the share of load × speed that late contact forces feed is not known",
+                    1e3 * rolled, 100.0 * kLeastRolled));
   else if (late > kMaxLate * rolling)
-    reasons.push_back(fmt::format(
-        "contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
-        "load × speed; take a smaller run.step{}",
-        late, 100.0 * late / rolling,
-        in.run.scenario.tires[in.wheel]->options().contact_tangent ? "" : " or tire.contact_tangent"));
+    reasons.push_back(
+        fmt::format("contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
+                    "load × speed; take a smaller run.step{}",
+                    late, 100.0 * late / rolling,
+                    in.run.scenario.tires[in.wheel]->options().contact_tangent ? "" : " or tire.contact_tangent"));
   return {{"mean", json_number(s.mean)},
           {"std", json_number(s.std)},
           {"sem", json_number(s.sem)},
@@ -147,8 +146,7 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   json["sinkage_m"] = json_number(mean([](const WheelRow& r) { return r.sinkage; }));
   json["sinkage_sem_m"] = json_number(sinkage.sem);
   json["sinkage_n_eff"] = json_number(sinkage.n_eff);
-  json["sinkage_drift_m_per_s"] =
-      json_number(sinkage.slope * static_cast<double>(w.rows.size()) / w.duration());
+  json["sinkage_drift_m_per_s"] = json_number(sinkage.slope * static_cast<double>(w.rows.size()) / w.duration());
   json["sinkage_drift_t"] = json_number(sinkage.drift.t);
   json["sinkage_kinematic_m"] = json_number(mean([](const WheelRow& r) { return r.sinkage_kinematic; }));
   add_rut(in, json);
@@ -188,18 +186,17 @@ Json rank_table(const SummaryInput& in) {
     const FinalReport& r = in.end.reports[i];
     const NodeCard& card = in.cards[i];
     const double busy = r.compute_s + r.communicate_s;
-    ranks.push_back(
-        {{"rank", i},
-         {"node", to_string(r.self, in.scenario.terrain_ranks)},
-         {"kind", card.node_kind},
-         {"threads", r.threads},
-         {"size", r.self.role == Role::terrain ? r.grains : card.size},  // grains, unknowns of a tire
-         {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
-         {"cpu_s", r.cpu_s},
-         {"compute_s", r.compute_s},
-         {"communicate_s", r.communicate_s},
-         {"wait_s", r.wait_s},
-         {"busy_share", json_number(busy / (busy + r.wait_s))}});
+    ranks.push_back({{"rank", i},
+                     {"node", to_string(r.self, in.scenario.terrain_ranks)},
+                     {"kind", card.node_kind},
+                     {"threads", r.threads},
+                     {"size", r.self.role == Role::terrain ? r.grains : card.size},  // grains, unknowns of a tire
+                     {"step_s", in.scenario.run.step / std::max(1, card.substeps)},
+                     {"cpu_s", r.cpu_s},
+                     {"compute_s", r.compute_s},
+                     {"communicate_s", r.communicate_s},
+                     {"wait_s", r.wait_s},
+                     {"busy_share", json_number(busy / (busy + r.wait_s))}});
   }
   return ranks;
 }
@@ -216,8 +213,7 @@ void add_plumbing(const WheelInput& in, Json& json) {
   json["interface_work_J"] = json_number(tire.terrain_work);  // Σ f·Δx, on the tire by the terrain
   json["spindle_work_J"] = json_number(end.spindle_work);
   json["momentum_residual"] = json_number(
-      sent > 0.0 ? (series.impulse_sent_arrived() - (end.impulse_received - tire.impulse_ahead)).norm() / sent
-                 : 0.0);
+      sent > 0.0 ? (series.impulse_sent_arrived() - (end.impulse_received - tire.impulse_ahead)).norm() / sent : 0.0);
   if (tire.contact_tangent) {
     json["contact_ledger_Ns"] = json_number(tire.ledger);
     json["contact_ledger_largest_Ns"] = json_number(tire.ledger_largest);
@@ -255,8 +251,7 @@ double average_from(const SummaryInput& in) {
 /// What a rig found beside its columns.
 void add_findings(const rigs::RigFindings& findings, Json& json) {
   for (const rigs::RigEvent& event : findings.events) {
-    json["events"].push_back(
-        {{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
+    json["events"].push_back({{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
     if (event.wheel >= 0) json["events"].back()["wheel"] = event.wheel;
   }
   for (const auto& [name, value] : findings.figures) json["figures"][name] = json_number(value);
@@ -273,8 +268,8 @@ Json wheel_summary(const WheelInput& in) {
   json["tire_radius_m"] = in.card().tire_radius;
   json["tread_width_m"] = in.card().tire_width;
   json["surface_height_m"] = json_number(in.run.setup.mean_height.at(in.wheel));
-  const Window window = averaging_window(in.table, in.rows, average_from(in.run),
-                                         in.run.scenario.tires[in.wheel]->describe().facets);
+  const Window window =
+      averaging_window(in.table, in.rows, average_from(in.run), in.run.scenario.tires[in.wheel]->describe().facets);
   add_mobility(in, window, json);
   add_plumbing(in, json);
   const WheelRow end = in.end.series.now();
@@ -315,8 +310,7 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
 
 /// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²
 void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
-  const auto table =
-      std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.subject == "vehicle"; });
+  const auto table = std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.subject == "vehicle"; });
   if (table == tables.end()) return;
   const Json& figures = json["subjects"]["vehicle"];
   double weight = 0.0, pitch = 0.0;
@@ -337,8 +331,7 @@ void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
 }  // namespace
 
 std::string summary_text(const SummaryInput& in) {
-  FURROW_ASSERT(in.failure || in.end.reports.size() == in.cards.size(), in.end.reports.size(),
-                in.cards.size());
+  FURROW_ASSERT(in.failure || in.end.reports.size() == in.cards.size(), in.end.reports.size(), in.cards.size());
   FURROW_ASSERT(in.tables.size() >= in.end.wheels.size(), in.tables.size(), in.end.wheels.size());
   FURROW_ASSERT(in.failure || !in.end.wheels.empty(), in.end.wheels.size());
   Hash state;
@@ -349,9 +342,8 @@ std::string summary_text(const SummaryInput& in) {
   json["scenario"] = in.scenario.name;
   json["scenario_digest"] = in.scenario.digest;
   if (in.failure)
-    json["failed"] = {{"exit_code", static_cast<int>(in.failure->code)},
-                      {"error", in.failure->text},
-                      {"time_s", in.end.time}};
+    json["failed"] = {
+        {"exit_code", static_cast<int>(in.failure->code)}, {"error", in.failure->text}, {"time_s", in.end.time}};
   else
     json["state_hash"] = state.hex();
   if (!in.failure) json["end_reason"] = to_string(in.end.reason);
@@ -371,8 +363,7 @@ std::string summary_text(const SummaryInput& in) {
     wheels.push_back(
         wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
-  if (!in.end.wheels.empty())
-    json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
+  if (!in.end.wheels.empty()) json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {

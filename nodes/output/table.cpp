@@ -23,8 +23,7 @@ namespace {
 /// @param order  which column stands at each place
 std::string header_line(const Table& table, const std::vector<std::size_t>& order) {
   std::string header;
-  for (const std::size_t i : order)
-    header += (header.empty() ? "" : ",") + std::string(table.columns[i].name);
+  for (const std::size_t i : order) header += (header.empty() ? "" : ",") + std::string(table.columns[i].name);
   return header + '\n';
 }
 
@@ -66,10 +65,7 @@ std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Col
 }
 
 TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
-    : file_(file),
-      subject_(table.subject),
-      order_(table.columns.size()),
-      stream_(std::fopen(file.c_str(), "wb")) {
+    : file_(file), subject_(table.subject), order_(table.columns.size()), stream_(std::fopen(file.c_str(), "wb")) {
   check(stream_ != nullptr);
   only_append();
   std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -82,8 +78,7 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
     throw io_error(file_.string(),
                    "is missing, and a run cannot be continued without the lines that the checkpoint knows: "
                    "bring it back, or begin again with furrow run --overwrite");
-  if (!stream_)
-    throw io_error(file_.string(), std::string("cannot be opened to continue it: ") + std::strerror(errno));
+  if (!stream_) throw io_error(file_.string(), std::string("cannot be opened to continue it: ") + std::strerror(errno));
   std::error_code error;
   const std::uintmax_t there = std::filesystem::file_size(file, error);
   const bool all = !error && std::cmp_less_equal(mark.bytes, there);
@@ -129,11 +124,10 @@ void TableWriter::take_order(std::string_view header, const Table& table) {
   }
   for (std::size_t i = 0; i < table.columns.size(); ++i)
     if (std::find(order_.begin(), order_.end(), i) == order_.end())
-      throw io_error(
-          file_.string(),
-          fmt::format("lacks the column '{}' that this program writes: continue with the program that "
-                      "began the run",
-                      table.columns[i].name));
+      throw io_error(file_.string(),
+                     fmt::format("lacks the column '{}' that this program writes: continue with the program that "
+                                 "began the run",
+                                 table.columns[i].name));
 }
 
 /// The line at `text`, which ends in a line feed; null when it is none.
@@ -174,8 +168,8 @@ void TableWriter::flush() { check(std::fflush(stream_.get()) == 0); }
 bool TableWriter::stands() const {
   struct stat own {};
   struct stat there {};
-  return fstat(fileno(stream_.get()), &own) == 0 && lstat(file_.c_str(), &there) == 0 &&
-         own.st_dev == there.st_dev && own.st_ino == there.st_ino && std::cmp_equal(own.st_size, bytes_);
+  return fstat(fileno(stream_.get()), &own) == 0 && lstat(file_.c_str(), &there) == 0 && own.st_dev == there.st_dev &&
+         own.st_ino == there.st_ino && std::cmp_equal(own.st_size, bytes_);
 }
 
 void TableWriter::write_again(const Table& table) {

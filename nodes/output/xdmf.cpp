@@ -86,9 +86,8 @@ struct LostInstants {
 std::string data_item(const Frame& f, const char* name, hsize_t count, int width, const char* type) {
   FURROW_ASSERT(width > 0, name, width);
   const std::string shape = width > 1 ? fmt::format("{} {}", count, width) : fmt::format("{}", count);
-  return fmt::format(
-      "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"4\" Format=\"HDF\">{}:/{}</DataItem>", shape,
-      type, f.file, name);
+  return fmt::format("<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"4\" Format=\"HDF\">{}:/{}</DataItem>",
+                     shape, type, f.file, name);
 }
 
 std::string attribute(const Frame& f, const char* name, int width) {
@@ -99,13 +98,12 @@ std::string attribute(const Frame& f, const char* name, int width) {
 std::string grid(const Frame& f, const std::string& name) {
   std::string text = fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n", name);
   if (f.triangles > 0)
-    text += fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n",
-                        f.triangles, data_item(f, "triangle", f.triangles, 3, "Int"));
+    text += fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>\n", f.triangles,
+                        data_item(f, "triangle", f.triangles, 3, "Int"));
   else
-    text += fmt::format(
-        "<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n", f.points);
-  text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
-                      data_item(f, "position", f.points, 3, "Float"));
+    text += fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
+                        f.points);
+  text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", data_item(f, "position", f.points, 3, "Float"));
   text += f.triangles > 0 ? attribute(f, "velocity", 3) + attribute(f, "force", 3)
                           : attribute(f, "speed", 1) + attribute(f, "radius", 1);
   return text + "</Grid>\n";
@@ -148,8 +146,8 @@ std::string write_xdmf_index(const std::filesystem::path& run) {
     }
     if (!frame) continue;
     file.write(fmt::format(
-        "<Grid Name=\"{:06d}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n",
-        index, frame->time));
+        "<Grid Name=\"{:06d}\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"{:.9g}\"/>\n", index,
+        frame->time));
     file.write(grids + "</Grid>\n");
   }
   file.write("</Grid></Domain></Xdmf>\n");

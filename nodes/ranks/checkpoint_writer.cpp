@@ -80,8 +80,7 @@ void CheckpointWriter::write(std::int64_t step, bool needed) {
   }
 }
 
-checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
-                                                          std::vector<CheckpointPart> parts) const {
+checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step, std::vector<CheckpointPart> parts) const {
   FURROW_ASSERT(parts.size() == cards_.size(), parts.size(), cards_.size());
   checkpoint::CheckpointManifest m;
   m.version = FURROW_VERSION;
@@ -97,8 +96,8 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step,
   m.series = node_.mark_series();
   std::error_code ignored;
   for (const CheckpointPart& part : m.parts)
-    m.bytes += static_cast<std::int64_t>(std::filesystem::file_size(
-        checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
+    m.bytes += static_cast<std::int64_t>(
+        std::filesystem::file_size(checkpoint::unfinished_checkpoint(context_.directory, step) / part.file, ignored));
   m.frames = frames_;
   m.segments = checkpoint::segments_until(step, wall_clock() - begin_,
                                           cards_[scenario::terrain_rank(scenario_)].threads, context_.resume);
@@ -119,8 +118,7 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
     try {
       fault_point("checkpoint.manifest");
       output::sync_frames(context_.directory);  // those before the checkpoint are not made again
-      checkpoint::complete_checkpoint(context_.directory, manifest(step, std::move(parts)),
-                                      scenario_.checkpoint.keep);
+      checkpoint::complete_checkpoint(context_.directory, manifest(step, std::move(parts)), scenario_.checkpoint.keep);
       fault_point("checkpoint.done");
       return;
     } catch (const Error& error) {

@@ -20,9 +20,8 @@ void visit_fields(Visit&& visit, FieldsOf<NodeCost> auto& s) {
 class CheckpointWriter {
  public:
   /// @param cost returns what this node has used until now
-  CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport,
-                   const RunContext& context, std::span<const NodeCard> cards,
-                   std::function<NodeCost()> cost);
+  CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport, const RunContext& context,
+                   std::span<const NodeCard> cards, std::function<NodeCost()> cost);
 
   /// All ranks call it at the same step. One that cannot be written leaves those before it in place: the user is warned
   /// and the run continues.

@@ -16,13 +16,11 @@ constexpr double kNothing = 1e-12;   // N s
 
 void ImpulseLedger::settle(const NodalForces& reported, double duration) {
   FURROW_ASSERT(duration > 0.0, duration);
-  FURROW_ASSERT(reported.force.size() == reported.vertex.size(), reported.force.size(),
-                reported.vertex.size());
-  FURROW_ASSERT(std::all_of(reported.vertex.begin(), reported.vertex.end(),
-                            [&](int v) { return in_range(v, owed_.size()); }),
-                owed_.size());
-  for (std::size_t k = 0; k < reported.vertex.size(); ++k)
-    owed_[reported.vertex[k]] -= duration * reported.force[k];
+  FURROW_ASSERT(reported.force.size() == reported.vertex.size(), reported.force.size(), reported.vertex.size());
+  FURROW_ASSERT(
+      std::all_of(reported.vertex.begin(), reported.vertex.end(), [&](int v) { return in_range(v, owed_.size()); }),
+      owed_.size());
+  for (std::size_t k = 0; k < reported.vertex.size(); ++k) owed_[reported.vertex[k]] -= duration * reported.force[k];
   settled_ = sum().norm();
   largest_ = std::max(largest_, settled_);
 }
@@ -52,9 +50,8 @@ void ImpulseLedger::hand_back(NodalForces& forces, double duration) {
 void ImpulseLedger::book(const NodalForces& acted, double duration) {
   FURROW_ASSERT(duration > 0.0, duration);
   FURROW_ASSERT(acted.force.size() == acted.vertex.size(), acted.force.size(), acted.vertex.size());
-  FURROW_ASSERT(
-      std::all_of(acted.vertex.begin(), acted.vertex.end(), [&](int v) { return in_range(v, owed_.size()); }),
-      owed_.size());
+  FURROW_ASSERT(std::all_of(acted.vertex.begin(), acted.vertex.end(), [&](int v) { return in_range(v, owed_.size()); }),
+                owed_.size());
   for (std::size_t k = 0; k < acted.vertex.size(); ++k) owed_[acted.vertex[k]] += duration * acted.force[k];
 }
 

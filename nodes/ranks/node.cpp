@@ -29,8 +29,7 @@ std::string when(const StepHeader& header) {
 }
 
 checkpoint::FrameClock frame_clock(const scenario::Scenario& scenario, const RunContext& context) {
-  const std::int64_t every =
-      context.directory.empty() ? 0 : scenario.run.steps_in(scenario.output.frame_interval);
+  const std::int64_t every = context.directory.empty() ? 0 : scenario.run.steps_in(scenario.output.frame_interval);
   if (!context.resume) return {every, 0, 0};
   const checkpoint::CheckpointManifest& manifest = context.resume->manifest;
   return output::continued_frames(context.directory, manifest, every);

@@ -59,8 +59,7 @@ class Node {
 };
 
 std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario);
-std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index,
-                                     std::function<void()> alive);
+std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index, std::function<void()> alive);
 /// @param group of a terrain of several ranks, whose leader this is; null: it is the only one
 std::unique_ptr<Node> make_terrain_node(const scenario::Scenario& scenario, int threads,
                                         std::shared_ptr<RankGroup> group = nullptr);

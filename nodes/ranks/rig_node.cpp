@@ -39,8 +39,7 @@ class RigNode : public Node {
   }
 
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
-    FURROW_ASSERT(cards.size() >= static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(),
-                  rig_->wheel_count());
+    FURROW_ASSERT(cards.size() >= static_cast<std::size_t>(rig_->wheel_count()) + 2, cards.size(), rig_->wheel_count());
     context_ = context;
     cards_.assign(cards.begin(), cards.end());
     const int wheels = rig_->wheel_count();
@@ -51,8 +50,7 @@ class RigNode : public Node {
     std::vector<double> height(wheels);
     for (int k = 0; k < wheels; ++k)
       height[k] = setup_.top_height[k] + cards[1 + k].tire_reach +
-                  std::min(kPlacementShare * cards[1 + k].tire_radius, kMostPlacementGap) +
-                  scenario_.drop_height;
+                  std::min(kPlacementShare * cards[1 + k].tire_radius, kMostPlacementGap) + scenario_.drop_height;
     rig_->place(height);
     const std::optional<terrain::TerrainBounds> bin = scenario_.terrain->describe().bounds;
     if (bin && scenario_.rig->stop_before_wall() > 0.0)
@@ -64,8 +62,8 @@ class RigNode : public Node {
       std::vector<output::Table> tables;
       for (const output::SubjectSeries& series : series_) tables.push_back(series.empty_table());
       tables.push_back(output::Accounts::empty_table());
-      results_ = std::make_unique<output::Results>(scenario_, cards_, setup_, context.directory,
-                                                   std::move(tables), context.resume);
+      results_ = std::make_unique<output::Results>(scenario_, cards_, setup_, context.directory, std::move(tables),
+                                                   context.resume);
     }
     for (int k = 0; k < wheels; ++k)
       send(transport, Address{Role::tire, k}, RimMotion{{kPlacement, 0.0}, rig_->rim(k)});
@@ -122,18 +120,16 @@ class RigNode : public Node {
 
   void finish(Transport& transport, FinalReport own, bool stopped) override {
     std::vector<FinalReport> reports{own};
-    for (std::size_t i = 1; i < cards_.size(); ++i)
-      reports.push_back(receive<FinalReport>(transport, cards_[i].self));
+    for (std::size_t i = 1; i < cards_.size(); ++i) reports.push_back(receive<FinalReport>(transport, cards_[i].self));
     if (!results_) return;
     check_folder();
     if (context_.profile) launch::add_to_run_list(context_.directory, {"profile.json"});
     if (context_.profile) output::write_profile(context_.directory / "profile.json", reports);
     const std::vector<output::WheelEnd> wheels = wheel_ends();
     flush();
-    const std::string lost_frames =
-        results_->finish({reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_,
-                          end_reason_, rig_->findings()},
-                         stopped);
+    const std::string lost_frames = results_->finish(
+        {reports, wheels, terrain_, *accounts_, time_, wall_clock() - wall_start_, end_reason_, rig_->findings()},
+        stopped);
     if (!lost_frames.empty() && context_.note)
       context_.note(fmt::format("warning: {}/{}", context_.directory.string(), lost_frames));
   }
@@ -191,8 +187,7 @@ class RigNode : public Node {
   std::vector<WheelPlace> wheel_places() const {
     std::vector<WheelPlace> places;
     for (int k = 0; k < rig_->wheel_count(); ++k)
-      places.push_back(
-          {rig_->rim(k).position, rig_->heading(k), cards_[1 + k].tire_radius, cards_[1 + k].tire_width});
+      places.push_back({rig_->rim(k).position, rig_->heading(k), cards_[1 + k].tire_radius, cards_[1 + k].tire_width});
     return places;
   }
 
@@ -236,8 +231,7 @@ class RigNode : public Node {
     const std::vector<rigs::Subject> subjects = rig_->subjects();
     for (int k = 0; k < static_cast<int>(subjects.size()); ++k) {
       std::optional<output::SeriesBuilder> wheel;
-      if (k < rig_->wheel_count())
-        wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
+      if (k < rig_->wheel_count()) wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
       series_.emplace_back(subjects[k], std::move(wheel));
     }
     std::vector<MassProperties> added;
@@ -259,8 +253,8 @@ class RigNode : public Node {
   void measure(const StepHeader& header, const TerrainReport& terrain) {
     for (int k = 0; k < static_cast<int>(series_.size()); ++k)
       if (k < rig_->wheel_count())
-        series_[k].add({header.time, rig_->report(k), rig_->rim(k), tires_[k], terrain.contact[k],
-                        terrain.state, setup_.grains, rig_->heading(k)},
+        series_[k].add({header.time, rig_->report(k), rig_->rim(k), tires_[k], terrain.contact[k], terrain.state,
+                        setup_.grains, rig_->heading(k)},
                        *rig_, k);
       else
         series_[k].add(header.time, *rig_, k);
@@ -282,9 +276,9 @@ class RigNode : public Node {
   void flush() {
     for (const std::string& name : results_->flush())
       if (context_.note)
-        context_.note(fmt::format(
-            "warning: {} was removed or changed while the run was under way, and is written again",
-            (context_.directory / name).string()));
+        context_.note(
+            fmt::format("warning: {} was removed or changed while the run was under way, and is written again",
+                        (context_.directory / name).string()));
   }
 
   void show_progress(const StepHeader& header) {
@@ -332,8 +326,6 @@ class RigNode : public Node {
 
 }  // namespace
 
-std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario) {
-  return std::make_unique<RigNode>(scenario);
-}
+std::unique_ptr<Node> make_rig_node(const scenario::Scenario& scenario) { return std::make_unique<RigNode>(scenario); }
 
 }  // namespace furrow::ranks

@@ -74,8 +74,8 @@ class RunLoop {
       before_ = restore_cost(saved);
       from_ = context_.resume->manifest.step;
     }
-    node_ = make_node(scenario_, transport_.self(), context_.threads, [this] { show_life(); },
-                      make_terrain_group(transport_));
+    node_ = make_node(
+        scenario_, transport_.self(), context_.threads, [this] { show_life(); }, make_terrain_group(transport_));
     NodeCard card = node_->card();
     card.threads = context_.threads;
     card.from_step = from_;
@@ -130,8 +130,7 @@ class RunLoop {
     const double wait = transport_.wait_clock().waited_s - waited_start_;
     // Nearly all waiting is for messages; the little that checkpoints wait for each other is none of them.
     const double communicate = std::max(0.0, profile_.exchanging() - wait);
-    return {before_.cpu_s + cpu_s() - cpu_start_,
-            before_.compute_s + wall_clock() - wall_start_ - wait - communicate,
+    return {before_.cpu_s + cpu_s() - cpu_start_, before_.compute_s + wall_clock() - wall_start_ - wait - communicate,
             before_.communicate_s + communicate, before_.wait_s + wait};
   }
 

@@ -61,9 +61,9 @@ class TerrainFollower final : public Node {
     write_frame(header);
     share(group_.get(), now_);
     if (now_.header.step != header.step)
-      throw Error(ExitCode::rank_lost, fmt::format("{} expected step {} from its leader but got step {}",
-                                                   to_string(Address{Role::terrain, group_->rank()}),
-                                                   header.step, now_.header.step));
+      throw Error(ExitCode::rank_lost,
+                  fmt::format("{} expected step {} from its leader but got step {}",
+                              to_string(Address{Role::terrain, group_->rank()}), header.step, now_.header.step));
   }
 
   void advance(const StepHeader& header) override {

@@ -45,8 +45,7 @@ class TerrainNode : public Node {
     frames_ = frame_clock(scenario_, context);
     const int tires = static_cast<int>(scenario_.tires.size());
     AttachOrder attach;
-    for (int k = 0; k < tires; ++k)
-      attach.surfaces.push_back(receive<SurfaceSetup>(transport, {Role::tire, k}));
+    for (int k = 0; k < tires; ++k) attach.surfaces.push_back(receive<SurfaceSetup>(transport, {Role::tire, k}));
 
     MeasureOrder measure;
     if (context.saved)
@@ -103,8 +102,8 @@ class TerrainNode : public Node {
     FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
     FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
     if (takes_stated_) takes_stated_->state_contacts(stated_);
-    const Outcome outcome = terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps,
-                                              forces_, report_.contact);
+    const Outcome outcome =
+        terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
     report_.state = terrain_->state();
   }
@@ -185,8 +184,7 @@ class TerrainNode : public Node {
   TerrainReport report_;
   TerrainSetup setup_;
   HeightField before_;
-  std::int64_t grains_begin_ =
-      0;  // of this rank; 0: not known, of a checkpoint from before they were counted
+  std::int64_t grains_begin_ = 0;  // of this rank; 0: not known, of a checkpoint from before they were counted
   terrain::TerrainFrame frame_;
   std::filesystem::path directory_;
   launch::HeldFolder* held_ = nullptr;

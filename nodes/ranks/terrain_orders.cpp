@@ -8,8 +8,7 @@
 namespace furrow::ranks {
 namespace {
 
-constexpr double kFootprintShare =
-    0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
+constexpr double kFootprintShare = 0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
 
 }  // namespace
 
@@ -29,8 +28,7 @@ template void share(RankGroup*, MeasureOrder&);
 template void share(RankGroup*, AttachOrder&);
 template void share(RankGroup*, AdvanceOrder&);
 
-ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& transport,
-                              const RunContext& context) {
+ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& transport, const RunContext& context) {
   return [&scenario, &transport, &context](const std::string& what, double share) {
     transport.heartbeat();
     transport.check_peers();
@@ -44,8 +42,8 @@ ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& tra
   };
 }
 
-void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain& terrain,
-                     std::span<const Vec3> rims, std::span<const NodeCard> tires, TerrainSetup& setup) {
+void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain& terrain, std::span<const Vec3> rims,
+                     std::span<const NodeCard> tires, TerrainSetup& setup) {
   const terrain::TerrainDescription description = scenario.terrain->describe();
   const double length = description.bounds ? description.bounds->length : 0.0;
   for (std::size_t k = 0; k < rims.size(); ++k) {
@@ -53,10 +51,9 @@ void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain&
     const double reach = kFootprintShare * tires[k].tire_radius, half = 0.5 * tires[k].tire_width;
     setup.top_height.push_back(
         terrain.top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
-    setup.mean_height.push_back(
-        description.undisturbed_height
-            ? *description.undisturbed_height
-            : terrain.mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
+    setup.mean_height.push_back(description.undisturbed_height
+                                    ? *description.undisturbed_height
+                                    : terrain.mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
   }
 }
 

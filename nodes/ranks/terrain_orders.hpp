@@ -68,13 +68,12 @@ void share(RankGroup* group, M& order);
 
 /// What a rank calls while its terrain prepares itself: it shows that it lives, ends where another has failed or the
 /// user wants it to, and hands progress on.
-ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& transport,
-                              const RunContext& context);
+ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& transport, const RunContext& context);
 
 /// Heights of the terrain under the tires' footprints, into `setup`.
 /// @param tires cards of the tires
-void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain& terrain,
-                     std::span<const Vec3> rims, std::span<const NodeCard> tires, TerrainSetup& setup);
+void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain& terrain, std::span<const Vec3> rims,
+                     std::span<const NodeCard> tires, TerrainSetup& setup);
 
 /// The frame of the whole terrain on its leader, of each rank's own share before.
 void gather_frame(RankGroup* group, terrain::TerrainFrame& frame);

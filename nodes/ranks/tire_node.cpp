@@ -34,8 +34,7 @@ class TireNode : public Node {
         index_(index),
         kind_(scenario.tires.at(index)->describe().kind),
         pressure_(scenario.tires.at(index)->options().pressure),
-        tire_(
-            scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
+        tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
     states_contact_ = dynamic_cast<const tire::StatesContact*>(tire_.get());
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
@@ -152,19 +151,17 @@ class TireNode : public Node {
     if (context.saved->has(std::string(kShown) + "/force"))
       return restore_forces(*context.saved, kShown, tire_->mesh().vertex_count, forces_);
     if (!frames_.due(point.manifest.step)) return;
-    throw io_error(
-        (point.folder / checkpoint::part_name({Role::tire, index_})).string(),
-        fmt::format("lacks '{}', which the frame at t = {:.6g} s shows: the checkpoint is of an earlier "
-                    "version of furrow; continue with that version, or without that frame (another "
-                    "output.frame_interval)",
-                    kShown, point.manifest.time));
+    throw io_error((point.folder / checkpoint::part_name({Role::tire, index_})).string(),
+                   fmt::format("lacks '{}', which the frame at t = {:.6g} s shows: the checkpoint is of an earlier "
+                               "version of furrow; continue with that version, or without that frame (another "
+                               "output.frame_interval)",
+                               kShown, point.manifest.time));
   }
 
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();
     report_.spindle = tire_->spindle_wrench();
-    report_.wrench =
-        carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration, tire_->gravity());
+    report_.wrench = carried_wrench(report_.spindle, tire_->mass_properties(), from, to, duration, tire_->gravity());
     report_.rim_work -= report_.spindle.force.dot(to.position - from.position) +
                         report_.spindle.moment.dot(mean_turn(from.orientation, to.orientation));
     report_.spindle_impulse += duration * report_.spindle.force;
@@ -203,8 +200,7 @@ class TireNode : public Node {
     report_.factorizations = static_cast<std::int64_t>(figures.of("factorizations"));
     report_.residual = figures.of("residual");
     report_.lowest_point = motion_.surface.position.front().z();
-    for (const Vec3& x : motion_.surface.position)
-      report_.lowest_point = std::min(report_.lowest_point, x.z());
+    for (const Vec3& x : motion_.surface.position) report_.lowest_point = std::min(report_.lowest_point, x.z());
     if (!std::isfinite(report_.lowest_point + report_.spindle.force.sum()))
       throw physics_error(to_string(Address{Role::tire, index_}) + ": the state is not finite");
   }
@@ -222,7 +218,7 @@ class TireNode : public Node {
   tire::PressureSchedule pressure_;
   std::unique_ptr<tire::Tire> tire_;
   const tire::StatesContact* states_contact_ = nullptr;  // the same tire, if it does
-  double reach_;  // m
+  double reach_;                                         // m
   tire::RimTrajectory trajectory_;
   RimMotion rim_;
   NodalForces forces_;
@@ -239,8 +235,7 @@ class TireNode : public Node {
 
 }  // namespace
 
-std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index,
-                                     std::function<void()> alive) {
+std::unique_ptr<Node> make_tire_node(const scenario::Scenario& scenario, int index, std::function<void()> alive) {
   return std::make_unique<TireNode>(scenario, index, std::move(alive));
 }
 

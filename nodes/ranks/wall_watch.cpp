@@ -11,8 +11,7 @@ constexpr int kEndWalls = 2;  // come first
 
 }  // namespace
 
-WallWatch::WallWatch(const terrain::TerrainBounds& bounds, double stop_before,
-                     std::span<const WheelPlace> wheels)
+WallWatch::WallWatch(const terrain::TerrainBounds& bounds, double stop_before, std::span<const WheelPlace> wheels)
     : length_(bounds.length), width_(bounds.width) {
   FURROW_ASSERT(stop_before > 0.0, stop_before);
   for (const WheelPlace& wheel : wheels) {
@@ -28,8 +27,8 @@ WallWatch::WallWatch(const terrain::TerrainBounds& bounds, double stop_before,
 WallWatch::Distances WallWatch::distances(const WheelPlace& wheel) const {
   const double x = std::abs(wheel.heading.x()), y = std::abs(wheel.heading.y()), half = 0.5 * wheel.width;
   const double along = wheel.radius * x + half * y, across = wheel.radius * y + half * x;
-  return {wheel.center.x() - along, length_ - wheel.center.x() - along,
-          0.5 * width_ + wheel.center.y() - across, 0.5 * width_ - wheel.center.y() - across};
+  return {wheel.center.x() - along, length_ - wheel.center.x() - along, 0.5 * width_ + wheel.center.y() - across,
+          0.5 * width_ - wheel.center.y() - across};
 }
 
 std::optional<output::EndReason> WallWatch::near(std::span<const WheelPlace> wheels) const {

@@ -12,7 +12,7 @@
 namespace furrow::scenario {
 namespace {
 
-constexpr double kBytesPerRank = 40e6;        // program, MPI and libraries
+constexpr double kBytesPerRank = 40e6;  // program, MPI and libraries
 constexpr double kBytesPerFrameVertex = 100.0;
 constexpr double kBytesPerLine = 900.0;  // of timeseries.csv, and the same again in results.h5
 

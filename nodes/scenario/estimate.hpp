@@ -9,13 +9,13 @@ namespace furrow::scenario {
 
 struct Estimate {
   terrain::TerrainEstimate terrain;
-  std::int64_t steps = 0;        // communication steps
-  std::int64_t coordinates = 0;  // of all tires
-  double memory = 0.0;           // of all ranks, bytes
-  double disk = 0.0;             // of the results, bytes
-  double frames = 0.0;           // that are written
-  double frame_bytes = 0.0;      // of one of them, all ranks
-  double checkpoints = 0.0;      // that are written, those by wall time aside
+  std::int64_t steps = 0;         // communication steps
+  std::int64_t coordinates = 0;   // of all tires
+  double memory = 0.0;            // of all ranks, bytes
+  double disk = 0.0;              // of the results, bytes
+  double frames = 0.0;            // that are written
+  double frame_bytes = 0.0;       // of one of them, all ranks
+  double checkpoints = 0.0;       // that are written, those by wall time aside
   double checkpoint_bytes = 0.0;  // of one of them
 };
 

@@ -30,8 +30,7 @@ std::string value_help(const std::string& key, const json& node) {
   if (node.contains("unit")) line("unit", node["unit"]);
   line("range", Schema::expectation(node));
   if (node.contains("usual"))
-    line("usual",
-         number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));
+    line("usual", number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));
   line("default", node.contains("default") ? value_text(node["default"]) : std::string("none"));
   for (const ModelSection& of : model_sections()) {
     const std::string section = std::string(of.name) + ".";
@@ -51,9 +50,8 @@ std::string explain(const std::string& key) {
   if (!node) {
     const std::vector<std::string> similar = schema.nearest(key);
     throw input_error("explain", key,
-                      similar.empty()
-                          ? "is unknown, expected one of those that 'furrow explain' lists"
-                          : fmt::format("is unknown, expected '{}'?", fmt::join(similar, "' or '")));
+                      similar.empty() ? "is unknown, expected one of those that 'furrow explain' lists"
+                                      : fmt::format("is unknown, expected '{}'?", fmt::join(similar, "' or '")));
   }
   const std::string members = key_list(schema, key);
   return members.empty() ? value_help(key, *node) : key + "\n  " + meaning(*node) + "\n\n" + members;

@@ -50,9 +50,8 @@ std::vector<Pressed> pressed_grains(const Scenario& s, const dem::DemOptions& o)
   for (std::size_t k = 0; k < scales.size(); ++k) {
     FURROW_ASSERT(scales[k].grains.has_value(), k);
     const WheelScales::OnGrains& g = *scales[k].grains;
-    all.push_back(
-        {4.0 * g.pressure * o.radius * o.radius, g.grains_wide * g.grains_long, pair,
-         Contact(dem::mix(material, s.tires[k]->shape().material, dem::Partner::surface, grain, law))});
+    all.push_back({4.0 * g.pressure * o.radius * o.radius, g.grains_wide * g.grains_long, pair,
+                   Contact(dem::mix(material, s.tires[k]->shape().material, dem::Partner::surface, grain, law))});
   }
   return all;
 }
@@ -61,13 +60,12 @@ std::vector<Pressed> pressed_grains(const Scenario& s, const dem::DemOptions& o)
 double share_beyond(const std::vector<Pressed>& wheels, double overlap) {
   double count = 0.0;
   for (const Pressed& wheel : wheels)
-    count += kCount * wheel.grains *
-             std::exp(-std::min(wheel.pair.force(overlap), wheel.tire.force(overlap)) / wheel.force);
+    count +=
+        kCount * wheel.grains * std::exp(-std::min(wheel.pair.force(overlap), wheel.tire.force(overlap)) / wheel.force);
   return 1.0 - std::exp(-count);
 }
 
-void add_refinement(const Scenario& s, const dem::DemOptions& o, const std::vector<Pressed>& wheels,
-                    GrainLoads& to) {
+void add_refinement(const Scenario& s, const dem::DemOptions& o, const std::vector<Pressed>& wheels, GrainLoads& to) {
   dem::StepRefinement refinement(o);
   refinement.set_step(s.terrain_step());
   const double deepest = 2.0 * dem::kDeepestShare * dem::largest_radius(o);
@@ -107,19 +105,17 @@ std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
   // Under a given force Hertz's overlap goes with the modulus as E^(−2/3).
   const double stiffer = std::pow(loads.overlap / kSoundOverlap, 1.5);
   if (loads.on_tire)
-    return Bound{
-        "tire.file",
-        what + fmt::format("expected {} times the contact.young_modulus of the tire's file", digits(stiffer)),
-        wheels};
+    return Bound{"tire.file",
+                 what + fmt::format("expected {} times the contact.young_modulus of the tire's file", digits(stiffer)),
+                 wheels};
   dem::DemOptions other = dem::with_context(*s.terrain->grains(), s.terrain_context());
   const bool hertz = dem::law_from(other.law) == dem::LawKind::mindlin;
   double& stiffness = hertz ? other.young_modulus : other.normal_stiffness;
   stiffness *= stiffer;
   return Bound{
       hertz ? "terrain.young_modulus" : "terrain.normal_stiffness",
-      what + fmt::format("expected about {:.2g} {}, which needs a step of the terrain of at most {:.2g} s",
-                         stiffness, hertz ? "Pa" : "N/m^1.5",
-                         dem::stable_at(other, dem::stated_overlap(other)).step),
+      what + fmt::format("expected about {:.2g} {}, which needs a step of the terrain of at most {:.2g} s", stiffness,
+                         hertz ? "Pa" : "N/m^1.5", dem::stable_at(other, dem::stated_overlap(other)).step),
       wheels};
 }
 

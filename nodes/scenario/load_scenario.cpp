@@ -47,11 +47,9 @@ std::vector<std::string> split(const std::string& key) {
 }
 
 /// Results hold names, in JSON. `what`: "has a name"
-void require_utf8(const std::string& name, const std::string& file, const std::string& key,
-                  const char* what) {
+void require_utf8(const std::string& name, const std::string& file, const std::string& key, const char* what) {
   if (find_invalid_utf8(name) != std::string::npos)
-    throw input_error(file, key,
-                      std::string(what) + " that is not UTF-8, expected one that is: results keep it");
+    throw input_error(file, key, std::string(what) + " that is not UTF-8, expected one that is: results keep it");
 }
 
 /// Puts the value of `--set key=value` into the document, making sections that it lacks.
@@ -65,19 +63,17 @@ void set_value(json& document, const std::string& key, const std::string& text, 
   for (const std::string& part : parts) {
     if (at->is_null()) *at = json::object();
     if (at->is_array()) {
-      const bool index = part.size() < 4 && std::all_of(part.begin(), part.end(),
-                                                        [](unsigned char c) { return std::isdigit(c); });
+      const bool index =
+          part.size() < 4 && std::all_of(part.begin(), part.end(), [](unsigned char c) { return std::isdigit(c); });
       if (!index || std::stoul(part) >= at->size())
         throw input_error(
-            file, key,
-            fmt::format("there is no entry '{}', expected 0 to {}", part, static_cast<int>(at->size()) - 1));
+            file, key, fmt::format("there is no entry '{}', expected 0 to {}", part, static_cast<int>(at->size()) - 1));
       at = &(*at)[std::stoul(part)];
     } else if (at->is_object()) {
       at = &(*at)[part];
     } else {
       throw input_error(
-          file, key,
-          fmt::format("there is nothing below {}, expected a section before '.{}'", value_text(*at), part));
+          file, key, fmt::format("there is nothing below {}, expected a section before '.{}'", value_text(*at), part));
     }
   }
   *at = value;
@@ -117,8 +113,7 @@ std::string engine_to_be(json document, const std::string& file, const Settings&
 
 json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
-  if (!document.is_object())
-    throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
+  if (!document.is_object()) throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
   refuse_other_kinds(document, FileKind::scenario, file);
   // What is said later wins: a soil of the command line replaces what the file says of its soil.
   const std::string soil = "terrain.material", engine = engine_to_be(document, file, settings);
@@ -184,9 +179,8 @@ void take_tires(const json& document, Scenario& s) {
   for (std::size_t k = 0; k < s.tires.size(); ++k) {
     const tire::TireOptions& tire = s.tires[k]->options();
     if (tire.substeps != s.tire_substeps)
-      throw input_error(
-          s.file.string(), fmt::format("tires.{}.substeps", k),
-          fmt::format("is {}, expected {} as for the first tire", tire.substeps, s.tire_substeps));
+      throw input_error(s.file.string(), fmt::format("tires.{}.substeps", k),
+                        fmt::format("is {}, expected {} as for the first tire", tire.substeps, s.tire_substeps));
   }
 }
 
@@ -293,8 +287,7 @@ void make_movable(json& document, const Scenario& s) {
   for (const terrain::TerrainFile& file : s.terrain->files())
     full(document["terrain"][file.key], std::string("terrain.") + file.key);
   for (const rigs::RigFile& file : s.rig->files()) full(document["rig"][file.key], "rig." + file.key);
-  if (document["terrain"].contains(kSoilKey))
-    full(document["terrain"][kSoilKey], std::string("terrain.") + kSoilKey);
+  if (document["terrain"].contains(kSoilKey)) full(document["terrain"][kSoilKey], std::string("terrain.") + kSoilKey);
   if (document.contains("tire")) full(document["tire"]["file"], "tire.file");
   if (document.contains("tires"))
     for (std::size_t k = 0; k < document["tires"].size(); ++k)
@@ -312,8 +305,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   require_utf8(s.name, file.string(), "", "has a name");
   json document = read_document(file.string(), settings);
   s.warnings = complete(document, file.string(), settings);
-  if (const std::string warning = other_grains_warning(document, file); !warning.empty())
-    s.warnings.push_back(warning);
+  if (const std::string warning = other_grains_warning(document, file); !warning.empty()) s.warnings.push_back(warning);
   take_run(document["run"], s);
   read_fields(document["output"], s.output);
   read_fields(document["checkpoint"], s.checkpoint);

@@ -24,17 +24,15 @@ std::string limit_text(const MemoryLimit& limit) {
 void require_memory(const Scenario& scenario) {
   for (const MemoryLimit& limit : {address_space_limit(), memory_limit()})
     if (kSure * scenario.memory.terrain > limit.bytes)
-      throw limit_error(
-          fmt::format("{}: out of memory: the terrain needs about {}, {}; expected fewer grains",
-                      scenario.file.string(), gigabytes(scenario.memory.terrain), limit_text(limit)));
+      throw limit_error(fmt::format("{}: out of memory: the terrain needs about {}, {}; expected fewer grains",
+                                    scenario.file.string(), gigabytes(scenario.memory.terrain), limit_text(limit)));
 }
 
 Error out_of_memory(double needed) {
   const MemoryLimit space = address_space_limit(), memory = memory_limit();
   const bool of_space = space.bytes < memory.bytes;
   std::string text = "out of memory: ";
-  if (needed > 0.0)
-    text += fmt::format("needs about {}, ", gigabytes(needed + (of_space ? kAddressSpace : 0.0)));
+  if (needed > 0.0) text += fmt::format("needs about {}, ", gigabytes(needed + (of_space ? kAddressSpace : 0.0)));
   return limit_error(text + limit_text(of_space ? space : memory));
 }
 

@@ -19,8 +19,8 @@ using nlohmann::json;
 
 // Of the section `terrain` in every scenario that a version before engines had keys of their own has completed; keys of
 // grains and of rigid ground, which nobody states together by hand.
-constexpr std::array<const char*, 6> kOfEarlierVersions{
-    "activity", "allow_unstable_step", "layers", "normal_stiffness", "ground_stiffness", "ground_damping"};
+constexpr std::array<const char*, 6> kOfEarlierVersions{"activity",         "allow_unstable_step", "layers",
+                                                        "normal_stiffness", "ground_stiffness",    "ground_damping"};
 
 bool is_completed(const json& document) {
   if (document.contains("completed_by")) return true;
@@ -40,8 +40,7 @@ std::vector<std::string> foreign_keys(const json& document, const ModelSection& 
   const std::string model = chosen_model(document, of);
   for (const auto& [key, value] : document[of.name].items()) {
     const std::vector<std::string> owners = of.owners(key);
-    if (!owners.empty() && std::find(owners.begin(), owners.end(), model) == owners.end())
-      keys.push_back(key);
+    if (!owners.empty() && std::find(owners.begin(), owners.end(), model) == owners.end()) keys.push_back(key);
   }
   return keys;
 }
@@ -50,8 +49,8 @@ void remove_foreign_keys(json& document, const ModelSection& of) {
   for (const std::string& key : foreign_keys(document, of)) document[of.name].erase(key);
 }
 
-std::string belongs_to_others(const json& document, const ModelSection& of,
-                              const std::vector<std::string>& keys, const std::filesystem::path& file) {
+std::string belongs_to_others(const json& document, const ModelSection& of, const std::vector<std::string>& keys,
+                              const std::filesystem::path& file) {
   std::string text;
   for (const std::string& key : keys) {
     const Error one =
@@ -67,8 +66,7 @@ std::string belongs_to_others(const json& document, const ModelSection& of,
 
 std::span<const ModelSection> model_sections() {
   static const auto sections = std::to_array<ModelSection>({
-      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key,
-       terrain::liggghts::denies},
+      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key, terrain::liggghts::denies},
       {"rig", "type", rigs::RigOptions().type, rigs::kinds_of_key},
   });
   return sections;
@@ -76,21 +74,19 @@ std::span<const ModelSection> model_sections() {
 
 bool chooses_model(const std::string& key) {
   const auto sections = model_sections();
-  return std::any_of(sections.begin(), sections.end(), [&](const ModelSection& of) {
-    return key == fmt::format("{}.{}", of.name, of.chooser);
-  });
+  return std::any_of(sections.begin(), sections.end(),
+                     [&](const ModelSection& of) { return key == fmt::format("{}.{}", of.name, of.chooser); });
 }
 
-std::vector<std::string> set_aside_keys(json& document, const Schema& schema,
-                                        const std::filesystem::path& file,
+std::vector<std::string> set_aside_keys(json& document, const Schema& schema, const std::filesystem::path& file,
                                         const std::vector<std::pair<std::string, std::string>>& settings,
                                         std::span<const ModelSection> sections) {
   const bool completed = is_completed(document);
   std::vector<std::string> warnings;
   for (const ModelSection& of : sections) {
     const std::string chooser = fmt::format("{}.{}", of.name, of.chooser);
-    const bool chosen = std::any_of(settings.begin(), settings.end(),
-                                    [&](const auto& setting) { return setting.first == chooser; });
+    const bool chosen =
+        std::any_of(settings.begin(), settings.end(), [&](const auto& setting) { return setting.first == chooser; });
     std::vector<std::string> stated;
     for (const std::string& key : foreign_keys(document, of)) {
       const json* node = schema.find(fmt::format("{}.{}", of.name, key));
@@ -101,11 +97,10 @@ std::vector<std::string> set_aside_keys(json& document, const Schema& schema,
       throw Error(ExitCode::bad_input, belongs_to_others(document, of, stated, file));
     remove_foreign_keys(document, of);
     if (!stated.empty())
-      warnings.emplace_back(
-          input_error(file.string(), chooser,
-                      fmt::format("is '{}'; keys of other {}s are ignored: {}", chosen_model(document, of),
-                                  of.chooser, fmt::join(stated, ", ")))
-              .what());
+      warnings.emplace_back(input_error(file.string(), chooser,
+                                        fmt::format("is '{}'; keys of other {}s are ignored: {}",
+                                                    chosen_model(document, of), of.chooser, fmt::join(stated, ", ")))
+                                .what());
   }
   return warnings;
 }

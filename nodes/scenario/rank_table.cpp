@@ -20,9 +20,8 @@ std::vector<RankEntry> rank_table(const Scenario& s) {
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   table.push_back({0, "rig", fmt::format("{}; writes the results; 1 thread", describe_rig(s, tires).text)});
   for (std::size_t k = 0; k < s.tires.size(); ++k)
-    table.push_back(
-        {static_cast<int>(k) + 1, fmt::format("tire {}", k),
-         fmt::format("{}, {}; 1 thread", s.tires[k]->options().file.filename().string(), tires[k].name)});
+    table.push_back({static_cast<int>(k) + 1, fmt::format("tire {}", k),
+                     fmt::format("{}, {}; 1 thread", s.tires[k]->options().file.filename().string(), tires[k].name)});
   const std::string threads = s.run.threads > 0
                                   ? fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "")
                               : s.terrain->estimate(s.terrain_context()).grains >= kManyGrains
@@ -30,8 +29,8 @@ std::vector<RankEntry> rank_table(const Scenario& s) {
                                   : "as many threads as there are cores left";
   const std::string what = s.terrain->describe().name;
   for (int i = 0; i < s.terrain_ranks; ++i)
-    table.push_back({static_cast<int>(table.size()), to_string(Address{Role::terrain, i}, s.terrain_ranks),
-                     what + "; " + threads});
+    table.push_back(
+        {static_cast<int>(table.size()), to_string(Address{Role::terrain, i}, s.terrain_ranks), what + "; " + threads});
   return table;
 }
 
@@ -61,18 +60,15 @@ std::string shell_quoted(const std::string& argument) {
   return quoted;
 }
 
-std::string shell_path(const std::string& path) {
-  return shell_quoted(path.starts_with('-') ? "./" + path : path);
-}
+std::string shell_path(const std::string& path) { return shell_quoted(path.starts_with('-') ? "./" + path : path); }
 
 std::string launch_lines(const Scenario& scenario, const std::vector<std::string>& arguments) {
   const std::size_t ranks = rank_table(scenario).size();
   std::string tail;
   for (const std::string& argument : arguments) tail += " " + shell_quoted(argument);
   const char* as_root = geteuid() == 0 ? " --allow-run-as-root" : "";
-  return fmt::format(
-      "mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix -K1 --cpu-bind=none{}\n", ranks,
-      as_root, tail, ranks, tail);
+  return fmt::format("mpirun -n {} --oversubscribe --bind-to none{}{}\nsrun -n {} --mpi=pmix -K1 --cpu-bind=none{}\n",
+                     ranks, as_root, tail, ranks, tail);
 }
 
 }  // namespace furrow::scenario

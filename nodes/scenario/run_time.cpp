@@ -30,20 +30,19 @@ constexpr double kJoints = 0.15;       // the same for joints, as if all grains 
 constexpr double kAwake = 1.6;         // tire radii before and behind an axle within which grains are awake
 constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its unknowns
 constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
-constexpr double kMessages =
-    8e-5;  // for each tire, in its rank and in the rig's: to send, receive and write, s
-constexpr double kFewRanks = 3.0;     // for a core: with more of them messages take longer
-constexpr double kCrowd = 0.8;        // by this share with each doubling
-constexpr double kStart = 0.45;       // until mpirun has begun, and until it has ended, s
-constexpr double kRankStart = 0.05;   // of each rank of a core, s
-constexpr double kPairStart = 0.004;  // of each pair of ranks of a core: they find each other, s
+constexpr double kMessages = 8e-5;     // for each tire, in its rank and in the rig's: to send, receive and write, s
+constexpr double kFewRanks = 3.0;      // for a core: with more of them messages take longer
+constexpr double kCrowd = 0.8;         // by this share with each doubling
+constexpr double kStart = 0.45;        // until mpirun has begun, and until it has ended, s
+constexpr double kRankStart = 0.05;    // of each rank of a core, s
+constexpr double kPairStart = 0.004;   // of each pair of ranks of a core: they find each other, s
 constexpr double kFrameFile = 1.6e-3;  // of a frame: made, named and on the disk, s
 constexpr double kPart = 6e-3;         // of a checkpoint: the same, and its checksum, s
-constexpr double kManifest = 1e-3;    // and folders of a checkpoint, and of the one that is removed for it, s
-constexpr double kByte = 2.5e-9;      // of either, s
-constexpr double kVertex = 8e-8;      // of a tire, in the terrain: finding its contacts, messages, s
-constexpr double kLatency = 5e-5;     // until a message is noticed, s
-constexpr int kPlaces = 9;            // along the axles' paths at which the awake share is looked at
+constexpr double kManifest = 1e-3;     // and folders of a checkpoint, and of the one that is removed for it, s
+constexpr double kByte = 2.5e-9;       // of either, s
+constexpr double kVertex = 8e-8;       // of a tire, in the terrain: finding its contacts, messages, s
+constexpr double kLatency = 5e-5;      // until a message is noticed, s
+constexpr int kPlaces = 9;             // along the axles' paths at which the awake share is looked at
 
 /// Mean share of a bin's length that lies near an axle.
 double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
@@ -87,9 +86,7 @@ double settling(const terrain::dem::DemOptions& o) {
 
 /// How much longer messages take where there are several ranks for each core: who has slept finds its caches cold,
 /// and a core goes from one rank to another for each message. Measured with 3 to 66 ranks on two cores.
-double crowd(double ranks_per_core) {
-  return 1.0 + kCrowd * std::max(0.0, std::log2(ranks_per_core / kFewRanks));
-}
+double crowd(double ranks_per_core) { return 1.0 + kCrowd * std::max(0.0, std::log2(ranks_per_core / kFewRanks)); }
 
 /// Of all frames and checkpoints, s. Every rank writes a part of a checkpoint, tires and terrain a file of a frame.
 double writing(const Scenario& s, int ranks, int cores) {
@@ -110,8 +107,7 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
   t.threads = s.run.threads;
   t.ranks = s.terrain_ranks;
   if (t.threads == 0)
-    t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks,
-                                     s.terrain->estimate(s.terrain_context()).grains);
+    t.threads = auto_terrain_threads(t.cores, count, s.terrain_ranks, s.terrain->estimate(s.terrain_context()).grains);
   const int all_ranks = 1 + count + s.terrain_ranks;
   t.writing = writing(s, all_ranks, t.cores);
   const double ranks_per_core = static_cast<double>(all_ranks) / t.cores;

@@ -24,9 +24,9 @@ struct RunTime {
   double terrain = 0.0;      // of it: a rank of the terrain on its threads, s
   double awake = 1.0;        // mean share of the grains that is stepped
   double refined = 0.0;      // share of the time in which the terrain's steps are taken in parts
-  double ghosts = 0.0;  // copies of its neighbours' grains that a rank of the terrain steps beside its own
-  int ranks = 1;        // of the terrain
-  int threads = 1;      // of each of them
+  double ghosts = 0.0;       // copies of its neighbours' grains that a rank of the terrain steps beside its own
+  int ranks = 1;             // of the terrain
+  int threads = 1;           // of each of them
   int cores = 1;
 
   double all() const { return start + bed + run + writing; }

@@ -26,10 +26,8 @@ std::vector<std::string> Scenario::file_hashes() const {
 
 std::vector<InputFile> Scenario::input_files() const {
   std::vector<InputFile> files;
-  for (std::size_t k = 0; k < tires.size(); ++k)
-    files.push_back({tire_key(k, "file"), tires[k]->options().file});
-  for (const terrain::TerrainFile& file : terrain->files())
-    files.push_back({"terrain." + file.key, file.path});
+  for (std::size_t k = 0; k < tires.size(); ++k) files.push_back({tire_key(k, "file"), tires[k]->options().file});
+  for (const terrain::TerrainFile& file : terrain->files()) files.push_back({"terrain." + file.key, file.path});
   for (const rigs::RigFile& file : rig->files()) files.push_back({"rig." + file.key, file.path});
   for (std::size_t k = 0; k < tires.size(); ++k)
     for (const std::filesystem::path& file : tire::files_of(*tires[k])) files.push_back({tire_key(k, "file"), file});

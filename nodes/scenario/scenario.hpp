@@ -126,15 +126,14 @@ struct InputFile {
 
 struct Scenario {
   std::filesystem::path file;
-  std::string name;  // file name without extension
-  std::string
-      completed;       // the whole scenario as JSON text with defaults filled in; can be read from any folder
-  std::string digest;  // hash of all in `completed` that decides the results, and of the tire files
+  std::string name;       // file name without extension
+  std::string completed;  // the whole scenario as JSON text with defaults filled in; can be read from any folder
+  std::string digest;     // hash of all in `completed` that decides the results, and of the tire files
   std::shared_ptr<const rigs::RigSpec> rig = rigs::drawbar_spec({{}});
   int rig_substeps = 1;
   double drop_height = 0.0;                                  // of all tires above the ground at t = 0, m
   std::vector<std::shared_ptr<const tire::TireSpec>> tires;  // one per wheel
-  bool tires_listed = false;  // as entries of `tires`, not by one `tire` for all
+  bool tires_listed = false;                                 // as entries of `tires`, not by one `tire` for all
   int tire_substeps = 1;
   std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
   int terrain_ranks = 1;

@@ -26,7 +26,7 @@ constexpr double kMinGrains = 4.0;    // radii that the bin must measure at leas
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kGigabyte = 1e9;
 constexpr double kWallShare = 0.05, kMostWallMargin = 0.02;  // of the tire's radius; m
-constexpr double kRounding = 1e-9;  // relative, of times that people write as decimals
+constexpr double kRounding = 1e-9;                           // relative, of times that people write as decimals
 
 /// Without what binary rounding added: 0.30000000000000004 as 0.3.
 double short_decimal(double value) { return std::stod(fmt::format("{:.9g}", value)); }
@@ -41,8 +41,7 @@ class Checks {
   /// Once: of several wheels on the same tire each has the same to say.
   void warn(const std::string& file, const std::string& key, const std::string& what) {
     const std::string text = input_error(file, key, what).what();
-    if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end())
-      s_.warnings.push_back(text);
+    if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end()) s_.warnings.push_back(text);
   }
 
   void times();
@@ -74,16 +73,14 @@ class Checks {
 void Checks::times() {
   const RunOptions& run = s_.run;
   if (run.end < run.step)
-    throw wrong("run.end", fmt::format("is {} s, expected at least one run.step of {} s",
-                                       number_text(run.end), number_text(run.step)));
+    throw wrong("run.end", fmt::format("is {} s, expected at least one run.step of {} s", number_text(run.end),
+                                       number_text(run.step)));
   if (run.end / run.step > kMaxSteps)
-    throw wrong("run.end",
-                fmt::format("{} s are {:.2g} steps of {} s, expected at most {:g} steps",
-                            number_text(run.end), run.end / run.step, number_text(run.step), kMaxSteps));
+    throw wrong("run.end", fmt::format("{} s are {:.2g} steps of {} s, expected at most {:g} steps",
+                                       number_text(run.end), run.end / run.step, number_text(run.step), kMaxSteps));
   if (run.average_from >= run.end)
-    throw wrong("run.average_from",
-                fmt::format("is {} s, expected a window that begins before the run ends at {} s",
-                            number_text(run.average_from), number_text(run.end)));
+    throw wrong("run.average_from", fmt::format("is {} s, expected a window that begins before the run ends at {} s",
+                                                number_text(run.average_from), number_text(run.end)));
   const double first_line = s_.output.series_interval;
   if (run.end - run.average_from < first_line * (1.0 - kRounding))
     throw wrong("output.series_interval",
@@ -126,21 +123,17 @@ void Checks::tires() {
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     const double share = tires_[k].step_share, tau = tires_[k].damping_time;
     if (share > 0.0 && tau == 0.0)
-      warn(
-          s_.tire_key(k, "structural_damping"),
-          fmt::format(
-              "is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
-              "least {} s for a run.step of {} s",
-              number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
+      warn(s_.tire_key(k, "structural_damping"),
+           fmt::format("is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
+                       "least {} s for a run.step of {} s",
+                       number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
     else if (share > 0.0 && s_.run.step > share * tau)
       warn("run.step",
-           fmt::format("{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
-                       "step late and can feed the tire; expected at most {} s{}",
-                       number_text(s_.run.step), share, number_text(tau),
-                       number_text(short_decimal(share * tau)),
-                       tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent
-                           ? ", or tire.contact_tangent"
-                           : ""));
+           fmt::format(
+               "{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
+               "step late and can feed the tire; expected at most {} s{}",
+               number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
+               tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent ? ", or tire.contact_tangent" : ""));
   }
   const rigs::RigDescription rig = describe();
   if (rig.speeds_up_until > s_.run.average_from + 1e-12)
@@ -171,13 +164,12 @@ void Checks::tire_options(std::size_t wheel) {
 void Checks::require_level_ground(std::size_t wheel, const std::string& why) {
   const auto* allows = dynamic_cast<const terrain::AllowsStatedContacts*>(s_.terrain.get());
   const terrain::AllowsStatedContacts::Refusal refusal =
-      allows ? allows->refuses_stated_contacts()
-             : terrain::AllowsStatedContacts::Refusal{
-                   "engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
+      allows
+          ? allows->refuses_stated_contacts()
+          : terrain::AllowsStatedContacts::Refusal{"engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
   if (!refusal.text.empty())
-    throw wrong("terrain." + refusal.key,
-                fmt::format("{}: {} is a {}, {}", refusal.text, s_.tire_key(wheel, "file"),
-                            in_words(tires_[wheel]), why));
+    throw wrong("terrain." + refusal.key, fmt::format("{}: {} is a {}, {}", refusal.text, s_.tire_key(wheel, "file"),
+                                                      in_words(tires_[wheel]), why));
 }
 
 void Checks::room() {
@@ -191,14 +183,12 @@ void Checks::room() {
     const double off = std::abs(wheel.lateral), margin = wall_margin(tire.radius);
     const double width = 2.0 * (wheel.across + off + margin), length = 2.0 * (wheel.along + margin);
     if (width > terrain_.bounds->width)
-      throw wrong("terrain.width",
-                  fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
-                              number_text(terrain_.bounds->width), width, tire.width,
-                              off > 0.0 ? fmt::format(", {:.3f} m off the middle", off) : ""));
+      throw wrong("terrain.width", fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
+                                               number_text(terrain_.bounds->width), width, tire.width,
+                                               off > 0.0 ? fmt::format(", {:.3f} m off the middle", off) : ""));
     if (length > terrain_.bounds->length)
-      throw wrong("terrain.length",
-                  fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
-                              number_text(terrain_.bounds->length), length, 2.0 * tire.radius));
+      throw wrong("terrain.length", fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
+                                                number_text(terrain_.bounds->length), length, 2.0 * tire.radius));
     if (terrain_.grain_radius > kCoarseGrain * tire.radius)
       warn("terrain.radius", fmt::format("grains of {} m are coarse under a tire of radius {} m",
                                          number_text(terrain_.grain_radius), number_text(tire.radius)));
@@ -222,11 +212,10 @@ void Checks::ranks() {
                        "nodes; more ranks than cores are slower",
                        s_.terrain_ranks, cores, cores > 1 ? "s" : ""));
   if (s_.terrain_ranks <= terrain_.most_ranks) return thin_parts();
-  throw wrong(
-      "terrain.ranks",
-      fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
-                  terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1",
-                  terrain_.engine, terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
+  throw wrong("terrain.ranks",
+              fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
+                          terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1", terrain_.engine,
+                          terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
 }
 
 /// A rank exchanges grains with its next neighbours.
@@ -236,11 +225,10 @@ void Checks::thin_parts() {
   if (length < s_.terrain_ranks * least && s_.terrain_ranks > 1)
     throw wrong(
         "terrain.ranks",
-        fmt::format(
-            "is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three "
-            "grains",
-            s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length),
-            number_text(least)));
+        fmt::format("is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three "
+                    "grains",
+                    s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length),
+                    number_text(least)));
 }
 
 void Checks::bin() {
@@ -249,8 +237,8 @@ void Checks::bin() {
   for (const auto& [key, size] :
        {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})
     if (size < least)
-      throw wrong(key, fmt::format("is {} m, expected at least {} m, two grains", number_text(size),
-                                   number_text(least)));
+      throw wrong(key,
+                  fmt::format("is {} m, expected at least {} m, two grains", number_text(size), number_text(least)));
 }
 
 /// What is wrong with the start of a wheel that stands in a wall of the bin.
@@ -264,17 +252,15 @@ Error Checks::in_a_wall(const rigs::WheelDescription& wheel) const {
   }
   const double low = behind, high = length - ahead;
   if (low > high)
-    return wrong(
-        "terrain.length",
-        fmt::format("is {} m, expected at least {:.2f} m: from the first to the last tire "
-                    "the rig is {:.2f} m long",
-                    number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind));
-  return wrong(
-      wheel.start_key,
-      fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall "
-                  "of the bin",
-                  number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
-                  wheel.name.empty() ? "" : wheel.name + " with ", wheel.along));
+    return wrong("terrain.length",
+                 fmt::format("is {} m, expected at least {:.2f} m: from the first to the last tire "
+                             "the rig is {:.2f} m long",
+                             number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind));
+  return wrong(wheel.start_key,
+               fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall "
+                           "of the bin",
+                           number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
+                           wheel.name.empty() ? "" : wheel.name + " with ", wheel.along));
 }
 
 void Checks::start() {
@@ -296,11 +282,10 @@ void Checks::start() {
       const double behind =
           wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
       const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
-      throw wrong(
-          "terrain.length",
-          fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
-                      "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                      number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0));
+      throw wrong("terrain.length",
+                  fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
+                              "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                              number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0));
     }
   }
 }
@@ -310,34 +295,28 @@ void Checks::overlaps() {
   const std::vector<rigs::WheelDescription> wheels = describe().wheels;
   for (std::size_t k = 1; k < tires_.size(); ++k)
     for (std::size_t i = 0; i < k; ++i) {
-      const double along = tires_[i].radius + tires_[k].radius,
-                   across = 0.5 * (tires_[i].width + tires_[k].width);
+      const double along = tires_[i].radius + tires_[k].radius, across = 0.5 * (tires_[i].width + tires_[k].width);
       if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
       const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
       if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
       if (wheels[k].start_key == wheels[i].start_key && !rig_.files().empty())  // which places both of them
-        throw wrong(
-            "rig." + rig_.files().front().key,
-            fmt::format(
-                "has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
-                "between their mid-planes",
-                wheels[k].name, wheels[i].name, along, across));
-      throw wrong(
-          wheels[k].start_key,
-          fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
-                      "{:.2f} m between their mid-planes (lateral)",
-                      i, along, across));
+        throw wrong("rig." + rig_.files().front().key,
+                    fmt::format("has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
+                                "between their mid-planes",
+                                wheels[k].name, wheels[i].name, along, across));
+      throw wrong(wheels[k].start_key,
+                  fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
+                              "{:.2f} m between their mid-planes (lateral)",
+                              i, along, across));
     }
 }
 
 void Checks::step() {
   const terrain::TerrainEstimate estimate = s_.terrain->estimate(s_.terrain_context());
   if (s_.terrain_step() <= estimate.stable_step) return;
-  const std::string what =
-      fmt::format("{} s is above the stable step of {:.3g} s ({})", number_text(s_.terrain_step()),
-                  estimate.stable_step, estimate.stable_reason);
-  if (terrain_.unstable_step_allowed)
-    return warn("run.step", what + ", allowed by terrain.allow_unstable_step");
+  const std::string what = fmt::format("{} s is above the stable step of {:.3g} s ({})", number_text(s_.terrain_step()),
+                                       estimate.stable_step, estimate.stable_reason);
+  if (terrain_.unstable_step_allowed) return warn("run.step", what + ", allowed by terrain.allow_unstable_step");
   throw wrong("run.step", what + ", expected a smaller step, more terrain.substeps or softer grains");
 }
 
@@ -349,9 +328,8 @@ void Checks::machine() {
     warn("", fmt::format("needs about {:.1f} GB of memory, this machine has {:.1f} GB free",
                          estimate.memory / kGigabyte, here.memory_free / kGigabyte));
   if (here.disk_free > 0.0 && estimate.disk > here.disk_free)
-    warn("output.frame_interval",
-         fmt::format("results need about {:.1f} GB of disk, there are {:.1f} GB free here",
-                     estimate.disk / kGigabyte, here.disk_free / kGigabyte));
+    warn("output.frame_interval", fmt::format("results need about {:.1f} GB of disk, there are {:.1f} GB free here",
+                                              estimate.disk / kGigabyte, here.disk_free / kGigabyte));
 }
 
 }  // namespace

@@ -26,9 +26,7 @@ using nlohmann::json;
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53
 constexpr std::size_t kMaxProblems = 20;          // that are reported at once
 
-std::string joined(const std::string& path, const std::string& name) {
-  return path.empty() ? name : path + "." + name;
-}
+std::string joined(const std::string& path, const std::string& name) { return path.empty() ? name : path + "." + name; }
 
 bool allows(const json& node, const std::string& type) {
   if (!node.contains("type")) return true;
@@ -123,8 +121,7 @@ const json& Schema::resolved(const json& node) const {
 }
 
 const json* Schema::member(const json& node, const std::string& name) const {
-  if (node.contains("properties") && node["properties"].contains(name))
-    return &resolved(node["properties"][name]);
+  if (node.contains("properties") && node["properties"].contains(name)) return &resolved(node["properties"][name]);
   const bool index =
       !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
   return index && node.contains("items") ? &resolved(node["items"]) : nullptr;
@@ -166,11 +163,9 @@ std::string Schema::expectation(const json& node) {
   std::vector<std::string> words;
   const std::string bounds = range(node);
   const bool whole = allows(node, "integer") && !allows(node, "number");
-  if (node.contains("minimum") && node.contains("maximum") && node["minimum"] == node["maximum"])
-    return bounds;
+  if (node.contains("minimum") && node.contains("maximum") && node["minimum"] == node["maximum"]) return bounds;
   if (whole || allows(node, "number"))
-    words.push_back(
-        with_unit((whole ? "a whole number" : "a number") + (bounds.empty() ? "" : ", " + bounds), node));
+    words.push_back(with_unit((whole ? "a whole number" : "a number") + (bounds.empty() ? "" : ", " + bounds), node));
   if (allows(node, "string")) {
     const auto pattern = node.value("pattern", std::string());
     words.push_back(pattern.size() > 2           ? "'" + pattern.substr(1, pattern.size() - 2) + "'"
@@ -184,10 +179,9 @@ std::string Schema::expectation(const json& node) {
   return fmt::format("{}", fmt::join(words, " or "));
 }
 
-void Schema::describe(const json& node, const json& value, const std::string& path,
-                      std::vector<Problem>& out) const {
-  const bool listed = !node.contains("enum") ||
-                      std::find(node["enum"].begin(), node["enum"].end(), value) != node["enum"].end();
+void Schema::describe(const json& node, const json& value, const std::string& path, std::vector<Problem>& out) const {
+  const bool listed =
+      !node.contains("enum") || std::find(node["enum"].begin(), node["enum"].end(), value) != node["enum"].end();
   if (!has_allowed_type(node, value) || !listed || !in_range(node, value)) {
     const std::string shown = value.is_number() ? with_unit(value_text(value), node) : value_text(value);
     out.push_back({path, "is " + shown + ", expected " + expectation(node)});
@@ -253,8 +247,7 @@ void Schema::normalize(json& value, const json& node) const {
     }
     return;
   }
-  if (value.is_string() && node.contains("formerly"))
-    value = node["formerly"].value(value.get<std::string>(), value);
+  if (value.is_string() && node.contains("formerly")) value = node["formerly"].value(value.get<std::string>(), value);
   if (!value.is_number()) return;
   if (allows(node, "number"))
     value = value.get<double>();
@@ -268,8 +261,7 @@ std::vector<Problem> Schema::unusual(const json& document) const {
   return found;
 }
 
-void Schema::unusual(const json& value, const json& node, const std::string& path,
-                     std::vector<Problem>& out) const {
+void Schema::unusual(const json& value, const json& node, const std::string& path, std::vector<Problem>& out) const {
   if (value.is_structured()) {
     std::size_t index = 0;
     for (auto it = value.begin(); it != value.end(); ++it, ++index) {
@@ -279,17 +271,15 @@ void Schema::unusual(const json& value, const json& node, const std::string& pat
     return;
   }
   if (!value.is_number() || !node.contains("usual")) return;
-  const double x = value.get<double>(), low = node["usual"][0].get<double>(),
-               high = node["usual"][1].get<double>();
+  const double x = value.get<double>(), low = node["usual"][0].get<double>(), high = node["usual"][1].get<double>();
   const bool small = low >= 0.0 ? std::abs(x) < low : x < low;
   if (x == 0.0 || (!small && x <= high)) return;
   const double meant = likely_meaning(x, std::max(low, 0.0), high);
   out.push_back(
       {path,
-       fmt::format(
-           "{} is unusually {}, usual is {} to {}{}", with_unit(number_text(x), node),
-           small ? "small" : "large", number_text(low), with_unit(number_text(high), node),
-           std::isfinite(meant) && low > 0.0 ? fmt::format(": did you mean {}?", number_text(meant)) : "")});
+       fmt::format("{} is unusually {}, usual is {} to {}{}", with_unit(number_text(x), node),
+                   small ? "small" : "large", number_text(low), with_unit(number_text(high), node),
+                   std::isfinite(meant) && low > 0.0 ? fmt::format(": did you mean {}?", number_text(meant)) : "")});
 }
 
 void Schema::fill_defaults(json& document) const { fill_defaults(document, root_); }

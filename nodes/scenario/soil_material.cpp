@@ -62,9 +62,8 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   const std::vector<std::string> of_soil = terrain::terrain_keys(role::soil);
   for (const auto& [key, value] : soil["terrain"].items())
     if (std::find(of_soil.begin(), of_soil.end(), key) == of_soil.end())
-      throw input_error(
-          name, "terrain." + key,
-          fmt::format("is not a property of soil, expected one of {}", fmt::join(of_soil, ", ")));
+      throw input_error(name, "terrain." + key,
+                        fmt::format("is not a property of soil, expected one of {}", fmt::join(of_soil, ", ")));
   json alone{{"terrain", soil["terrain"]}};
   const Schema schema = Schema::load();
   schema.normalize(alone);
@@ -96,8 +95,7 @@ void apply_soil_material(json& document, const std::filesystem::path& scenario, 
     if (!document["terrain"].contains(key)) document["terrain"][key] = value;
 }
 
-void override_soil_material(json& document, const std::filesystem::path& scenario,
-                            const std::string& engine) {
+void override_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const json soil = named_material(document, scenario, engine);
   for (const auto& [key, value] : soil.items()) document["terrain"][key] = value;
 }

@@ -21,12 +21,10 @@ nlohmann::json read_soil_material(const std::filesystem::path& file);
 /// Puts the values of the soil named by `terrain.material` into a scenario, beneath those the scenario states itself.
 /// `scenario`: its file, for messages and as the first place to look in. `engine`: whose keys are wanted.
 /// @throws Error(bad_input) when the engine takes soil files and this one has no value for it
-void apply_soil_material(nlohmann::json& document, const std::filesystem::path& scenario,
-                         const std::string& engine);
+void apply_soil_material(nlohmann::json& document, const std::filesystem::path& scenario, const std::string& engine);
 
 /// The same for a soil named on the command line: in place of those the scenario states.
-void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario,
-                            const std::string& engine);
+void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario, const std::string& engine);
 
 /// What to say where the scenario takes a cohesive soil as it is, but with grains of another size than those that it
 /// was measured with; empty otherwise. `completed`: the scenario with its defaults.

@@ -40,9 +40,9 @@ constexpr double kGrain = 1.0 / 45.0, kAhead = 2.2, kBehind = 1.2, kBeside = 0.4
 constexpr double kAcross = 11.0,
                  kAlong = 14.0;  // grain radii in a tread's width, at least, and in a contact's length
 constexpr int kLayers = 14, kMostLayers = 120;
-constexpr double kDepth = 8.5;        // sinkages
-constexpr double kTreadSpeed = 0.93;  // √(g R)
-constexpr double kLowering = 0.18;    // √(g R)
+constexpr double kDepth = 8.5;                  // sinkages
+constexpr double kTreadSpeed = 0.93;            // √(g R)
+constexpr double kLowering = 0.18;              // √(g R)
 constexpr double kSlip = 0.3, kHardSlip = 0.1;  // on soil, on hard ground
 // In √(R/kRadius) s.
 constexpr double kMoveFrom = 0.4, kRamp = 0.15, kAverageFrom = 1.2, kEnd = 3.0;
@@ -98,8 +98,7 @@ Scales scales_of(const Scenario& s) {
     scales.first = std::max(scales.first, wheel.from);
     scales.last = std::min(scales.last, wheel.from);
     scales.across = std::max(scales.across, std::abs(wheel.lateral) + wheel.across);
-    if (tire.step_share > 0.0)
-      scales.tire_step = tire.step_share * tire.damping_time;  // none where it is rigid
+    if (tire.step_share > 0.0) scales.tire_step = tire.step_share * tire.damping_time;  // none where it is rigid
     scales.meshed = std::find(tire.takes.begin(), tire.takes.end(), "elements_width") != tire.takes.end();
   }
   return scales;
@@ -107,9 +106,8 @@ Scales scales_of(const Scenario& s) {
 
 /// A tire whose file holds for hard level ground gets that; a soil file without properties of grains is empirical soil.
 Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
-  const bool hard = std::ranges::any_of(s.tires, [](const auto& tire) {
-    return dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr;
-  });
+  const bool hard = std::ranges::any_of(
+      s.tires, [](const auto& tire) { return dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr; });
   if (hard && !o.soil.empty())
     throw input_error("command line", "--soil",
                       fmt::format("is given, expected none: the file of '{}' holds for hard level ground", o.tire));
@@ -134,8 +132,8 @@ void add_soil(Scales& scales, const Scenario& s) {
     scales.pressure = std::max(scales.pressure, all[k].grains->pressure);
     scales.contact = std::min(scales.contact, all[k].grains->contact_length);
     scales.sinkage = std::max(scales.sinkage, all[k].grains->sinkage);
-    scales.near_wall = std::max(scales.near_wall, all[k].grains->near_end * std::abs(wheels[k].speed) *
-                                                      (s.run.end - s.run.average_from));
+    scales.near_wall = std::max(scales.near_wall,
+                                all[k].grains->near_end * std::abs(wheels[k].speed) * (s.run.end - s.run.average_from));
   }
 }
 
@@ -206,13 +204,12 @@ Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
   }
   // Of a vehicle's wheels the contact is as large, but the bed is many times as long and wide.
   const double coarse = o.vehicle.empty() ? 1.0 : 2.0;
-  terrain["radius"] =
-      rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross));
+  terrain["radius"] = rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross));
   // As many times the pressure as of the small rig: stiffer grains would need shorter steps, softer ones overlap more.
   terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));
-  terrain["layers"] = std::clamp(
-      static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * terrain["radius"].get<double>()))), kLayers,
-      kMostLayers);
+  terrain["layers"] =
+      std::clamp(static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * terrain["radius"].get<double>()))), kLayers,
+                 kMostLayers);
   terrain["length"] = length;
   terrain["width"] = width;
   return terrain;
@@ -262,8 +259,7 @@ std::string section_text(const Schema& schema, const std::string& name, const Js
       const std::string unit = node->value("unit", "");
       text += comment(node->value("description", "") + (unit.empty() ? "" : " [" + unit + "]"), "    ");
     }
-    text += fmt::format("    \"{}\": {}{}\n", key,
-                        value.is_number() ? number_text(value.get<double>()) : value.dump(),
+    text += fmt::format("    \"{}\": {}{}\n", key, value.is_number() ? number_text(value.get<double>()) : value.dump(),
                         --left > 0 ? "," : "");
   }
   return text + "  }";
@@ -275,12 +271,10 @@ std::string text_of(const Json& document, const std::string& file) {
       "A scenario of Furrow. All values are in SI units, angles in radians. 'furrow explain' "
       "lists all keys, those with their defaults that do not stand here too.",
       "");
-  text +=
-      comment("Check it: furrow validate " + file, "") + comment("Run it:   furrow run " + file, "") + "{\n";
+  text += comment("Check it: furrow validate " + file, "") + comment("Run it:   furrow run " + file, "") + "{\n";
   std::size_t left = document.size();
   for (const auto& [key, value] : document.items()) {
-    text +=
-        value.is_object() ? section_text(schema, key, value) : fmt::format("  \"{}\": {}", key, value.dump());
+    text += value.is_object() ? section_text(schema, key, value) : fmt::format("  \"{}\": {}", key, value.dump());
     text += --left > 0 ? ",\n" : "\n";
   }
   return text + "}\n";
@@ -349,8 +343,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
 void write_starter(const std::filesystem::path& file, const StarterOptions& options) {
   std::error_code error;
   if (std::filesystem::exists(std::filesystem::symlink_status(file, error)))
-    throw input_error("command line", "NAME",
-                      fmt::format("'{}' exists already, expected a new file", file.string()));
+    throw input_error("command line", "NAME", fmt::format("'{}' exists already, expected a new file", file.string()));
   for (const std::string& other : {options.tire, options.soil, options.vehicle})
     if (std::filesystem::path(other) == file.filename())
       throw input_error(

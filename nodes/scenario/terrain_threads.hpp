@@ -21,8 +21,7 @@ inline constexpr std::int64_t kManyGrains = 500'000;
 /// @param others  ranks of this machine that need a core of their own
 /// @param grains  of all ranks; 0: not known
 inline int auto_terrain_threads(int cores, int others, int terrain_ranks, std::int64_t grains) {
-  FURROW_ASSERT(cores > 0 && others >= 0 && terrain_ranks > 0 && grains >= 0, cores, others, terrain_ranks,
-                grains);
+  FURROW_ASSERT(cores > 0 && others >= 0 && terrain_ranks > 0 && grains >= 0, cores, others, terrain_ranks, grains);
   const int left = cores - others;
   const bool share = grains >= kManyGrains && 2 * left < cores;
   return std::clamp((share ? cores : left) / terrain_ranks, 1, kMaxAutoThreads);

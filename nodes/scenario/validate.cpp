@@ -48,15 +48,14 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
   std::string speed = fmt::format("Froude number {}", digits(w.froude));
   if (w.grains) {
     const WheelScales::OnGrains& g = *w.grains;
-    lines.emplace_back("contact", fmt::format("about {} mm long at {} kPa, {} grains long, {} wide",
-                                              digits(1e3 * g.contact_length), digits(1e-3 * g.pressure),
-                                              digits(g.grains_long), digits(g.grains_wide)));
+    lines.emplace_back(
+        "contact", fmt::format("about {} mm long at {} kPa, {} grains long, {} wide", digits(1e3 * g.contact_length),
+                               digits(1e-3 * g.pressure), digits(g.grains_long), digits(g.grains_wide)));
     lines.emplace_back("sinkage", fmt::format("about {} mm by bearing capacity; the bed is {} times as deep",
                                               digits(1e3 * g.sinkage), digits(g.depth_ratio)));
-    lines.emplace_back("walls",
-                       fmt::format("{}, {} m ahead of the wheel at the {}",
-                                   g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside",
-                                   digits(g.ahead), travels ? "end" : "start"));
+    lines.emplace_back("walls", fmt::format("{}, {} m ahead of the wheel at the {}",
+                                            g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside",
+                                            digits(g.ahead), travels ? "end" : "start"));
     speed += fmt::format(", inertial number {}", digits(g.inertial));
   }
   if (travels || w.froude > 0.0) lines.emplace_back("speed", speed);
@@ -101,16 +100,15 @@ std::string duration(double seconds) {
 }
 
 std::string time_text(const RunTime& t) {
-  std::string text = fmt::format("about {} on {} core{} that nobody else uses: ", duration(t.all()), t.cores,
-                                 t.cores > 1 ? "s" : "");
+  std::string text =
+      fmt::format("about {} on {} core{} that nobody else uses: ", duration(t.all()), t.cores, t.cores > 1 ? "s" : "");
   text += fmt::format("start of the ranks {}, ", duration(t.start));
   if (t.bed > 0.0) text += fmt::format("bed {}, ", duration(t.bed));
   if (t.writing >= 0.02 * t.all()) text += fmt::format("frames and checkpoints {}, ", duration(t.writing));
   text += fmt::format("run {}; of a step of {} ms the slowest tire takes {}, the terrain {}", duration(t.run),
                       digits(1e3 * t.step), digits(1e3 * t.tire), digits(1e3 * t.terrain));
   if (t.ranks > 1)
-    text += fmt::format(" on each of {} ranks, {:.0f} copies of its neighbours' grains among them", t.ranks,
-                        t.ghosts);
+    text += fmt::format(" on each of {} ranks, {:.0f} copies of its neighbours' grains among them", t.ranks, t.ghosts);
   if (t.awake < 1.0) text += fmt::format(" with {:.0f} % of its grains awake", 100.0 * t.awake);
   if (t.refined >= 0.005)
     text += fmt::format(
@@ -130,8 +128,7 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   json["exact_restart"] = s.terrain->describe().exact_restart;
   json["terrain_step_s"] = s.terrain_step();
   const bool limited = std::isfinite(e.terrain.stable_step);
-  json["stable_step_s"] =
-      limited ? nlohmann::ordered_json(e.terrain.stable_step) : nlohmann::ordered_json(nullptr);
+  json["stable_step_s"] = limited ? nlohmann::ordered_json(e.terrain.stable_step) : nlohmann::ordered_json(nullptr);
   json["stable_step_limited_by"] = e.terrain.stable_reason;
   json["steps"] = e.steps;
   json["grains"] = e.terrain.grains;
@@ -147,11 +144,9 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s, tires);
   const std::vector<WheelScales> scales = wheel_scales(s);
-  for (const rigs::WheelDescription& wheel : rig.wheels)
-    json["axle_path_m"].push_back({wheel.from, wheel.to});
+  for (const rigs::WheelDescription& wheel : rig.wheels) json["axle_path_m"].push_back({wheel.from, wheel.to});
   for (const tire::TireDescription& tire : tires) json["tire_mass_kg"].push_back(tire.mass.mass);
-  for (std::size_t k = 0; k < scales.size(); ++k)
-    json["wheels"].push_back(scales_json(scales[k], rig.wheels[k].name));
+  for (std::size_t k = 0; k < scales.size(); ++k) json["wheels"].push_back(scales_json(scales[k], rig.wheels[k].name));
   for (const RankEntry& rank : rank_table(s))
     json["ranks"].push_back({{"rank", rank.rank}, {"node", rank.node}, {"does", rank.does}});
   json["bound_by"] = nlohmann::ordered_json::array();
@@ -168,20 +163,20 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
     text += fmt::format("{:<12} {}\n", name, value);
   };
   line("scenario", fmt::format("{} (digest {})", s.file.string(), s.digest));
-  line("run", fmt::format("{:g} s in {} steps of {:g} s, averaged from {:g} s on", s.run.end, e.steps,
-                          s.run.step, s.run.average_from));
+  line("run", fmt::format("{:g} s in {} steps of {:g} s, averaged from {:g} s on", s.run.end, e.steps, s.run.step,
+                          s.run.average_from));
   if (std::isfinite(e.terrain.stable_step))
-    line("terrain step", fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain_step(),
-                                     100.0 * s.terrain_step() / e.terrain.stable_step, e.terrain.stable_step,
-                                     e.terrain.stable_reason));
+    line("terrain step",
+         fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain_step(),
+                     100.0 * s.terrain_step() / e.terrain.stable_step, e.terrain.stable_step, e.terrain.stable_reason));
   line("terrain", e.terrain.text);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s, tires);
   const std::vector<WheelScales> scales = wheel_scales(s);
   for (std::size_t k = 0; k < tires.size(); ++k) {
     if (!rig.wheels[k].name.empty()) line("wheel", rig.wheels[k].name);
-    line("tire", fmt::format("{}, {}, radius {:g} m", s.tires[k]->options().file.filename().string(),
-                             tires[k].details, tires[k].radius));
+    line("tire", fmt::format("{}, {}, radius {:g} m", s.tires[k]->options().file.filename().string(), tires[k].details,
+                             tires[k].radius));
     const MassProperties& mass = tires[k].mass;
     line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
     // Of a vehicle that is driven by its pedals nobody knows yet how far it gets.

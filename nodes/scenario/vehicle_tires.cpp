@@ -21,8 +21,7 @@ constexpr double kMore = 1.5;  // times the mean load of a wheel, up to which ti
 /// The file that `name` means, if there is one.
 std::filesystem::path candidate(const std::string& name) {
   std::error_code error;
-  for (const std::filesystem::path& place :
-       {std::filesystem::path(name), data_folder() / "vehicle" / "data" / name})
+  for (const std::filesystem::path& place : {std::filesystem::path(name), data_folder() / "vehicle" / "data" / name})
     if (std::filesystem::exists(place, error)) return place;
   return name;
 }
@@ -96,20 +95,18 @@ std::vector<std::shared_ptr<const tire::TireSpec>> tires_of(const vehicle::Vehic
   return tires;
 }
 
-std::vector<vehicle::StandingTire> standing_tires(
-    const vehicle::VehicleSpec& spec, std::span<const std::shared_ptr<const tire::TireSpec>> tires,
-    const ProgressCall& progress) {
+std::vector<vehicle::StandingTire> standing_tires(const vehicle::VehicleSpec& spec,
+                                                  std::span<const std::shared_ptr<const tire::TireSpec>> tires,
+                                                  const ProgressCall& progress) {
   FURROW_ASSERT(tires.size() == 2 * spec.axles.size(), tires.size(), spec.axles.size());
   double mass = vehicle::mass_without_tires(spec);
   for (const auto& tire : tires) mass += tire->describe().mass.mass;
   const double load = kMore * mass * kStandardGravity / static_cast<double>(tires.size());
   for (const auto& tire : tires)
-    vehicle::check_load(spec, mass, tire->options().file.filename().string(),
-                        tire::hopeless_load(tire->describe()));
+    vehicle::check_load(spec, mass, tire->options().file.filename().string(), tire::hopeless_load(tire->describe()));
   std::vector<vehicle::StandingTire> all;
   for (std::size_t k = 0; k < tires.size(); ++k) {
-    const auto first =
-        std::find(tires.begin(), tires.begin() + static_cast<long>(k), tires[k]) - tires.begin();
+    const auto first = std::find(tires.begin(), tires.begin() + static_cast<long>(k), tires[k]) - tires.begin();
     if (first < static_cast<long>(k)) {
       all.push_back(all[static_cast<std::size_t>(first)]);
       continue;

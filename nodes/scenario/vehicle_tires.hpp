@@ -30,8 +30,8 @@ std::vector<std::shared_ptr<const tire::TireSpec>> tires_of(const vehicle::Vehic
 /// Each tire at rest, pressed up to more than its share of the weight; see
 /// tire/press/press_curve.hpp for what that costs.
 /// @pre one tire for each wheel. @throws Error
-std::vector<vehicle::StandingTire> standing_tires(
-    const vehicle::VehicleSpec& vehicle, std::span<const std::shared_ptr<const tire::TireSpec>> tires,
-    const ProgressCall& progress);
+std::vector<vehicle::StandingTire> standing_tires(const vehicle::VehicleSpec& vehicle,
+                                                  std::span<const std::shared_ptr<const tire::TireSpec>> tires,
+                                                  const ProgressCall& progress);
 
 }  // namespace furrow::scenario

@@ -12,8 +12,7 @@ std::vector<tire::TireDescription> describe_tires(const Scenario& scenario) {
   std::vector<tire::TireDescription> tires;
   for (std::size_t k = 0; k < scenario.tires.size(); ++k)
     // Wheels that share a tire share its description.
-    tires.push_back(k > 0 && scenario.tires[k] == scenario.tires[k - 1] ? tires.back()
-                                                                        : scenario.tires[k]->describe());
+    tires.push_back(k > 0 && scenario.tires[k] == scenario.tires[k - 1] ? tires.back() : scenario.tires[k]->describe());
   return tires;
 }
 
@@ -29,14 +28,11 @@ std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
   std::vector<rigs::MountedTire> mounted;
   for (std::size_t k = 0; k < tires.size(); ++k)
     mounted.push_back({tires[k].radius, tires[k].mass.mass, scenario.tires[k]->rim(),
-                       scenario.tires[k]->options().file.string(), tires[k].width,
-                       tire::hopeless_load(tires[k])});
+                       scenario.tires[k]->options().file.string(), tires[k].width, tire::hopeless_load(tires[k])});
   return mounted;
 }
 
-rigs::RigDescription describe_rig(const Scenario& scenario) {
-  return describe_rig(scenario, describe_tires(scenario));
-}
+rigs::RigDescription describe_rig(const Scenario& scenario) { return describe_rig(scenario, describe_tires(scenario)); }
 
 rigs::RigDescription describe_rig(const Scenario& scenario, const std::vector<tire::TireDescription>& tires) {
   rigs::RigDescription rig = scenario.rig->describe(wheel_sizes(tires), scenario.run.end);

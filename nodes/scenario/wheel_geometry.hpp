@@ -14,8 +14,7 @@ std::vector<tire::TireDescription> describe_tires(const Scenario& scenario);
 std::vector<rigs::WheelSize> wheel_sizes(const std::vector<tire::TireDescription>& tires);
 
 /// What a rig may take from the scenario's tires, described as `tires`.
-std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario,
-                                             const std::vector<tire::TireDescription>& tires);
+std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario, const std::vector<tire::TireDescription>& tires);
 
 /// The rig under the scenario's tires, over its whole run. @throws Error(bad_input) naming file and key
 rigs::RigDescription describe_rig(const Scenario& scenario);

@@ -120,9 +120,8 @@ void begin_beds(launch::RunDirectory& directory, const std::string& digest, bool
     if (known.is_null())
       throw input_error(folder.string(), "--out", "holds a study, expected a new folder or that of beds");
     if (!overwrite && known != digest)
-      throw input_error(
-          folder.string(), "--out",
-          "holds beds of another scenario or other settings, expected a new folder or --overwrite");
+      throw input_error(folder.string(), "--out",
+                        "holds beds of another scenario or other settings, expected a new folder or --overwrite");
     if (overwrite) directory.replace();
   }
   directory.add({"sweep.json", "summary.json", "summary_failed.json"});
@@ -158,8 +157,7 @@ Json summary_of_beds(const scenario::Scenario& scenario, std::span<const Sweep::
       continue;
     }
     if (unsteady(summary)) not_steady.push_back(name_of(beds[k]));
-    for (std::size_t w = 0; w < wheels.size(); ++w)
-      wheels[w].push_back(value_at(summary, fmt::format("wheels.{}", w)));
+    for (std::size_t w = 0; w < wheels.size(); ++w) wheels[w].push_back(value_at(summary, fmt::format("wheels.{}", w)));
   }
   Json json{{"format_version", 1},
             {"version", FURROW_VERSION},

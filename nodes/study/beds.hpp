@@ -41,8 +41,7 @@ OverBeds over_beds(std::span<const double> values);
 /// What the beds say together, from their summaries: of each wheel and figure `mean`, `sd`, `half_width_95` over the
 /// beds that are done, which beds are not steady, and which failed. Where there is one wheel its figures stand beside
 /// those of the run as well.
-nlohmann::ordered_json summary_of_beds(const scenario::Scenario& scenario,
-                                       std::span<const Sweep::Outcome> beds);
+nlohmann::ordered_json summary_of_beds(const scenario::Scenario& scenario, std::span<const Sweep::Outcome> beds);
 
 /// Writes it: summary.json, or summary_failed.json where a bed failed. @throws Error(io)
 void write_summary_of_beds(const std::filesystem::path& folder, const nlohmann::ordered_json& summary);

@@ -16,8 +16,7 @@ namespace furrow::study {
 namespace {
 
 constexpr double kLeastRSquared = 0.5;
-constexpr double kLittleError =
-    0.1;  // of the peak: R² of data that hardly vary says nothing against such a model
+constexpr double kLittleError = 0.1;  // of the peak: R² of data that hardly vary says nothing against such a model
 
 /// Curves and tables that the fitted model does not describe.
 std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, const Prediction& fitted) {
@@ -26,12 +25,11 @@ std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, con
   for (const Target& target : targets) {
     const Goodness g = goodness(target, rest.first(target.y.size()));
     rest = rest.subspan(target.y.size());
-    if (target.y.size() == 1 || !(g.r_squared < kLeastRSquared) || g.largest_error < kLittleError * g.peak)
-      continue;
-    warnings.push_back(fmt::format(
-        "the fitted model does not describe {} (R² {:.2g}): check the units of {}, and whether its other "
-        "keys are those of the test",
-        target.name, g.r_squared, target.data.filename().string()));
+    if (target.y.size() == 1 || !(g.r_squared < kLeastRSquared) || g.largest_error < kLittleError * g.peak) continue;
+    warnings.push_back(
+        fmt::format("the fitted model does not describe {} (R² {:.2g}): check the units of {}, and whether its other "
+                    "keys are those of the test",
+                    target.name, g.r_squared, target.data.filename().string()));
   }
   return warnings;
 }
@@ -50,16 +48,15 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
     if (progress) progress("calibrating", std::min(share + evaluation * done, 1.0));
   };
   Objective objective(calibration, table, tell);
-  const OptimizerOptions options{calibration.starts, calibration.seed, calibration.evaluations,
-                                 [&](double done) {
+  const OptimizerOptions options{calibration.starts, calibration.seed, calibration.evaluations, [&](double done) {
                                    share = done;
                                    tell("", 0.0);
                                  }};
   CalibrationResults results;
   results.optimum = calibration.kind->optimize(objective, options);
   const std::vector<double>& place = results.optimum.place;
-  results.confidence = confidence(calibration.parameters, place, results.optimum.residuals,
-                                  results.optimum.jacobian, results.optimum.known_errors);
+  results.confidence = confidence(calibration.parameters, place, results.optimum.residuals, results.optimum.jacobian,
+                                  results.optimum.known_errors);
   results.values = objective.values(place);
   results.fitted = objective.predict(place);
   if (!calibration.model->targets(TargetSet::held_out).empty())
@@ -69,8 +66,7 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
   return results;
 }
 
-std::vector<std::string> calibration_warnings(const Calibration& calibration,
-                                              const CalibrationResults& results) {
+std::vector<std::string> calibration_warnings(const Calibration& calibration, const CalibrationResults& results) {
   std::vector<std::string> warnings = calibration.model->notes();
   const std::vector<std::string> missed =
       reach_warnings(calibration.model->targets(TargetSet::fitted), results.optimum.reach);
@@ -87,15 +83,14 @@ std::vector<std::string> calibration_warnings(const Calibration& calibration,
     warnings.push_back(
         fmt::format("{} ends at its {} bound of {}{}: its error is not known, and the data ask for a value "
                     "beyond it or do not determine it",
-                    p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper",
-                    digits(c.estimates[k].value), p.unit == "-" ? "" : " " + p.unit));
+                    p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper", digits(c.estimates[k].value),
+                    p.unit == "-" ? "" : " " + p.unit));
   }
   for (const Undetermined& u : c.undetermined)
     warnings.push_back(fmt::format(
         "the data do not determine {} (each on its scale from lower to upper): its 95 % interval is {}",
         combination_text(calibration.parameters, u.direction),
-        std::isfinite(u.half_interval) ? fmt::format("± {:.2g} of the scale", u.half_interval)
-                                       : "without limit"));
+        std::isfinite(u.half_interval) ? fmt::format("± {:.2g} of the scale", u.half_interval) : "without limit"));
   if (const std::string& problem = results.held_out.problem; !problem.empty())
     warnings.push_back("the fitted model has no answer to the held-out targets: " + problem);
   return warnings;

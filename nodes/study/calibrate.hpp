@@ -25,11 +25,11 @@ inline constexpr const char* kCalibration = "calibration.json";
 struct CalibrationResults {
   Optimum optimum;
   Confidence confidence;
-  std::vector<double> values;    // of the parameters, in their units
-  Prediction fitted, held_out;   // there
-  std::size_t asked = 0;         // evaluations, whether computed or known before
+  std::vector<double> values;   // of the parameters, in their units
+  Prediction fitted, held_out;  // there
+  std::size_t asked = 0;        // evaluations, whether computed or known before
   std::size_t computed = 0;
-  double processor_time = 0.0;   // of all evaluations, whenever they were made, s; 0: not told
+  double processor_time = 0.0;  // of all evaluations, whenever they were made, s; 0: not told
 };
 
 /// @param folder of the results; its table of evaluations is read and continued

@@ -35,8 +35,8 @@ std::string target_text(const Target& target) {
 }
 
 Json target_json(const Target& target) {
-  return {{"name", target.name}, {"what", target.what}, {"data", target.data.string()}, {"points", target.y.size()},
-          {"x", target.x_name},  {"y", target.y_name}};
+  return {{"name", target.name},       {"what", target.what}, {"data", target.data.string()},
+          {"points", target.y.size()}, {"x", target.x_name},  {"y", target.y_name}};
 }
 
 }  // namespace
@@ -63,15 +63,13 @@ std::string calibration_check_text(const Calibration& c) {
 }
 
 Json calibration_check_json(const Calibration& c) {
-  Json json{{"format_version", 1},
-            {"calibration", c.file.string()},
-            {"description", c.description},
-            {"kind", c.kind->name},
-            {"start", c.start.string()},
-            {"parameters", Json::object()}};
+  Json json{{"format_version", 1},  {"calibration", c.file.string()}, {"description", c.description},
+            {"kind", c.kind->name}, {"start", c.start.string()},      {"parameters", Json::object()}};
   for (const Parameter& p : c.parameters)
-    json["parameters"][p.name] = {{"unit", p.unit},   {"lower", p.lower},
-                                  {"upper", p.upper}, {"scale", p.logarithmic ? "log" : "linear"},
+    json["parameters"][p.name] = {{"unit", p.unit},
+                                  {"lower", p.lower},
+                                  {"upper", p.upper},
+                                  {"scale", p.logarithmic ? "log" : "linear"},
                                   {"start", p.start}};
   for (const TargetSet set : {TargetSet::fitted, TargetSet::held_out}) {
     Json& list = json[set == TargetSet::fitted ? "targets" : "held_out"] = Json::array();

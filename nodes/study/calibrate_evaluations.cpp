@@ -76,8 +76,10 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
   const std::size_t whole = text.empty() ? 0 : text.rfind('\n') + 1;
   text.resize(whole);
   if (whole > 0) {
-    if (text.size() >= mark.size() + head.size()) read(text.substr(mark.size()), head);
-    else text.clear();
+    if (text.size() >= mark.size() + head.size())
+      read(text.substr(mark.size()), head);
+    else
+      text.clear();
   }
   stream_.reset(std::fopen(file_.c_str(), text.empty() ? "we" : "r+e"));
   if (!stream_) throw io_error(file_.string(), std::string("cannot be written: ") + std::strerror(errno));
@@ -118,7 +120,7 @@ void EvaluationTable::read(const std::string& text, const std::string& head) {
                time = numbers_of(cells[parameters_ + 4]);
     if (!found || !errors || !time || time->size() > 1) throw damaged(fmt::format("line {} is damaged", number));
     known_[key_of(std::string(cells[0]), values)] = {*found, *errors, std::string(cells[parameters_ + 1]),
-                                                       time->empty() ? 0.0 : time->front()};
+                                                     time->empty() ? 0.0 : time->front()};
   }
 }
 

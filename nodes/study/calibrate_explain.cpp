@@ -26,16 +26,13 @@ constexpr auto kKeys = std::to_array<CalibrationKey>({
      "not fitted stays as it is there."},
     {"set", "Settings of the scenario that grains begin from, by dotted path, as of a study.", false},
     {"tests", "The virtual soil tests of each evaluation: seeds, stresses (Pa) and speed (m/s).", false},
-    {"parameters",
-     "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
+    {"parameters", "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
     {"targets",
      "What is fitted to: a list of objects, each with data (a CSV file), name, sigma, weight and keys of the kind."},
     {"held_out", "What is predicted with the result and never fitted: a list as of targets."},
-    {"starts",
-     "Number of starts: that of the file, and random ones within the bounds. 1 to 1000, default 8."},
+    {"starts", "Number of starts: that of the file, and random ones within the bounds. 1 to 1000, default 8."},
     {"seed", "Seed of the random starts. Default 1."},
-    {"evaluations", "How often a noisy model is evaluated at most. Default 6 for each parameter, and 4 more.",
-     false},
+    {"evaluations", "How often a noisy model is evaluated at most. Default 6 for each parameter, and 4 more.", false},
     {"result", "Name of the fitted file, in the folder of results. Default <start>_fitted.json."},
 });
 
@@ -81,8 +78,8 @@ std::string explain_kind(const CalibrationKind& kind) {
 
 std::string explain_parameter(const std::string& key, const ParameterRule& rule) {
   return fmt::format("{}\n  Parameter of a calibration.\n  {:<8} {}\n  {:<8} {}\n  {:<8} {}\n", key, "range",
-                     range(rule.least, rule.most, rule.unit), "default",
-                     range(rule.lower, rule.upper, rule.unit), "scale", rule.logarithmic ? "log" : "linear");
+                     range(rule.least, rule.most, rule.unit), "default", range(rule.lower, rule.upper, rule.unit),
+                     "scale", rule.logarithmic ? "log" : "linear");
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 /// K of the shear cell, in diameters of a grain, is above this for all soils of terrain/README.md (0.5 to 1.2 there).
 constexpr double kLeastK = 0.45;
 constexpr int kMostSeeds = 100;
-constexpr double kMostSpeed = 10.0;    // m/s, as of `furrow soil`
-constexpr double kMostStress = 1e7;    // Pa, as of `furrow soil`
+constexpr double kMostSpeed = 10.0;  // m/s, as of `furrow soil`
+constexpr double kMostStress = 1e7;  // Pa, as of `furrow soil`
 constexpr std::size_t kMostStresses = 10;
 
 const auto kRules = std::to_array<ParameterRule>({
@@ -108,17 +108,28 @@ Found bulk_density(const SoilResults& results) {
 Found figure_of(Figure figure, const SoilParameters& p, const SoilResults& results) {
   const auto in = [](const Measured& m, double unit = 1.0) { return Found{m.value / unit, m.standard_error / unit}; };
   switch (figure) {
-    case Figure::cohesion: return in(p.cohesion);
-    case Figure::phi: return in(p.phi, kDegree);
-    case Figure::phi_alone: return in(p.phi_alone, kDegree);
-    case Figure::K: return in(p.K);
-    case Figure::repose: return in(p.repose, kDegree);
-    case Figure::repose_dry: return in(p.repose_dry.samples > 0 ? p.repose_dry : p.repose, kDegree);
-    case Figure::n: return in(p.n);
-    case Figure::k_c: return in(p.k_c);
-    case Figure::k_phi: return in(p.k_phi);
-    case Figure::cone_index: return in(p.cone_index);
-    case Figure::bulk_density: break;
+    case Figure::cohesion:
+      return in(p.cohesion);
+    case Figure::phi:
+      return in(p.phi, kDegree);
+    case Figure::phi_alone:
+      return in(p.phi_alone, kDegree);
+    case Figure::K:
+      return in(p.K);
+    case Figure::repose:
+      return in(p.repose, kDegree);
+    case Figure::repose_dry:
+      return in(p.repose_dry.samples > 0 ? p.repose_dry : p.repose, kDegree);
+    case Figure::n:
+      return in(p.n);
+    case Figure::k_c:
+      return in(p.k_c);
+    case Figure::k_phi:
+      return in(p.k_phi);
+    case Figure::cone_index:
+      return in(p.cone_index);
+    case Figure::bulk_density:
+      break;
   }
   return bulk_density(results);
 }
@@ -146,17 +157,16 @@ TestSettings read_tests(OrderedJsonReader& whole) {
   if (reader.given("seeds")) tests.seeds = reader.count("seeds", 1, kMostSeeds);
   if (reader.given("speed")) tests.speed = reader.positive("speed");
   if (tests.speed > kMostSpeed)
-    reader.fail("speed", fmt::format("is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed),
-                                     kMostSpeed));
+    reader.fail("speed",
+                fmt::format("is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed), kMostSpeed));
   if (reader.given("stresses")) {
     tests.stresses = reader.numbers("stresses");
     std::sort(tests.stresses.begin(), tests.stresses.end());
     const auto same = std::adjacent_find(tests.stresses.begin(), tests.stresses.end());
     if (tests.stresses.size() < 2 || tests.stresses.size() > kMostStresses || same != tests.stresses.end())
-      reader.fail(
-          "stresses",
-          fmt::format("expected two to {} different normal stresses, Pa: c and φ are of a line through them",
-                      kMostStresses));
+      reader.fail("stresses",
+                  fmt::format("expected two to {} different normal stresses, Pa: c and φ are of a line through them",
+                              kMostStresses));
     if (!(tests.stresses.front() > 0.0 && tests.stresses.back() <= kMostStress))
       reader.fail("stresses", fmt::format("has {} Pa, expected each above 0 up to {} Pa",
                                           number_text(tests.stresses.front() > 0.0 ? tests.stresses.back()
@@ -343,8 +353,8 @@ class GrainModel final : public CalibrationModel {
 
   /// A K that such grains cannot have is compared, and not fitted: it would spoil what can be.
   void leave_out_small_K(const CalibrationInput& input) {
-    const auto at = std::find_if(of_fitted_.begin(), of_fitted_.end(),
-                                 [](const Quantity* q) { return q->figure == Figure::K; });
+    const auto at =
+        std::find_if(of_fitted_.begin(), of_fitted_.end(), [](const Quantity* q) { return q->figure == Figure::K; });
     if (at == of_fitted_.end() || std::find(names_.begin(), names_.end(), "radius") != names_.end()) return;
     const std::size_t k = static_cast<std::size_t>(at - of_fitted_.begin());
     const Target target = fitted_[k];
@@ -361,8 +371,7 @@ class GrainModel final : public CalibrationModel {
     fitted_.erase(fitted_.begin() + static_cast<std::ptrdiff_t>(k)), of_fitted_.erase(at);
     held_out_.push_back(target), of_held_out_.push_back(quantity);
     if (fitted_.empty())
-      throw input_error(input.study.string(), "targets",
-                        "has no target that can be reached: " + notes_.back());
+      throw input_error(input.study.string(), "targets", "has no target that can be reached: " + notes_.back());
   }
 
   std::vector<std::string> names_;

@@ -34,7 +34,7 @@ struct Quantity {
   std::string_view name;
   const char* column;  // of fit.csv
   const char* unit;
-  bool free_rolling;   // of such rows alone
+  bool free_rolling;  // of such rows alone
   double (*measured)(const SweepPoint& point);
   double (*said)(const MagicFormula& tire, const SweepPoint& point);
 };
@@ -69,12 +69,23 @@ constexpr auto kQuantities = std::to_array<Quantity>({
 
 /// Bounds where a study gives none: those of usual tires for what has usual values.
 ParameterRule rule_of(const std::string& name, const std::string& unit) {
-  static const std::map<std::string, std::pair<double, double>> kUsual{
-      {"PCX1", {1.0, 2.0}},  {"PCY1", {1.0, 2.0}},   {"QCZ1", {0.8, 2.0}},  {"PDX1", {0.1, 2.0}},
-      {"PDY1", {0.1, 2.0}},  {"PKX1", {1.0, 200.0}}, {"PKY1", {-200.0, -1.0}}, {"PKY2", {0.2, 20.0}},
-      {"PEX1", {-20.0, 1.0}}, {"PEY1", {-20.0, 1.0}}, {"QEZ1", {-20.0, 1.0}},
-      {"RCX1", {0.5, 2.0}},  {"RCY1", {0.5, 2.0}},   {"RBX1", {0.0, 100.0}}, {"RBY1", {0.0, 100.0}},
-      {"VERTICAL_STIFFNESS", {1e4, 1e7}}, {"UNLOADED_RADIUS", {0.05, 2.0}}};
+  static const std::map<std::string, std::pair<double, double>> kUsual{{"PCX1", {1.0, 2.0}},
+                                                                       {"PCY1", {1.0, 2.0}},
+                                                                       {"QCZ1", {0.8, 2.0}},
+                                                                       {"PDX1", {0.1, 2.0}},
+                                                                       {"PDY1", {0.1, 2.0}},
+                                                                       {"PKX1", {1.0, 200.0}},
+                                                                       {"PKY1", {-200.0, -1.0}},
+                                                                       {"PKY2", {0.2, 20.0}},
+                                                                       {"PEX1", {-20.0, 1.0}},
+                                                                       {"PEY1", {-20.0, 1.0}},
+                                                                       {"QEZ1", {-20.0, 1.0}},
+                                                                       {"RCX1", {0.5, 2.0}},
+                                                                       {"RCY1", {0.5, 2.0}},
+                                                                       {"RBX1", {0.0, 100.0}},
+                                                                       {"RBY1", {0.0, 100.0}},
+                                                                       {"VERTICAL_STIFFNESS", {1e4, 1e7}},
+                                                                       {"UNLOADED_RADIUS", {0.05, 2.0}}};
   const auto usual = kUsual.find(name);
   const auto [lower, upper] = usual != kUsual.end() ? usual->second : std::pair{-10.0, 10.0};
   return {name, unit, -kMost, kMost, lower, upper, false};
@@ -101,11 +112,11 @@ std::string label_of(const SweepPoint& p) {
 
 class HandlingModel final : public CalibrationModel, public LeavesFiles {
  public:
-  explicit HandlingModel(CalibrationInput& input) : names_(input.parameters), start_(input.start),
-        stem_(input.start.stem().string() + "_fitted") {
+  explicit HandlingModel(CalibrationInput& input)
+      : names_(input.parameters), start_(input.start), stem_(input.start.stem().string() + "_fitted") {
     if (!tire::is_tir(start_))
-      throw input_error(input.study.string(), "start", fmt::format("is '{}', expected a tire property file (.tir)",
-                                                                   start_.filename().string()));
+      throw input_error(input.study.string(), "start",
+                        fmt::format("is '{}', expected a tire property file (.tir)", start_.filename().string()));
     formula_ = tire::handling::read_tir(start_);
     read(input.targets, input.study, fitted_, of_fitted_);
     read(input.held_out, input.study, held_out_, of_held_out_);
@@ -190,9 +201,8 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
   }
 
   static std::string ranges_text(const MagicFormula& t) {
-    return fmt::format(
-        "slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N",
-        t.slip.most, t.slip_angle.most, t.camber.most, t.load.least, t.load.most);
+    return fmt::format("slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N",
+                       t.slip.most, t.slip_angle.most, t.camber.most, t.load.least, t.load.most);
   }
 
   static std::string residual_text(const MagicFormula& tire, const Rows& rows) {
@@ -204,9 +214,9 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
       peak = std::max(peak, std::abs(measured));
     }
     return fmt::format(
-        "residual of {}: root mean square {:.3g} {}, largest {:.3g} {} of a peak of {:.4g} {}, {} points",
-        rows.target, std::sqrt(squares / static_cast<double>(rows.points.size())), rows.quantity->unit,
-        largest, rows.quantity->unit, peak, rows.quantity->unit, rows.points.size());
+        "residual of {}: root mean square {:.3g} {}, largest {:.3g} {} of a peak of {:.4g} {}, {} points", rows.target,
+        std::sqrt(squares / static_cast<double>(rows.points.size())), rows.quantity->unit, largest, rows.quantity->unit,
+        peak, rows.quantity->unit, rows.points.size());
   }
 
   static const Quantity& quantity_of(OrderedJsonReader& reader) {
@@ -258,8 +268,8 @@ std::span<const ParameterRule> handling_parameters() {
   static const std::vector<ParameterRule> rules = [] {
     std::vector<ParameterRule> all;
     const MagicFormula none;
-    visit_coefficients(
-        [&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); }, none);
+    visit_coefficients([&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); },
+                       none);
     return all;
   }();
   return rules;

@@ -26,12 +26,12 @@ struct Optimum;
 /// A parameter that a kind knows.
 struct ParameterRule {
   std::string name;
-  std::string unit;            // "-": none
-  double least = 0.0;          // what bounds may be
+  std::string unit;    // "-": none
+  double least = 0.0;  // what bounds may be
   double most = 0.0;
-  double lower = 0.0;          // bounds where the study gives none
+  double lower = 0.0;  // bounds where the study gives none
   double upper = 0.0;
-  bool logarithmic = true;     // scale where the study gives none; a bound of 0 needs a linear one
+  bool logarithmic = true;  // scale where the study gives none; a bound of 0 needs a linear one
 };
 
 /// A parameter of a study. Optimizers see it on a scale from 0 (lower) to 1 (upper).
@@ -49,10 +49,10 @@ struct Parameter {
 
 /// Data that a model is compared with: a curve y(x), or figures with names.
 struct Target {
-  std::string name;                 // of the study; those of one study differ
-  std::filesystem::path data;       // resolved
-  std::string what;                 // for people: "plate, 200 kPa"
-  std::string x_name, y_name;       // with units, as columns of fit.csv: "deflection_m", "force_N"
+  std::string name;            // of the study; those of one study differ
+  std::filesystem::path data;  // resolved
+  std::string what;            // for people: "plate, 200 kPa"
+  std::string x_name, y_name;  // with units, as columns of fit.csv: "deflection_m", "force_N"
   std::vector<double> x, y;
   std::vector<double> sigma;        // standard error of each y that its residual is divided by
   std::vector<std::string> labels;  // of figures; empty: a curve
@@ -65,10 +65,10 @@ inline constexpr std::string_view kTargetSets[] = {"fitted", "held_out"};
 
 /// What a model says of all points of a set of targets, one target after another.
 struct Prediction {
-  std::vector<double> values;  // in the units of the data
-  std::vector<double> errors;  // their standard errors; empty: none
-  std::string problem;         // why there are no values; empty: there are
-  double processor_time = 0.0; // that it took, s; 0: not told, as of quick models
+  std::vector<double> values;   // in the units of the data
+  std::vector<double> errors;   // their standard errors; empty: none
+  std::string problem;          // why there are no values; empty: there are
+  double processor_time = 0.0;  // that it took, s; 0: not told, as of quick models
 };
 
 /// A kind's model with its data, as a study asks for it.
@@ -76,9 +76,7 @@ class CalibrationModel {
  public:
   virtual ~CalibrationModel() = default;
 
-  const std::vector<Target>& targets(TargetSet set) const {
-    return set == TargetSet::fitted ? fitted_ : held_out_;
-  }
+  const std::vector<Target>& targets(TargetSet set) const { return set == TargetSet::fitted ? fitted_ : held_out_; }
   /// What the start file has for each parameter of the input, NaN where it says nothing.
   virtual std::vector<double> start_values() const = 0;
   /// A model that has no answer to these parameters says so in Prediction::problem.
@@ -100,7 +98,7 @@ struct CalibrationInput {
   std::filesystem::path start;          // resolved
   std::vector<std::string> parameters;  // those to fit, all known to the kind, in the order of their values
   std::vector<OrderedJsonReader> targets, held_out;  // one object each; the kind takes its keys and calls finish()
-  OrderedJsonReader whole;              // the study, for the keys that are the kind's own
+  OrderedJsonReader whole;                           // the study, for the keys that are the kind's own
 };
 
 /// A figure that targets of a kind may ask for by name, with the range of its values in the unit of the name.

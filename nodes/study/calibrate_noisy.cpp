@@ -69,8 +69,7 @@ Places design(const Eigen::VectorXd& start, int count, Draw& draw) {
       for (std::size_t i = 0; i < places.size(); ++i) places[i][k] = (order[i] + 0.5) / count;
     }
     places.insert(places.begin(), start);
-    if (const double least = least_distance(places); least > farthest)
-      farthest = least, best = std::move(places);
+    if (const double least = least_distance(places); least > farthest) farthest = least, best = std::move(places);
   }
   return best;
 }
@@ -133,8 +132,7 @@ class Misfit {
   /// How little is known at a place: the surrogates' variances over those of the targets.
   double doubt(const Eigen::VectorXd& place) const {
     double sum = 0.0;
-    for (std::size_t q = 0; q < points(); ++q)
-      sum += surrogates_[q].at(place).variance / (sigma_[q] * sigma_[q]);
+    for (std::size_t q = 0; q < points(); ++q) sum += surrogates_[q].at(place).variance / (sigma_[q] * sigma_[q]);
     return sum;
   }
 
@@ -200,8 +198,7 @@ class Noisy {
   Optimum run() {
     const std::vector<double> start = objective_.start();
     const int count = std::min(3 * static_cast<int>(size_), options_.evaluations - 3);
-    for (const Eigen::VectorXd& place :
-         design(Eigen::Map<const Eigen::VectorXd>(start.data(), size_), count, draw_))
+    for (const Eigen::VectorXd& place : design(Eigen::Map<const Eigen::VectorXd>(start.data(), size_), count, draw_))
       evaluate(place);
     require_answers();
     Eigen::VectorXd before;  // the least before this one

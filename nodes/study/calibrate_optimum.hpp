@@ -36,14 +36,14 @@ struct Reach {
 
 struct Optimum {
   std::vector<StartResult> starts;
-  std::vector<double> place;   // of the least
-  Eigen::VectorXd residuals;   // there
-  Eigen::MatrixXd jacobian;    // ∂r/∂share there; of a surrogate where the model is noisy
-  double squares = 0.0;        // Σ r² there
-  bool known_errors = false;   // r are over the whole standard errors: none is taken from the residuals
-  std::vector<Reach> reach;    // of every fitted figure of a noisy model
-  int evaluations = 0;         // of a noisy model that were asked for,
-  std::string ended = {};      // and why no further one
+  std::vector<double> place;  // of the least
+  Eigen::VectorXd residuals;  // there
+  Eigen::MatrixXd jacobian;   // ∂r/∂share there; of a surrogate where the model is noisy
+  double squares = 0.0;       // Σ r² there
+  bool known_errors = false;  // r are over the whole standard errors: none is taken from the residuals
+  std::vector<Reach> reach;   // of every fitted figure of a noisy model
+  int evaluations = 0;        // of a noisy model that were asked for,
+  std::string ended = {};     // and why no further one
 };
 
 }  // namespace furrow::study

@@ -48,9 +48,9 @@ Json targets_json(const std::vector<Target>& targets, const Prediction& predicti
   std::span<const double> rest = prediction.values;
   std::size_t first = 0;
   for (const Target& target : targets) {
-    Json json{{"name", target.name},     {"data", target.data.filename().string()},
-              {"what", target.what},     {"points", target.y.size()},
-              {"x", target.x_name},      {"y", target.y_name}};
+    Json json{{"name", target.name}, {"data", target.data.filename().string()},
+              {"what", target.what}, {"points", target.y.size()},
+              {"x", target.x_name},  {"y", target.y_name}};
     if (!target.labels.empty()) json["figures"] = figures_json(target, prediction, first, reach);
     first += target.y.size();
     if (!prediction.problem.empty()) {
@@ -145,9 +145,8 @@ std::string source_text(const Calibration& calibration, const CalibrationResults
     std::string noisy = fmt::format(
         "furrow calibrate {} of {} fitted {}: {}; {} evaluations, {:.2g} minutes of processor time. All "
         "other values are those of {}",
-        FURROW_VERSION, calibration.file.filename().string(), names,
-        reach_text(fitted, results.optimum.reach), results.optimum.evaluations, results.processor_time / 60.0,
-        calibration.start.filename().string());
+        FURROW_VERSION, calibration.file.filename().string(), names, reach_text(fitted, results.optimum.reach),
+        results.optimum.evaluations, results.processor_time / 60.0, calibration.start.filename().string());
     for (const std::string& warning : calibration_warnings(calibration, results)) noisy += ". Note: " + warning;
     return noisy;
   }
@@ -157,8 +156,7 @@ std::string source_text(const Calibration& calibration, const CalibrationResults
       FURROW_VERSION, calibration.file.filename().string(), names,
       list_of(calibration.model->targets(TargetSet::fitted)),
       joint_r_squared(calibration.model->targets(TargetSet::fitted), results.fitted.values),
-      100.0 * summary["fitted"]["largest_error_of_peak"].get<double>(),
-      calibration.start.filename().string());
+      100.0 * summary["fitted"]["largest_error_of_peak"].get<double>(), calibration.start.filename().string());
   for (const std::string& warning : calibration_warnings(calibration, results)) text += ". Note: " + warning;
   return text;
 }
@@ -168,12 +166,9 @@ std::string source_text(const Calibration& calibration, const CalibrationResults
 Json calibration_json(const Calibration& calibration, const CalibrationResults& results) {
   const std::vector<Target>&fitted = calibration.model->targets(TargetSet::fitted),
         &held_out = calibration.model->targets(TargetSet::held_out);
-  Json json{{"format_version", kFormatVersion},
-            {"version", FURROW_VERSION},
-            {"study", calibration.name},
-            {"description", calibration.description},
-            {"calibrate", calibration.kind->name},
-            {"start", calibration.start.filename().string()},
+  Json json{{"format_version", kFormatVersion},    {"version", FURROW_VERSION},
+            {"study", calibration.name},           {"description", calibration.description},
+            {"calibrate", calibration.kind->name}, {"start", calibration.start.filename().string()},
             {"result", calibration.result}};
   const Json of_fitted = targets_json(fitted, results.fitted, results.optimum.reach),
              of_held_out = targets_json(held_out, results.held_out);

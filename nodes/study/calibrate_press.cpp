@@ -108,12 +108,17 @@ const auto kPlanarRules = std::to_array<ParameterRule>({
     {"contact_stiffness", "N/m²", 1.0, 1e12, 1e5, 1e9, true},
 });
 
-constexpr PressKind kPlanar{"planar", false, kPlanarPlaces, tire::read_planar, nullptr, nullptr,
-                           [](const json& file) {
-                             const auto& size = tire::read_planar_file(file, "").params.size;
-                             return tire::kMostPlanarDeflection * (size.radius - size.rim_radius);
-                           },
-                           "0.6 of the tire's height over its rim"};
+constexpr PressKind kPlanar{"planar",
+                            false,
+                            kPlanarPlaces,
+                            tire::read_planar,
+                            nullptr,
+                            nullptr,
+                            [](const json& file) {
+                              const auto& size = tire::read_planar_file(file, "").params.size;
+                              return tire::kMostPlanarDeflection * (size.radius - size.rim_radius);
+                            },
+                            "0.6 of the tire's height over its rim"};
 static_assert(tire::kMostRingDeflection == 0.25 && tire::kMostPlanarDeflection == 0.6, "as most_text says");
 
 // ---- both
@@ -165,16 +170,16 @@ std::vector<double> read_curve(Target& target, double most, const char* most_tex
       throw table.wrong(row, fmt::format("deflection_m is {}, expected 0 to {}", number_text(deflection),
                                          number_text(kMostDeflection)));
     if (deflection > most)
-      throw table.wrong(row, fmt::format("deflection_m is {}, expected {:.4g} or less, {}",
-                                         number_text(deflection), most, most_text));
+      throw table.wrong(row, fmt::format("deflection_m is {}, expected {:.4g} or less, {}", number_text(deflection),
+                                         most, most_text));
     if (deflection == 0.0) continue;
     if (!target.x.empty() && !(deflection > target.x.back()))
       throw table.wrong(row, fmt::format("deflection_m is {}, expected more than that of the line before, {}",
                                          number_text(deflection), number_text(target.x.back())));
     const double force = table.number(row, "force_N");
     if (force < 0.0)
-      throw table.wrong(row, fmt::format("force_N is {}, expected 0 or more: a tire is pressed, not pulled",
-                                         number_text(force)));
+      throw table.wrong(
+          row, fmt::format("force_N is {}, expected 0 or more: a tire is pressed, not pulled", number_text(force)));
     last = row, largest = std::max(largest, force);
     target.x.push_back(deflection), target.y.push_back(force);
     if (!table.has("sigma_N")) continue;
@@ -184,8 +189,8 @@ std::vector<double> read_curve(Target& target, double most, const char* most_tex
   if (target.x.empty())
     throw input_error(target.data.string(), "", "has no point of loading with a deflection above 0");
   if (largest == 0.0)
-    throw table.wrong(
-        last, "force_N is 0 here and on all lines before, expected a force that rises with the deflection");
+    throw table.wrong(last,
+                      "force_N is 0 here and on all lines before, expected a force that rises with the deflection");
   return sigma;
 }
 
@@ -276,9 +281,8 @@ class PressModel final : public CalibrationModel {
       reader.skip("pressure");
       if (reader.has("pressure")) {
         if (!kind_.has_pressure)
-          reader.fail(
-              "pressure",
-              fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
+          reader.fail("pressure",
+                      fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
         press.pressure = reader.not_negative("pressure");
         if (*press.pressure > kMostPressure)
           reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
@@ -297,9 +301,9 @@ class PressModel final : public CalibrationModel {
       press.options.deflection = target.x.back();
       press.options.deflection_from = target.data.string(), press.options.deflection_key = "deflection_m";
       press.options.load = std::numeric_limits<double>::infinity();
-      target.state = fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g}", kind_.model, press.options.obstacle.height,
-                                 press.options.obstacle.width, press.options.obstacle.position,
-                                 press.pressure.value_or(-1.0));
+      target.state =
+          fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g}", kind_.model, press.options.obstacle.height,
+                      press.options.obstacle.width, press.options.obstacle.position, press.pressure.value_or(-1.0));
       targets.push_back(target);
       presses.push_back(press);
     }

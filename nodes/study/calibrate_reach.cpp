@@ -86,8 +86,8 @@ std::string reach_text(const std::vector<Target>& targets, const std::vector<Rea
   std::string text;
   each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
     text += fmt::format("{}{} {} (target {}, {})", text.empty() ? "" : ", ", target.name,
-                        with_error(reach[at].value, reach[at].error),
-                        with_error(target.y[k], target.sigma[k]), target.what);
+                        with_error(reach[at].value, reach[at].error), with_error(target.y[k], target.sigma[k]),
+                        target.what);
   });
   return text;
 }

@@ -186,8 +186,7 @@ class ScmModel final : public CalibrationModel {
                                    file.filename().string(), mark));
     if (!marked && !reader.has(key))
       throw table.wrong(
-          0,
-          fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
+          0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
     const double given = marked ? NAN : reader.positive(key);
     std::map<double, Points> tests;
     for (std::size_t row = 0; row < table.row_count(); ++row) {

@@ -76,9 +76,7 @@ bool pushed(double share, double gradient) {
 
 class Solver {
  public:
-  Solver(Objective& objective, std::function<void(int)> tell) : objective_(objective) {
-    told_.tell = std::move(tell);
-  }
+  Solver(Objective& objective, std::function<void(int)> tell) : objective_(objective) { told_.tell = std::move(tell); }
 
   StartResult from(std::vector<double> begin) {
     StartResult result{begin, begin, std::nullopt, 0, ""};
@@ -217,9 +215,10 @@ Optimum optimize_smooth(Objective& objective, const OptimizerOptions& options) {
   optimum.squares = r->squaredNorm();
   const auto J = objective.jacobian(optimum.place, *r);
   if (!J)
-    throw physics_error(fmt::format("{}: the least lies where the model has no answer on either side: narrower "
-                                    "bounds are needed",
-                                    objective.calibration().file.string()));
+    throw physics_error(
+        fmt::format("{}: the least lies where the model has no answer on either side: narrower "
+                    "bounds are needed",
+                    objective.calibration().file.string()));
   optimum.jacobian = *J;
   return optimum;
 }

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include <Eigen/SVD>
 #include <fmt/format.h>
+#include <Eigen/SVD>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/student_t.hpp"
@@ -14,12 +14,12 @@
 namespace furrow::study {
 namespace {
 
-constexpr double kAtBound = 1e-6;       // of the scale
-constexpr double kWide = 0.5;           // of the scale
-constexpr double kDegenerate = 1e-6;    // of the largest singular value: differences say no more
-constexpr double kNormal = 1.959964;    // 97.5 % point of the normal distribution
-constexpr double kNoValue = 1.0;        // of the scale: an interval as wide says nothing
-constexpr double kNamed = 0.02;         // of a direction
+constexpr double kAtBound = 1e-6;     // of the scale
+constexpr double kWide = 0.5;         // of the scale
+constexpr double kDegenerate = 1e-6;  // of the largest singular value: differences say no more
+constexpr double kNormal = 1.959964;  // 97.5 % point of the normal distribution
+constexpr double kNoValue = 1.0;      // of the scale: an interval as wide says nothing
+constexpr double kNamed = 0.02;       // of a direction
 
 struct Sums {
   double off = 0.0, total = 0.0;
@@ -56,9 +56,12 @@ Confidence confidence(std::span<const Parameter> parameters, std::span<const dou
   std::vector<Eigen::Index> free;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     Estimate e{parameters[k].off_scale(place[k]), Bound::none, {}, {}, {}};
-    if (place[k] <= kAtBound) e.at = Bound::lower;
-    else if (place[k] >= 1.0 - kAtBound) e.at = Bound::upper;
-    else free.push_back(static_cast<Eigen::Index>(k));
+    if (place[k] <= kAtBound)
+      e.at = Bound::lower;
+    else if (place[k] >= 1.0 - kAtBound)
+      e.at = Bound::upper;
+    else
+      free.push_back(static_cast<Eigen::Index>(k));
     c.estimates.push_back(e);
   }
   c.freedom = static_cast<int>(residuals.size()) - static_cast<int>(free.size());
@@ -108,9 +111,8 @@ Confidence confidence(std::span<const Parameter> parameters, std::span<const dou
 std::string combination_text(std::span<const Parameter> parameters, std::span<const double> direction) {
   std::vector<std::size_t> order(direction.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(direction[a]) > std::abs(direction[b]);
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return std::abs(direction[a]) > std::abs(direction[b]); });
   std::string text;
   for (const std::size_t k : order) {
     if (std::abs(direction[k]) < kNamed) break;

@@ -28,7 +28,7 @@ namespace furrow::study {
 enum class Bound { none, lower, upper };
 
 struct Estimate {
-  double value = 0.0;                    // in the parameter's unit
+  double value = 0.0;  // in the parameter's unit
   Bound at = Bound::none;
   std::optional<double> standard_error;  // in its unit; none: at a bound, or not determined
   std::optional<double> low, high;       // 95 % interval, on a logarithmic scale around the value's logarithm
@@ -59,7 +59,7 @@ std::string combination_text(std::span<const Parameter> parameters, std::span<co
 
 /// How well values meet data.
 struct Goodness {
-  double r_squared = 0.0;      // 1 − Σ(model − data)²/Σ(data − their mean)², both over σ²; NaN: the data do not vary
+  double r_squared = 0.0;  // 1 − Σ(model − data)²/Σ(data − their mean)², both over σ²; NaN: the data do not vary
   double largest_error = 0.0;  // |model − data|, in the unit of the data
   double peak = 0.0;           // largest |data|
   double root_mean_square = 0.0;

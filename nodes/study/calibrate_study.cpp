@@ -48,8 +48,7 @@ const ParameterRule& rule_of(Reader& reader, const CalibrationKind& kind, const 
 
 bool is_logarithmic(Reader& reader, const ParameterRule& rule) {
   const std::string scale = reader.text_or("scale", rule.logarithmic ? "log" : "linear");
-  if (scale != "log" && scale != "linear")
-    reader.fail("scale", "is '" + scale + "', expected 'log' or 'linear'");
+  if (scale != "log" && scale != "linear") reader.fail("scale", "is '" + scale + "', expected 'log' or 'linear'");
   return scale == "log";
 }
 
@@ -68,12 +67,12 @@ Parameter parameter_of(Reader reader, const ParameterRule& rule) {
   if (reader.has("start")) {
     p.start = reader.number("start");
     if (!(p.start >= p.lower && p.start <= p.upper))
-      reader.fail("start", fmt::format("is {}, expected a value from lower to upper, {} to {} {}",
-                                       number_text(p.start), number_text(p.lower), number_text(p.upper), p.unit));
+      reader.fail("start", fmt::format("is {}, expected a value from lower to upper, {} to {} {}", number_text(p.start),
+                                       number_text(p.lower), number_text(p.upper), p.unit));
   }
   if (!(p.lower < p.upper))
-    reader.fail("upper", fmt::format("is {}, expected more than lower, {}", number_text(p.upper),
-                                     number_text(p.lower)));
+    reader.fail("upper",
+                fmt::format("is {}, expected more than lower, {}", number_text(p.upper), number_text(p.lower)));
   if (p.logarithmic && !(p.lower > 0.0))
     reader.fail("lower", fmt::format("is {}, expected above 0 for the scale 'log'", number_text(p.lower)));
   reader.finish();
@@ -206,8 +205,8 @@ Calibration load_calibration(const std::filesystem::path& name) {
   c.seed = reader.given("seed") ? static_cast<std::uint64_t>(reader.count("seed", 0, kLargestSeed)) : c.seed;
   if (kind.noisy) c.evaluations = evaluations_of(reader, c.parameters.size());
   c.result = result_name(reader, c);
-  CalibrationInput input{
-      file, c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false), reader};
+  CalibrationInput input{file,  c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false),
+                         reader};
   for (const Parameter& p : c.parameters) input.parameters.push_back(p.name);
   c.model = c.kind->read(input);
   require_names(reader, *c.model);

@@ -31,7 +31,7 @@ struct Calibration {
   int starts = 8;
   std::uint64_t seed = 1;
   int evaluations = 0;  // of a noisy model at most
-  std::string result;  // name of the fitted file
+  std::string result;   // name of the fitted file
   /// Of all that a prediction depends on: start file, parameters, targets and the program's version.
   std::string digest;
 };

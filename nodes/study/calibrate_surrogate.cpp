@@ -30,8 +30,7 @@ double median_square(const std::vector<double>& errors) {
 
 }  // namespace
 
-Surrogate::Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& values,
-                     const std::vector<double>& errors)
+Surrogate::Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& values, const std::vector<double>& errors)
     : places_(places) {
   const Eigen::Index n = places.cols(), p = places.rows();
   FURROW_ASSERT(n >= 2 && values.size() == n, n, values.size());
@@ -60,8 +59,7 @@ Surrogate::Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& value
       for (const double length : kLengths) {
         State state;
         state.signal = signal, state.length = length, state.noise = part;
-        if (solve(state) && (!found || state.likelihood > state_.likelihood))
-          state_ = std::move(state), found = true;
+        if (solve(state) && (!found || state.likelihood > state_.likelihood)) state_ = std::move(state), found = true;
         if (signal == 0.0) break;  // then no length matters
       }
   FURROW_ASSERT(found, n, p);
@@ -74,9 +72,9 @@ bool Surrogate::solve(State& s) const {
   Eigen::MatrixXd C(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j)
-      C(i, j) = C(j, i) = s.signal * std::exp(-0.5 * (places_.col(i) - places_.col(j)).squaredNorm() /
-                                              (s.length * s.length)) +
-                          (i == j ? s.noise * weights_[i] : 0.0);
+      C(i, j) = C(j, i) =
+          s.signal * std::exp(-0.5 * (places_.col(i) - places_.col(j)).squaredNorm() / (s.length * s.length)) +
+          (i == j ? s.noise * weights_[i] : 0.0);
   s.covariance.compute(C);
   if (s.covariance.info() != Eigen::Success) return false;
   s.weighted = s.covariance.solve(trend_);
@@ -85,8 +83,8 @@ bool Surrogate::solve(State& s) const {
   s.beta = s.trend.solve(s.weighted.transpose() * values_);
   const Eigen::VectorXd off = values_ - trend_ * s.beta;
   s.rest = s.covariance.solve(off);
-  const double logs = s.covariance.matrixLLT().diagonal().array().log().sum() +
-                      s.trend.matrixLLT().diagonal().array().log().sum();
+  const double logs =
+      s.covariance.matrixLLT().diagonal().array().log().sum() + s.trend.matrixLLT().diagonal().array().log().sum();
   s.likelihood = -logs - 0.5 * off.dot(s.rest);
   return std::isfinite(s.likelihood);
 }

@@ -27,8 +27,7 @@ class Surrogate {
   /// @param places one column for each evaluation, on the scales @param values there, in the figure's unit
   /// @param errors of each value that the model tells, in the figure's unit; none, 0 or NaN: not known
   /// @pre two evaluations or more
-  Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& values,
-            const std::vector<double>& errors = {});
+  Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& values, const std::vector<double>& errors = {});
 
   struct Answer {
     double value = 0.0;        // without noise

@@ -13,8 +13,8 @@
 
 namespace furrow::study {
 
-terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest,
-                                       const ProgressCall& progress, const std::filesystem::path& file) {
+terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
+                                       const std::filesystem::path& file) {
   const checkpoint::ResumePoint point = checkpoint::last_checkpoint(run);
   const scenario::Scenario scenario = scenario::load_scenario(run / "scenario.json", {});
   const terrain::dem::DemOptions grains = scenario.grains("only grains keep a rut");

@@ -30,9 +30,7 @@ Json load_document(const std::filesystem::path& file) {
   return document;
 }
 
-bool given_text(const Json& document, const char* key) {
-  return document.contains(key) && document[key].is_string();
-}
+bool given_text(const Json& document, const char* key) { return document.contains(key) && document[key].is_string(); }
 
 /// All combinations of the values in `grid`, none of whose keys is in `common`.
 std::vector<Json> grid(Reader& reader, const Json& common) {
@@ -40,8 +38,7 @@ std::vector<Json> grid(Reader& reader, const Json& common) {
   const Json axes = reader.object_or_empty("grid");
   for (const auto& [key, values] : axes.items()) {
     if (common.contains(key)) reader.fail("grid." + key, "is in 'set' as well, expected it in one of them");
-    if (!values.is_array() || values.empty())
-      reader.fail("grid." + key, "expected a list of values, one or more");
+    if (!values.is_array() || values.empty()) reader.fail("grid." + key, "expected a list of values, one or more");
     if (runs.size() * values.size() > kMaxRuns)
       reader.fail("grid", fmt::format("makes more than {} runs, expected fewer", kMaxRuns));
     std::vector<Json> more;
@@ -58,8 +55,8 @@ std::vector<Json> grid(Reader& reader, const Json& common) {
 std::vector<Json> list(Reader& reader) {
   const Json& entries = reader.array("list");
   if (entries.empty() || entries.size() > kMaxRuns)
-    reader.fail("list", fmt::format("has {} entries, expected 1 to {} objects {{ }} of keys and values",
-                                    entries.size(), kMaxRuns));
+    reader.fail("list", fmt::format("has {} entries, expected 1 to {} objects {{ }} of keys and values", entries.size(),
+                                    kMaxRuns));
   for (const Json& entry : entries)
     if (!entry.is_object()) reader.fail("list", "expected objects { } of keys and values in it");
   return entries.get<std::vector<Json>>();
@@ -100,8 +97,7 @@ Json checked_plot(Reader& reader, const Study& study) {
     std::vector<std::string> choice = of_results ? std::vector<std::string>() : varied;
     if (of_results || key == "x") choice.insert(choice.end(), study.results.begin(), study.results.end());
     if (std::find(choice.begin(), choice.end(), value.get<std::string>()) == choice.end())
-      reader.fail(path, fmt::format("is '{}', expected one of: {}", value.get<std::string>(),
-                                    fmt::join(choice, ", ")));
+      reader.fail(path, fmt::format("is '{}', expected one of: {}", value.get<std::string>(), fmt::join(choice, ", ")));
   }
   if (plot.contains("x") != plot.contains("y"))
     reader.fail(plot.contains("x") ? "plot.y" : "plot.x", "is missing, expected both x and y");
@@ -111,8 +107,7 @@ Json checked_plot(Reader& reader, const Study& study) {
 }  // namespace
 
 Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
-                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed,
-                    int beds) {
+                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed, int beds) {
   Study study;
   study.file = study.scenario = scenario;
   study.name = name;
@@ -150,8 +145,7 @@ Study load_study(const std::filesystem::path& name) {
     if (std::find(study.runs.begin(), run, *run) != run)
       reader.fail(given("list") ? "list" : "grid",
                   fmt::format("has the run '{}' twice, expected each once", text_of(*run)));
-  if (given("rest") && !given("passes"))
-    reader.fail("rest", "is the time between passes, expected 'passes' as well");
+  if (given("rest") && !given("passes")) reader.fail("rest", "is the time between passes, expected 'passes' as well");
   if (given("passes")) {
     study.passes = reader.count("passes", 1, 1000);
     study.rest = rest(reader);

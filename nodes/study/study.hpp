@@ -30,7 +30,7 @@ struct Study {
   std::vector<std::string> names;            // folders of the runs; empty: by their digests
   std::vector<std::string> results;          // of summary.json; whether a mean is steady is always among them
   std::vector<std::string> chosen_results;   // those that the user asked for
-  nlohmann::ordered_json plot;  // null: none
+  nlohmann::ordered_json plot;               // null: none
   int passes = 0;     // of each run, every one on the bed that the one before it left; 0: beds of their own
   double rest = 0.2;  // s, simulated, that the bed lies between passes
 };
@@ -42,8 +42,7 @@ Study load_study(const std::filesystem::path& name);
 /// @param settings of the command line, for all runs
 /// @pre beds > 0
 Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
-                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed,
-                    int beds);
+                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed, int beds);
 
 /// As `--set key=value` takes them.
 std::vector<std::pair<std::string, std::string>> settings_of(const nlohmann::ordered_json& values);

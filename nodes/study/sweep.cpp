@@ -105,9 +105,7 @@ void Sweep::require_unlike_runs() const {
     if (!run.loaded) continue;
     const auto [of_digest, is_new] = known.try_emplace(run.digest, &run);
     if (is_new) continue;
-    const auto words = [](const Run& r) {
-      return r.keys.empty() ? std::string("no settings") : text_of(r.keys);
-    };
+    const auto words = [](const Run& r) { return r.keys.empty() ? std::string("no settings") : text_of(r.keys); };
     throw input_error(
         study_.file.string(), "",
         fmt::format("has a run with {} and a run with {}, which have the same results: what they differ in "
@@ -173,8 +171,7 @@ std::vector<std::string> Sweep::command(const Run& run) const {
   std::error_code error;
   const std::string program = fs::read_symlink("/proc/self/exe", error).string();
   const fs::path folder = folder_of(run);
-  if (!checkpoint::list_checkpoints(folder).empty())
-    return {program, "resume", "--no-plots", "--", folder.string()};
+  if (!checkpoint::list_checkpoints(folder).empty()) return {program, "resume", "--no-plots", "--", folder.string()};
   std::vector<std::string> list{program, "run", "--no-plots", "--out=" + folder.string()};
   if (fs::exists(folder, error)) list.emplace_back("--overwrite");
   Json all = study_.common;
@@ -210,8 +207,8 @@ void Sweep::show_progress() {
   }
   if (begin_ == 0.0) begin_ = now, begin_share_ = share;
   const bool under_way = share > 0.0 && share < 1.0;  // then the share follows
-  launch::Progress progress{
-      .phase = fmt::format("{} of {} runs done{}", done, runs_.size(), under_way ? "," : ""), .share = share};
+  launch::Progress progress{.phase = fmt::format("{} of {} runs done{}", done, runs_.size(), under_way ? "," : ""),
+                            .share = share};
   if (share > begin_share_) progress.eta = (now - begin_) * (1.0 - share) / (share - begin_share_);
   display_.show(progress);
 }
@@ -233,8 +230,8 @@ Sweep::Run* Sweep::next() {
     keep_results(run, summary);
     const std::vector<std::string> lost = checkpoint::lost_results(folder_of(run), false);
     tell(run, lost.empty() ? "is done already"
-                           : fmt::format("is done already, but {} is missing: see furrow resume {}",
-                                         lost.front(), folder_of(run).string()));
+                           : fmt::format("is done already, but {} is missing: see furrow resume {}", lost.front(),
+                                         folder_of(run).string()));
   }
   return nullptr;
 }
@@ -251,14 +248,12 @@ bool Sweep::prepare_bed(Run& run) try {
     launch::add_to_run_list(options_.folder, {"beds/", "beds/" + bed.filename().string()});
     fs::create_directory(bed.parent_path(), error);
     const auto progress = [&](const std::string& what, double share) {
-      if (launch::stop_signalled())
-        throw Error(ExitCode::stopped, "stopped by a signal while the bed rested");
+      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed rested");
       display_.show({.phase = what, .share = share});
     };
     const terrain::dem::RestResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
-    tell(run, fmt::format(
-                  "begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
-                  rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
+    tell(run, fmt::format("begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
+                          rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
   }
   run.passes_on["terrain.bed"] = fs::absolute(bed, error).string();
   run.passes_on["terrain.undisturbed_height"] = value_at(read_summary(folder_of(first)), "surface_height_m");
@@ -285,8 +280,7 @@ void Sweep::start(Run& run, std::size_t share) {
   FURROW_ASSERT(in_range(share, shares_.size()), share, shares_.size());
   FURROW_ASSERT(run.state == State::waiting && run.loaded, static_cast<int>(run.state), run.loaded);
   std::error_code error;
-  launch::add_to_run_list(options_.folder,
-                          {study_.names.empty() ? "runs/" : run.name + "/", run.name + ".log"});
+  launch::add_to_run_list(options_.folder, {study_.names.empty() ? "runs/" : run.name + "/", run.name + ".log"});
   fs::create_directory(folder_of(run).parent_path(), error);
   launch::wait_until_free(folder_of(run));  // ranks outlive a supervisor that was killed by a second or two
   const std::vector<std::string> list = command(run);
@@ -296,12 +290,8 @@ void Sweep::start(Run& run, std::size_t share) {
     launch::forget_launcher();
     launch::make_no_parents();
   };
-  run.process = launch::start_child({.command = list,
-                                     .out = log,
-                                     .err = log,
-                                     .own_group = true,
-                                     .death_signal = SIGTERM,
-                                     .prepare = prepare});
+  run.process = launch::start_child(
+      {.command = list, .out = log, .err = log, .own_group = true, .death_signal = SIGTERM, .prepare = prepare});
   close(log);
   run.share = share;
   run.state = State::running;
@@ -329,27 +319,24 @@ void Sweep::poll(Run& run) {
       if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
     const double pull = number("drawbar_pull_N.mean");  // not every rig has one
     const bool unsteady = value_at(summary, "drawbar_pull_N.steady") == false;
-    tell(run, std::isfinite(pull)
-                  ? fmt::format("is done: pull {} N{}", with_error(pull, number("drawbar_pull_N.sem")),
-                                unsteady ? ", NOT STEADY" : "")
-                  : "is done");
+    tell(run, std::isfinite(pull) ? fmt::format("is done: pull {} N{}", with_error(pull, number("drawbar_pull_N.sem")),
+                                                unsteady ? ", NOT STEADY" : "")
+                                  : "is done");
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
       tell(run,
-           fmt::format(
-               "stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
-               "for soil without a floor (more terrain.layers)",
-               100.0 * deep));
+           fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
+                       "for soil without a floor (more terrain.layers)",
+                       100.0 * deep));
   } else {
     run.state = State::failed;
     keep_results(run, read_failed_summary(folder_of(run)));
-    run.problem =
-        run.exit_code == 0
-            ? "holds the results of another scenario: it was resumed with other keys, or files were "
-              "changed meanwhile; remove it to run it again"
-            : launch::last_error(log_of(run), status);
+    run.problem = run.exit_code == 0
+                      ? "holds the results of another scenario: it was resumed with other keys, or files were "
+                        "changed meanwhile; remove it to run it again"
+                      : launch::last_error(log_of(run), status);
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
-    tell_failure(run, fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem,
-                                  log_of(run).string()));
+    tell_failure(run,
+                 fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem, log_of(run).string()));
   }
   write_table();
 }
@@ -370,10 +357,9 @@ void Sweep::require_folder(const launch::FolderLock& lock) {
     while (waitpid(run.process, nullptr, 0) < 0 && errno == EINTR) continue;
     run.process = -1;
   }
-  throw io_error(
-      options_.folder.string(),
-      "was moved, removed or emptied while the study was under way; it ends here and writes nothing "
-      "elsewhere");
+  throw io_error(options_.folder.string(),
+                 "was moved, removed or emptied while the study was under way; it ends here and writes nothing "
+                 "elsewhere");
 }
 
 /// Ctrl-Z reaches this process alone: the runs have groups of their own.
@@ -443,9 +429,8 @@ void Sweep::write_table() const {
   text += ",problem\n";
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const Run& run = runs_[i];
-    text += fmt::format(
-        "{},{},{},{}", i + 1, run.loaded ? run.name : "", state_name(static_cast<int>(run.state)),
-        run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
+    text += fmt::format("{},{},{},{}", i + 1, run.loaded ? run.name : "", state_name(static_cast<int>(run.state)),
+                        run.state == State::done || run.state == State::failed ? std::to_string(run.exit_code) : "");
     if (run.pass > 0) text += fmt::format(",{}", run.pass);
     for (const std::string& key : keys) text += "," + (run.keys.contains(key) ? cell(run.keys[key]) : "");
     text += run.cells + "," + cell(run.problem) + "\n";
@@ -456,8 +441,7 @@ void Sweep::write_table() const {
 std::vector<Sweep::Outcome> Sweep::outcomes() const {
   std::vector<Outcome> all;
   for (const Run& run : runs_)
-    all.push_back(
-        {folder_of(run), run.state == State::done, static_cast<ExitCode>(run.exit_code), run.problem});
+    all.push_back({folder_of(run), run.state == State::done, static_cast<ExitCode>(run.exit_code), run.problem});
   return all;
 }
 

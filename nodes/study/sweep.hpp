@@ -56,10 +56,9 @@ class Sweep {
  private:
   enum class State { waiting, running, done, failed, stopped };
   struct Run {
-    nlohmann::ordered_json keys = nlohmann::ordered_json::object();  // what the user varies
-    nlohmann::ordered_json passes_on =
-        nlohmann::ordered_json::object();  // what a pass takes from those before
-    int pass = 0;                          // 1, 2, …; 0: on a bed of its own
+    nlohmann::ordered_json keys = nlohmann::ordered_json::object();       // what the user varies
+    nlohmann::ordered_json passes_on = nlohmann::ordered_json::object();  // what a pass takes from those before
+    int pass = 0;                                                         // 1, 2, …; 0: on a bed of its own
     State state = State::waiting;
     bool loaded = false;
     std::string digest, problem;

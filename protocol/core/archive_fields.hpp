@@ -47,9 +47,7 @@ requires requires { T::SizeAtCompileTime; }
 struct Stored<T> {
   using Number = typename T::Scalar;
   static constexpr std::size_t kCount = T::SizeAtCompileTime;
-  static void add(std::vector<Number>& to, const T& value) {
-    to.insert(to.end(), value.data(), value.data() + kCount);
-  }
+  static void add(std::vector<Number>& to, const T& value) { to.insert(to.end(), value.data(), value.data() + kCount); }
   static void take(const Number* from, T& value) { std::copy_n(from, kCount, value.data()); }
 };
 
@@ -121,8 +119,7 @@ class ColumnWriter {
   void add(const S& values) {
     auto column = columns_.begin();
     detail::each_leaf_value(values, [&]<class T>(const T& value) {
-      detail::Stored<T>::add(std::get<std::vector<typename detail::Stored<T>::Number>>(column->second),
-                             value);
+      detail::Stored<T>::add(std::get<std::vector<typename detail::Stored<T>::Number>>(column->second), value);
       ++column;
     });
   }
@@ -170,15 +167,13 @@ class ColumnReader {
     bool first = true;
     detail::each_leaf(name, none, [&]<class T>(const std::string& path, const T&) {
       using Stored = detail::Stored<T>;
-      if (std::exchange(first, false))
-        count = archive.get<typename Stored::Number>(path).size() / Stored::kCount;
+      if (std::exchange(first, false)) count = archive.get<typename Stored::Number>(path).size() / Stored::kCount;
     });
     return count;
   }
 
   std::size_t count_;
-  std::vector<std::variant<const double*, const std::int64_t*, const std::int32_t*, const std::uint64_t*>>
-      next_;
+  std::vector<std::variant<const double*, const std::int64_t*, const std::int32_t*, const std::uint64_t*>> next_;
 };
 
 /// One value under its name.
@@ -217,8 +212,7 @@ inline void restore_value(const Archive& archive, const std::string& name, std::
 }
 /// @throws Error(io) likewise, and unless there are `count` of them
 template <class T>
-void restore_value(const Archive& archive, const std::string& name, std::vector<T>& values,
-                   std::size_t count) {
+void restore_value(const Archive& archive, const std::string& name, std::vector<T>& values, std::size_t count) {
   using Stored = detail::Stored<T>;
   const auto* from = archive.get<typename Stored::Number>(name, count * Stored::kCount).data();
   values.assign(count, T{});
@@ -247,8 +241,7 @@ void save_fields(Archive& archive, const std::string& name, const S& values) {
 /// What save_fields has put. @throws Error(io) naming the field that is missing, of another type or of another size
 template <HasFields S>
 void restore_fields(const Archive& archive, const std::string& name, S& values) {
-  detail::each_leaf(name, values,
-                    [&](const std::string& path, auto& value) { restore_value(archive, path, value); });
+  detail::each_leaf(name, values, [&](const std::string& path, auto& value) { restore_value(archive, path, value); });
 }
 
 }  // namespace furrow

@@ -45,9 +45,8 @@ std::string values_text(const Values&... values) {
   return out.str();
 }
 
-[[noreturn]] inline void assertion_failed(const char* file, int line, const char* function,
-                                          const char* condition, const char* names,
-                                          const std::string& values) {
+[[noreturn]] inline void assertion_failed(const char* file, int line, const char* function, const char* condition,
+                                          const char* names, const std::string& values) {
   std::fprintf(stderr, "%s:%d: %s: precondition failed: %s%s%s%s%s%s\n", file, line, function, condition,
                *names ? " [" : "", names, *names ? " = " : "", values.c_str(), *names ? "]" : "");
   std::abort();
@@ -56,11 +55,10 @@ std::string values_text(const Values&... values) {
 }  // namespace furrow::detail
 
 #ifndef NDEBUG
-#define FURROW_ASSERT(condition, ...)                                                                  \
-  ((condition)                                                                                         \
-       ? void(0)                                                                                       \
-       : ::furrow::detail::assertion_failed(__FILE__, __LINE__, __func__, #condition, "" #__VA_ARGS__, \
-                                            ::furrow::detail::values_text(__VA_ARGS__)))
+#define FURROW_ASSERT(condition, ...)                                                                          \
+  ((condition) ? void(0)                                                                                       \
+               : ::furrow::detail::assertion_failed(__FILE__, __LINE__, __func__, #condition, "" #__VA_ARGS__, \
+                                                    ::furrow::detail::values_text(__VA_ARGS__)))
 #else
 // Not evaluated, but compiled: what only assertions use is used.
 #define FURROW_ASSERT(condition, ...) \

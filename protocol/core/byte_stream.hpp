@@ -102,9 +102,7 @@ class ByteReader {
     if (count > 0) std::memcpy(to, bytes_.data() + at_, count);
     at_ += count;
   }
-  [[noreturn]] static void fail() {
-    throw Error(ExitCode::rank_lost, "a message is shorter than its kind requires");
-  }
+  [[noreturn]] static void fail() { throw Error(ExitCode::rank_lost, "a message is shorter than its kind requires"); }
 
   const std::vector<std::byte>& bytes_;
   std::size_t at_ = 0;

@@ -30,9 +30,8 @@ enum class ColumnKind {
 
 struct Column : Field {  // its name ends in its unit
   ColumnKind kind = ColumnKind::instant;
-  double sign = 1.0;  // of the value as it is written
-  const char* after =
-      "";  // of a column that is added to a table: the column that it follows; empty: it comes last
+  double sign = 1.0;       // of the value as it is written
+  const char* after = "";  // of a column that is added to a table: the column that it follows; empty: it comes last
 
   constexpr Column negative() const {
     Column other = *this;

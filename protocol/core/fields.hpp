@@ -25,10 +25,9 @@ inline constexpr unsigned none = 0;
 inline constexpr unsigned key = 1U << 0U;  // a key of the scenario, by this name in its struct's section
 inline constexpr unsigned bed =
     1U << 1U;  // changes a settled bed: part of the bed's digest where it is not the default
-inline constexpr unsigned soil = 1U << 2U;  // a property of soil: soil files may say it
-inline constexpr unsigned harmless =
-    1U << 3U;  // changes no result: not part of the scenario's digest, free on resume
-inline constexpr unsigned column = 1U << 4U;  // a column of the time series
+inline constexpr unsigned soil = 1U << 2U;      // a property of soil: soil files may say it
+inline constexpr unsigned harmless = 1U << 3U;  // changes no result: not part of the scenario's digest, free on resume
+inline constexpr unsigned column = 1U << 4U;    // a column of the time series
 }  // namespace role
 
 struct Field {

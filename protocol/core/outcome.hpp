@@ -16,9 +16,7 @@ struct [[nodiscard]] Outcome {
   std::string what;    // "did not converge", "reached its rim", "grain 17 left the bin"
   std::string detail;  // figures, and what to try
 
-  static Outcome failure(std::string what, std::string detail) {
-    return {false, std::move(what), std::move(detail)};
-  }
+  static Outcome failure(std::string what, std::string detail) { return {false, std::move(what), std::move(detail)}; }
   /// "WHO WHAT WHERE: DETAIL", the caller's words for which partner and when.
   std::string message(const std::string& who, const std::string& where = "") const {
     return who + " " + what + where + (detail.empty() ? "" : ": " + detail);

@@ -12,8 +12,7 @@ class PacedCall {
 
   /// @param call  may be empty; must outlive this
   /// @param quiet s in the beginning during which nothing is said
-  explicit PacedCall(const ProgressCall& call, double quiet = 0.0)
-      : call_(call), next_(wall_clock() + quiet) {}
+  explicit PacedCall(const ProgressCall& call, double quiet = 0.0) : call_(call), next_(wall_clock() + quiet) {}
 
   /// Says it, unless something was said just now. May throw what the call throws.
   void operator()(const char* what, double share) {

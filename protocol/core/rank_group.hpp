@@ -35,8 +35,7 @@ class RankGroup {
 
 /// What each rank has given, one behind the other, on every rank. The same everywhere, in the order of ranks.
 template <class T>
-requires std::is_trivially_copyable_v<T> std::vector<T> gather_on_all(RankGroup& group,
-                                                                      std::span<const T> own) {
+requires std::is_trivially_copyable_v<T> std::vector<T> gather_on_all(RankGroup& group, std::span<const T> own) {
   const auto* from = reinterpret_cast<const std::byte*>(own.data());
   RankGroup::Bytes all;
   for (const RankGroup::Bytes& part : group.gather({from, from + own.size_bytes()}))

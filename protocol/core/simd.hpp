@@ -132,9 +132,7 @@ inline T smaller(T a, T b) {
 
 inline Float4 low_half(Float8 v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
 inline Float4 high_half(Float8 v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
-inline Float8 join(Float4 low, Float4 high) {
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
+inline Float8 join(Float4 low, Float4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
 // GCC 12 makes four moves through memory of the plain conversions.
 inline Double4 widened(Float4 v) {
 #ifdef __AVX__

@@ -16,8 +16,7 @@ inline double incomplete_beta(double a, double b, double x) {
   if (x >= 1.0) return 1.0;
   if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incomplete_beta(b, a, 1.0 - x);
   const double front =
-      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) /
-      a;
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
   constexpr double kTiny = 1e-300;
   double c = 1.0, d = 1.0 / std::max(1.0 - (a + b) * x / (a + 1.0), kTiny), h = d;
   for (int m = 1; m <= 300; ++m) {

@@ -16,10 +16,9 @@ struct ContactSums {
   Vec3 tangential = Vec3::Zero();        // N
   Vec3 moment = Vec3::Zero();            // about the world origin, N m
   double transfer_force_residual = 0.0;  // |Σ nodal − Σ contact| / Σ|f|, this interval's largest
-  double transfer_moment_residual =
-      0.0;            // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
-  double work = 0.0;  // this interval: Σ_substeps f·Δx̃ of the vertices, J
-  std::int64_t contacts = 0;  // of the last substep
+  double transfer_moment_residual = 0.0;  // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
+  double work = 0.0;                      // this interval: Σ_substeps f·Δx̃ of the vertices, J
+  std::int64_t contacts = 0;              // of the last substep
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ContactSums> auto& s) {
@@ -43,7 +42,7 @@ struct TerrainEnergies {
   double potential = 0.0;           // of gravity, now
   double elastic_normal = 0.0;      // normal springs, now
   double elastic_tangential = 0.0;  // tangential and rolling springs, now
-  double cohesion = 0.0;  // stored in adhesive contacts, now; below 0, it must be paid back to part them
+  double cohesion = 0.0;            // stored in adhesive contacts, now; below 0, it must be paid back to part them
   double sliding_loss = 0.0;
   double normal_damping_loss = 0.0;
   double tangential_damping_loss = 0.0;
@@ -55,13 +54,10 @@ struct TerrainEnergies {
   double sample_error = 0.0;  // estimated standard error of losses() by sampling; 0: nothing is sampled
 
   double losses() const {
-    return sliding_loss + normal_damping_loss + tangential_damping_loss + rolling_loss + opening_loss +
-           sleep_loss;
+    return sliding_loss + normal_damping_loss + tangential_damping_loss + rolling_loss + opening_loss + sleep_loss;
   }
   /// What is stored now.
-  double stored() const {
-    return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion;
-  }
+  double stored() const { return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion; }
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<TerrainEnergies> auto& s) {

@@ -16,16 +16,15 @@ namespace furrow {
 /// is what the model's formulas leave over (tire/README.md, Accounts).
 struct TireDiagnostics {
   static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-  double kinetic_energy = kMissing;          // J, now
-  double elastic_energy = kMissing;          // with what relaxing branches store, J, now
-  double pressure_energy = kMissing;         // −p (V − V₀), without what a changing p put there, J, now
-  double potential_energy = kMissing;        // of gravity, J, now
-  double dissipation = kMissing;             // structural damping and relaxation, J, cumulative
-  double numerical_loss = kMissing;          // to the rule of time integration, J, cumulative
-  double solver_loss = kMissing;             // to what the solver left of its equations, J, cumulative
-  Vec3 momentum = Vec3::Constant(kMissing);  // kg m/s, now
-  Vec3 solver_impulse =
-      Vec3::Constant(kMissing);  // of the same remainder, N s, cumulative; part of the spindle's
+  double kinetic_energy = kMissing;                // J, now
+  double elastic_energy = kMissing;                // with what relaxing branches store, J, now
+  double pressure_energy = kMissing;               // −p (V − V₀), without what a changing p put there, J, now
+  double potential_energy = kMissing;              // of gravity, J, now
+  double dissipation = kMissing;                   // structural damping and relaxation, J, cumulative
+  double numerical_loss = kMissing;                // to the rule of time integration, J, cumulative
+  double solver_loss = kMissing;                   // to what the solver left of its equations, J, cumulative
+  Vec3 momentum = Vec3::Constant(kMissing);        // kg m/s, now
+  Vec3 solver_impulse = Vec3::Constant(kMissing);  // of the same remainder, N s, cumulative; part of the spindle's
 
   double strain_energy() const { return elastic_energy + pressure_energy; }
   double stored() const { return kinetic_energy + strain_energy() + potential_energy; }

@@ -55,8 +55,7 @@ std::string array_name(const std::string& stored, const ArchiveKind& kind) {
   return stored.starts_with(group + "/") ? swapped(stored.substr(group.size() + 1), ':', '/') : "";
 }
 
-Archive::Array read_array(const Hdf5Reader& file, const std::filesystem::path& path,
-                          const std::string& name) {
+Archive::Array read_array(const Hdf5Reader& file, const std::filesystem::path& path, const std::string& name) {
   switch (file.type(name)) {
     case Hdf5Type::float64:
       return file.get<double>(name);
@@ -69,8 +68,7 @@ Archive::Array read_array(const Hdf5Reader& file, const std::filesystem::path& p
     case Hdf5Type::uint8:
       return file.get<std::uint8_t>(name);
     default:
-      throw io_error(path.string(),
-                     "the dataset '" + name + "' is of a type that no array has: it is damaged");
+      throw io_error(path.string(), "the dataset '" + name + "' is of a type that no array has: it is damaged");
   }
 }
 
@@ -79,8 +77,8 @@ void check_label(const Label& label, const std::filesystem::path& path, const Ar
   if (label.version >= kind.oldest && label.version <= kind.version) return;
   const bool newer = label.version > kind.version;
   throw io_error(path.string(),
-                 fmt::format("is {} of version {}, which is {} than this program's {}{}", kind.words,
-                             label.version, newer ? "newer" : "older", newer ? kind.version : kind.oldest,
+                 fmt::format("is {} of version {}, which is {} than this program's {}{}", kind.words, label.version,
+                             newer ? "newer" : "older", newer ? kind.version : kind.oldest,
                              newer ? "" : ", expected one made by this version: make it again"));
 }
 
@@ -95,8 +93,7 @@ void write_archive(const std::filesystem::path& path, const Archive& archive, co
   for (const auto& [name, array] : archive.arrays()) {
     if (each) each();
     const std::string stored = stored_name(name, kind);
-    if (array_name(stored, kind) != name)
-      throw io_error(path.string(), "an array may not be called '" + name + "'");
+    if (array_name(stored, kind) != name) throw io_error(path.string(), "an array may not be called '" + name + "'");
     std::visit([&](const auto& values) { file.put(stored, std::span(values), {values.size()}); }, array);
   }
   file.finish();

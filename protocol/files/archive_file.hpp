@@ -19,16 +19,15 @@ struct ArchiveKind {
   const char* words;     // "a saved state"
   std::int64_t version;  // of its arrays
   std::int64_t oldest;   // that can be read
-  const char*
-      group;  // that holds the arrays, with ':' in place of '/' in names; empty: names are as they are
+  const char* group;     // that holds the arrays, with ':' in place of '/' in names; empty: names are as they are
 };
 
 inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, 1, "state"};
 
 /// The file appears whole or not at all. Of several processes that write it at once the last one wins. `each` is called
 /// before every array and may throw to stop. @throws Error(io)
-void write_archive(const std::filesystem::path& file, const Archive& archive,
-                   const ArchiveKind& kind = kSavedState, const std::function<void()>& each = {});
+void write_archive(const std::filesystem::path& file, const Archive& archive, const ArchiveKind& kind = kSavedState,
+                   const std::function<void()>& each = {});
 
 /// @param version receives the version of the arrays
 /// @param each    is called before every array and may throw to stop

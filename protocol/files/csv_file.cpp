@@ -50,22 +50,18 @@ CsvFile::CsvFile(const std::filesystem::path& file, const std::string& expected,
   if (rows_.empty()) throw input_error(name_, "", "has no rows of values, expected " + expected);
 }
 
-void CsvFile::take_header(const std::vector<std::string>& cells, int line,
-                          const std::vector<std::string>& known) {
+void CsvFile::take_header(const std::vector<std::string>& cells, int line, const std::vector<std::string>& known) {
   for (const std::string& cell : cells) {
     if (std::find(known.begin(), known.end(), cell) == known.end())
-      throw wrong_line(line,
-                       "column '" + excerpt(cell) + "' " + unknown_text(nearest_words(cell, known), known));
+      throw wrong_line(line, "column '" + excerpt(cell) + "' " + unknown_text(nearest_words(cell, known), known));
     if (has(cell)) throw wrong_line(line, "column '" + cell + "' is there twice, expected once");
     columns_.push_back(cell);
   }
   const std::string others = fmt::format("'{}'", fmt::join(known.begin() + 1, known.end(), "', '"));
   if (!has(known.front()))
-    throw wrong_line(line,
-                     fmt::format("has no column '{}', expected it and any of {}", known.front(), others));
+    throw wrong_line(line, fmt::format("has no column '{}', expected it and any of {}", known.front(), others));
   if (columns_.size() < 2)
-    throw wrong_line(line,
-                     fmt::format("has no column besides '{}', expected any of {}", known.front(), others));
+    throw wrong_line(line, fmt::format("has no column besides '{}', expected any of {}", known.front(), others));
 }
 
 std::size_t CsvFile::index_of(const std::string& column) const {

@@ -15,8 +15,7 @@ class CsvFile {
   /// @param expected what should be there, for messages: "a CSV file of waypoints"
   /// @param columns that there may be; the first must be, and one more
   /// @throws Error(bad_input) naming file and line
-  CsvFile(const std::filesystem::path& file, const std::string& expected,
-          const std::vector<std::string>& columns);
+  CsvFile(const std::filesystem::path& file, const std::string& expected, const std::vector<std::string>& columns);
 
   std::size_t row_count() const { return rows_.size(); }
   bool has(const std::string& column) const { return index_of(column) < columns_.size(); }

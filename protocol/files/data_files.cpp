@@ -59,8 +59,7 @@ std::filesystem::path named_file(const std::filesystem::path& name, const std::v
     add_names(place, known);
   }
   for (const char* folder : kFolders)  // of another kind, which its reader says
-    if (std::filesystem::is_regular_file(data_folder() / folder / name, error))
-      return data_folder() / folder / name;
+    if (std::filesystem::is_regular_file(data_folder() / folder / name, error)) return data_folder() / folder / name;
   const std::optional<std::string> other = meant(name.string(), std::move(known));
   if (!other) return name;
   throw input_error(name.string(), "", "does not exist, expected '" + *other + "'?");
@@ -85,8 +84,7 @@ std::filesystem::path find_file(const std::string& name, const std::string& key,
     if (std::filesystem::is_regular_file(place, error)) return place;
   for (const auto& place : places)
     if (std::filesystem::exists(place, error))
-      throw input_error(scenario.string(), key,
-                        "'" + place.string() + "' is not a regular file, expected one");
+      throw input_error(scenario.string(), key, "'" + place.string() + "' is not a regular file, expected one");
   std::vector<std::filesystem::path> looked;
   std::vector<std::string> known;
   std::string list;

@@ -20,7 +20,6 @@ std::filesystem::path named_file(const std::filesystem::path& name, const std::v
 /// `name` as it stands, relative to the scenario's folder, or in the data folders rigs/, tire/data/, terrain/data/ and
 /// vehicle/data/.
 /// @throws Error(bad_input) naming the key and where it was looked for
-std::filesystem::path find_file(const std::string& name, const std::string& key,
-                                const std::filesystem::path& scenario);
+std::filesystem::path find_file(const std::string& name, const std::string& key, const std::filesystem::path& scenario);
 
 }  // namespace furrow

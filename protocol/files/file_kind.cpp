@@ -29,8 +29,7 @@ constexpr Words kWords[] = {
 constexpr std::string_view kOfSoils[] = {"format_version", "description", "terrain", "measured"};
 
 const Words& words_of(FileKind kind) {
-  return *std::find_if(std::begin(kWords), std::end(kWords),
-                       [&](const Words& one) { return one.kind == kind; });
+  return *std::find_if(std::begin(kWords), std::end(kWords), [&](const Words& one) { return one.kind == kind; });
 }
 
 /// It can be a soil, or a scenario that says nothing but its terrain.
@@ -51,8 +50,7 @@ std::optional<FileKind> kind_of_file(const Json& document) {
   if (has("calibrate")) return FileKind::calibration;
   if (has("scenario") && !has("terrain") && !has("tire")) return FileKind::study;
   if (has("chassis") && has("axles")) return FileKind::vehicle;
-  if (has("template") || has("Template") || (has("model") && has("contact")) || has("tir"))
-    return FileKind::tire;
+  if (has("template") || has("Template") || (has("model") && has("contact")) || has("tir")) return FileKind::tire;
   if (reads_as_soil(document) && !document["terrain"].empty()) return FileKind::soil;
   if (has("rig") || has("terrain") || has("tire") || has("tires")) return FileKind::scenario;
   return {};

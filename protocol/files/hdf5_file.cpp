@@ -47,33 +47,27 @@ void Hdf5Writer::write(const std::string& name, std::span<const T> values, const
   H5Pset_obj_track_times(timeless, false);  // equal contents make equal files
   Handle set(H5Dcreate2(handle_, name.c_str(), type, space, groups, timeless, H5P_DEFAULT), H5Dclose);
   check(set >= 0, "cannot create dataset '" + name + "'");
-  const bool written =
-      values.empty() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
+  const bool written = values.empty() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
   check(set.close() && written, "cannot write dataset '" + name + "'");
 }
 
-void Hdf5Writer::put(const std::string& name, std::span<const double> values,
-                     const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const double> values, const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_DOUBLE);
 }
-void Hdf5Writer::put(const std::string& name, std::span<const float> values,
-                     const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const float> values, const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_FLOAT);
 }
-void Hdf5Writer::put(const std::string& name, std::span<const std::int32_t> values,
-                     const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const std::int32_t> values, const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_INT32);
 }
-void Hdf5Writer::put(const std::string& name, std::span<const std::int64_t> values,
-                     const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const std::int64_t> values, const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_INT64);
 }
 void Hdf5Writer::put(const std::string& name, std::span<const std::uint64_t> values,
                      const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_UINT64);
 }
-void Hdf5Writer::put(const std::string& name, std::span<const std::uint8_t> values,
-                     const std::vector<hsize_t>& shape) {
+void Hdf5Writer::put(const std::string& name, std::span<const std::uint8_t> values, const std::vector<hsize_t>& shape) {
   write(name, values, shape, H5T_NATIVE_UINT8);
 }
 
@@ -89,9 +83,7 @@ void Hdf5Writer::attribute(const std::string& name, double value) {
 void Hdf5Writer::attribute(const std::string& name, std::int64_t value) {
   write_attribute(handle_, name, H5T_NATIVE_INT64, &value);
 }
-void Hdf5Writer::attribute(const std::string& name, const std::string& text) {
-  write_text(handle_, name, text);
-}
+void Hdf5Writer::attribute(const std::string& name, const std::string& text) { write_text(handle_, name, text); }
 
 void Hdf5Writer::write_text(hid_t object, const std::string& name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -111,11 +103,10 @@ void Hdf5Writer::put_axis(const std::string& name, hsize_t length) {
   const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
   const Handle timeless(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(timeless, false);
-  const Handle set(
-      H5Dcreate2(handle_, name.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT, timeless, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(handle_, name.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT, timeless, H5P_DEFAULT),
+                   H5Dclose);
   check(set.ok(), "cannot create axis '" + name + "'");
-  const std::string known_as =
-      fmt::format("This is a netCDF dimension but not a netCDF variable.{:10}", length);
+  const std::string known_as = fmt::format("This is a netCDF dimension but not a netCDF variable.{:10}", length);
   check(H5DSset_scale(set, known_as.c_str()) >= 0, "cannot make an axis of '" + name + "'");
 }
 

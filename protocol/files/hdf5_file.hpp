@@ -51,8 +51,7 @@ class Hdf5Writer {
 
  private:
   template <class T>
-  void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape,
-             hid_t type);
+  void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape, hid_t type);
   void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value);
   void write_text(hid_t object, const std::string& name, const std::string& text);
   void check(bool ok, const std::string& what) const;

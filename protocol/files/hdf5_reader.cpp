@@ -47,11 +47,10 @@ std::string refusal(const std::string& name, const std::string& why) {
 
 /// One of the plain numbers that every program writes, in any byte order.
 bool is_plain_number(hid_t type) {
-  static const std::array<hid_t, 20> kPlain{H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE,
-                                            H5T_STD_I8LE,   H5T_STD_I16LE,  H5T_STD_I32LE,  H5T_STD_I64LE,
-                                            H5T_STD_U8LE,   H5T_STD_U16LE,  H5T_STD_U32LE,  H5T_STD_U64LE,
-                                            H5T_STD_I8BE,   H5T_STD_I16BE,  H5T_STD_I32BE,  H5T_STD_I64BE,
-                                            H5T_STD_U8BE,   H5T_STD_U16BE,  H5T_STD_U32BE,  H5T_STD_U64BE};
+  static const std::array<hid_t, 20> kPlain{
+      H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE, H5T_STD_I8LE,  H5T_STD_I16LE, H5T_STD_I32LE,
+      H5T_STD_I64LE,  H5T_STD_U8LE,   H5T_STD_U16LE,  H5T_STD_U32LE,  H5T_STD_U64LE, H5T_STD_I8BE,  H5T_STD_I16BE,
+      H5T_STD_I32BE,  H5T_STD_I64BE,  H5T_STD_U8BE,   H5T_STD_U16BE,  H5T_STD_U32BE, H5T_STD_U64BE};
   return std::any_of(kPlain.begin(), kPlain.end(), [&](hid_t plain) { return H5Tequal(type, plain) > 0; });
 }
 
@@ -105,9 +104,8 @@ class Hdf5Reader::Set {
     shape_.resize(static_cast<std::size_t>(axes));
     if (axes > 0) H5Sget_simple_extent_dims(space_, shape_.data(), nullptr);
     const hsize_t count = numbers();
-    file_.check(count <= kMaxNumbers,
-                fmt::format("the dataset {} is said to have more than {} numbers, expected fewer",
-                            quoted(name), kMaxNumbers));
+    file_.check(count <= kMaxNumbers, fmt::format("the dataset {} is said to have more than {} numbers, expected fewer",
+                                                  quoted(name), kMaxNumbers));
   }
 
   operator hid_t() const { return set_; }
@@ -117,19 +115,18 @@ class Hdf5Reader::Set {
 
   /// Bytes of the file that hold it. @throws Error(io) unless it can be read as it is
   hsize_t stored() const {
-    file_.check(is_plain_number(type_),
-                "the dataset " + quoted(name_) +
-                    " does not hold plain numbers, expected integers or floats of 1 to 8 bytes");
+    file_.check(
+        is_plain_number(type_),
+        "the dataset " + quoted(name_) + " does not hold plain numbers, expected integers or floats of 1 to 8 bytes");
     const bool packed = is_packed();
     const hsize_t bytes = H5Dget_storage_size(set_), each = H5Tget_size(type_);
     const hsize_t most = packed ? product({kMaxRatio}, bytes) : bytes;
     const hsize_t needed = product(shape_, each), chunk = chunk_bytes(each);
     if (numbers() == 0) return 0;
-    file_.check(
-        bytes <= file_.size_ && needed <= most && chunk <= std::max(most, kSmallChunk),
-        fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or "
-                    "the file is cut short or damaged",
-                    quoted(name_), needed, std::min<hsize_t>(bytes, file_.size_)));
+    file_.check(bytes <= file_.size_ && needed <= most && chunk <= std::max(most, kSmallChunk),
+                fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or "
+                            "the file is cut short or damaged",
+                            quoted(name_), needed, std::min<hsize_t>(bytes, file_.size_)));
     return bytes;
   }
 
@@ -158,11 +155,10 @@ class Hdf5Reader::Set {
       std::size_t values = 0;
       const H5Z_filter_t filter =
           H5Pget_filter2(made_, static_cast<unsigned>(k), &flags, &values, nullptr, 0, nullptr, nullptr);
-      file_.check(
-          filter == H5Z_FILTER_DEFLATE || filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32,
-          fmt::format("the dataset {} was written through filter {}, expected none, gzip, shuffle or "
-                      "fletcher32",
-                      quoted(name_), static_cast<int>(filter)));
+      file_.check(filter == H5Z_FILTER_DEFLATE || filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32,
+                  fmt::format("the dataset {} was written through filter {}, expected none, gzip, shuffle or "
+                              "fletcher32",
+                              quoted(name_), static_cast<int>(filter)));
     }
     return filters > 0;
   }

@@ -73,7 +73,7 @@ std::vector<std::string> changed_fields(const nlohmann::json& object) {
 
 /// Whose keys a model's are: the entry of a table of models has one, made by key_list<Options>().
 struct KeyList {
-  std::vector<Field> (*fields)() = nullptr;  // the keys are those with role::key
+  std::vector<Field> (*fields)() = nullptr;                                      // the keys are those with role::key
   std::vector<std::string> (*changed)(const nlohmann::json& section) = nullptr;  // changed_fields
 };
 template <HasFields T>

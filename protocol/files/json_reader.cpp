@@ -127,8 +127,8 @@ void BasicJsonReader<Json>::check_version(int newest, bool required) {
   const std::string expected = newest == 1 ? "1" : fmt::format("1 to {}", newest);
   const Json& value = at(kKey, &Json::is_number_integer, expected);
   if (value.template get<double>() > newest)
-    fail(kKey, fmt::format("is {}: the file is newer than this program, expected at most {}",
-                           value_text(value), newest));
+    fail(kKey,
+         fmt::format("is {}: the file is newer than this program, expected at most {}", value_text(value), newest));
   if (value.template get<double>() < 1.0) fail(kKey, "is " + value_text(value) + ", expected " + expected);
 }
 

@@ -82,24 +82,20 @@ class Builder final : public nlohmann::json_sax<Json> {
     if (name.size() > kMaxKey || printable(name) != name)
       throw input_error(
           name_, path_to(excerpt(name)),
-          fmt::format("has a control character or is longer than {} bytes, expected the name of a key",
-                      kMaxKey));
+          fmt::format("has a control character or is longer than {} bytes, expected the name of a key", kMaxKey));
     level.key = name;
     if (level.value->size() == kMaxKeys)
-      throw input_error(name_, path(),
-                        fmt::format("is one too many, expected at most {} keys in an object", kMaxKeys));
+      throw input_error(name_, path(), fmt::format("is one too many, expected at most {} keys in an object", kMaxKeys));
     if (level.value->contains(name)) throw input_error(name_, path(), "is given twice, expected once");
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string&,
-                   const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
     const std::size_t at = position == 0 ? 0 : position - 1;
     const std::string where = name_ + ":" + place_in_text(text_, at);
     constexpr int kOverflow = 406;
     if (error.id == kOverflow)
-      throw input_error(where, path(),
-                        "is a number too large for a double, expected at most 1.8e308 in magnitude");
+      throw input_error(where, path(), "is a number too large for a double, expected at most 1.8e308 in magnitude");
     if (at < text_.size() && text_[at] == '#')
       throw input_error(where, "", "is a comment of another language, expected // or /* */");
     if (std::filesystem::path(name_).extension() == ".tir")
@@ -204,11 +200,9 @@ json parse_value(const std::string& text, const std::string& name, const std::st
     // A number that overflows is not accepted either, but no string was meant.
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (end != text.c_str() && *end == '\0' && std::isinf(value) &&
-        text.find_first_of("nN") == std::string::npos)
-      throw input_error(
-          name, key,
-          "'" + text + "' is a number too large for a double, expected at most 1.8e308 in magnitude");
+    if (end != text.c_str() && *end == '\0' && std::isinf(value) && text.find_first_of("nN") == std::string::npos)
+      throw input_error(name, key,
+                        "'" + text + "' is a number too large for a double, expected at most 1.8e308 in magnitude");
     return text;
   }
   return parse_json(text, name);

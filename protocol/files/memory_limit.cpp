@@ -71,8 +71,7 @@ double group_limit(const fs::path& root) {
   if (find_group(root, false, group))
     for_groups(root / "sys/fs/cgroup/memory", group, [&](const fs::path& folder) {
       const double memory = number_in(folder / "memory.limit_in_bytes", kNone);
-      least =
-          std::min(least, std::min(memory + swap, number_in(folder / "memory.memsw.limit_in_bytes", kNone)));
+      least = std::min(least, std::min(memory + swap, number_in(folder / "memory.memsw.limit_in_bytes", kNone)));
     });
   return least;
 }
@@ -98,9 +97,8 @@ void require_blas_buffers() {
   const MemoryLimit limit = address_space_limit();
   const double in_use = number_in("/proc/self/statm", 0.0) * static_cast<double>(sysconf(_SC_PAGESIZE));
   if (in_use + kBlasBuffers > limit.bytes)
-    throw limit_error(
-        fmt::format("out of memory: the solver needs {:.0f} MB of address space, limit {:.0f} MB ({})",
-                    1e-6 * (in_use + kBlasBuffers), 1e-6 * limit.bytes, limit.name));
+    throw limit_error(fmt::format("out of memory: the solver needs {:.0f} MB of address space, limit {:.0f} MB ({})",
+                                  1e-6 * (in_use + kBlasBuffers), 1e-6 * limit.bytes, limit.name));
   are_there = true;
 }
 

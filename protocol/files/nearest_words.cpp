@@ -12,8 +12,7 @@ namespace furrow {
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   const auto letter = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  std::array<std::vector<std::size_t>, 3>
-      rows;  // of the word before the last, the last, and this letter of a
+  std::array<std::vector<std::size_t>, 3> rows;  // of the word before the last, the last, and this letter of a
   for (auto& row : rows) row.resize(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) rows[2][j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -35,8 +34,7 @@ std::vector<std::string> nearest_words(const std::string& word, const std::vecto
     const std::size_t distance = edit_distance(word, candidate);
     if (distance <= std::max<std::size_t>(2, word.size() / 4)) ranked.emplace_back(distance, candidate);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
   for (std::size_t i = 0; i < ranked.size() && i < 3; ++i) names.push_back(ranked[i].second);
   return names;

@@ -27,8 +27,7 @@ Error failed(const std::filesystem::path& file, const std::string& what) {
 
 std::filesystem::path unknown_name(const std::filesystem::path& file) {
   std::uint64_t number = 0;
-  if (getrandom(&number, sizeof number, 0) != sizeof number)
-    throw failed(file, "cannot be given a temporary name");
+  if (getrandom(&number, sizeof number, 0) != sizeof number) throw failed(file, "cannot be given a temporary name");
   return file.parent_path() / fmt::format(".{}.{:016x}{}", file.filename().string(), number, kEnding);
 }
 

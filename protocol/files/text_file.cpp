@@ -48,14 +48,12 @@ void check_text_file(const std::filesystem::path& file, const std::string& expec
         name, "",
         (error && error.value() != ENOENT ? "cannot be read (" + error.message() + ")" : "does not exist") +
             ", expected " + expected);
-  if (std::filesystem::is_directory(status))
-    throw input_error(name, "", "is a directory, expected " + expected);
+  if (std::filesystem::is_directory(status)) throw input_error(name, "", "is a directory, expected " + expected);
   if (!std::filesystem::is_regular_file(status))
     throw input_error(name, "", "is not a regular file, expected " + expected);
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (!error && size > kMaxText)
-    throw input_error(name, "",
-                      fmt::format("is {} MB large, expected {} of at most 16 MB", size >> 20, expected));
+    throw input_error(name, "", fmt::format("is {} MB large, expected {} of at most 16 MB", size >> 20, expected));
 }
 
 }  // namespace
@@ -105,12 +103,10 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
                       return text.size() <= kMaxText;
                     });
   if (!good)
-    throw input_error(name, "",
-                      fmt::format("cannot be read ({}), expected {}", std::strerror(errno), expected));
+    throw input_error(name, "", fmt::format("cannot be read ({}), expected {}", std::strerror(errno), expected));
   if (text.size() > kMaxText)
     throw input_error(name, "", fmt::format("is too large, expected {} of at most 16 MB", expected));
-  if (std::all_of(text.begin(), text.end(),
-                  [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }))
+  if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }))
     throw input_error(name, "", "is empty, expected " + expected);
   if (const std::size_t bad = find_invalid_utf8(text); bad != std::string::npos)
     throw input_error(name + ":" + place_in_text(text, bad), "",
@@ -151,8 +147,8 @@ std::size_t find_invalid_utf8(const std::string& text) {
 
 std::string place_in_text(const std::string& text, std::size_t offset) {
   offset = std::min(offset, text.size());
-  const std::size_t line = 1 + static_cast<std::size_t>(std::count(
-                                   text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
+  const std::size_t line =
+      1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
   const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
   std::size_t column = 1;
   for (std::size_t i = newline == std::string::npos ? 0 : newline + 1; i < offset; ++i)

@@ -27,8 +27,8 @@ vehicle::DriverView driver_view(const vehicle::Vehicle& vehicle, const Vec3& sea
   vehicle::DriverView view;
   view.time = vehicle.system().time();
   view.position = vehicle.origin() + chassis.R * seat;
-  view.velocity = chassis.state.velocity +
-                  chassis.state.angular_velocity.cross(Vec3(view.position - chassis.state.position));
+  view.velocity =
+      chassis.state.velocity + chassis.state.angular_velocity.cross(Vec3(view.position - chassis.state.position));
   view.yaw = yaw_of(vehicle);
   view.yaw_rate = chassis.state.angular_velocity.z();
   return view;

@@ -43,8 +43,7 @@ void VehicleFindings::path(const vehicle::DriverView& view, const vehicle::Drive
   PathErrors& e = errors_;
   e.count += 1.0;
   e.squares += record.cross_track * record.cross_track;
-  if (std::abs(record.cross_track) > std::abs(e.largest))
-    e.largest = record.cross_track, e.largest_at = view.time;
+  if (std::abs(record.cross_track) > std::abs(e.largest)) e.largest = record.cross_track, e.largest_at = view.time;
   const auto* change = std::get_if<vehicle::LaneChangePath>(&path_->shape);
   if (!change) return;
   const double turn = path_->heading_deg * std::numbers::pi / 180.0, yaw = view.yaw - turn;
@@ -97,8 +96,7 @@ void VehicleFindings::save(Archive& archive) const {
   const PathErrors& e = errors_;
   archive.put("wheels", wheels);
   archive.put("lifts", lifts);
-  archive.put("path", std::vector<double>{e.count, e.squares, e.largest, e.largest_at, e.margin, e.margin_at,
-                                          e.lanes});
+  archive.put("path", std::vector<double>{e.count, e.squares, e.largest, e.largest_at, e.margin, e.margin_at, e.lanes});
   archive.put("gear", std::vector<std::int64_t>{geared_, gear_, changes_});
 }
 
@@ -106,12 +104,10 @@ void VehicleFindings::restore(const Archive& archive) {
   const Archive::Scope scope(archive, "findings/");
   const std::vector<double>& wheels = archive.get<double>("wheels", kWheelFields * wheels_.size());
   for (std::size_t k = 0; k < wheels_.size(); ++k)
-    wheels_[k] = {wheels[kWheelFields * k] != 0.0, wheels[kWheelFields * k + 1] != 0.0,
-                  wheels[kWheelFields * k + 2]};
+    wheels_[k] = {wheels[kWheelFields * k] != 0.0, wheels[kWheelFields * k + 1] != 0.0, wheels[kWheelFields * k + 2]};
   const std::vector<double>& lifts = archive.get<double>("lifts");
   if (lifts.size() % kLiftFields != 0)
-    throw Error(ExitCode::io,
-                "saved findings of the vehicle are cut off: their lifted wheels are not threes");
+    throw Error(ExitCode::io, "saved findings of the vehicle are cut off: their lifted wheels are not threes");
   lifts_.clear();
   for (std::size_t i = 0; i < lifts.size(); i += kLiftFields)
     lifts_.push_back({"wheel_lift", static_cast<int>(lifts[i]), lifts[i + 1], lifts[i + 2]});

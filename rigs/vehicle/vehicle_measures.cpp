@@ -14,9 +14,7 @@ MotionBefore MotionBefore::of(const vehicle::Vehicle& car) {
   return {car.origin(), car.system().momentum(), car.drive().work(car.system())};
 }
 
-void begin_driveline(VehicleRow& row) {
-  row.shifting = row.engine_speed = row.turbine_speed = row.engine_torque = 0.0;
-}
+void begin_driveline(VehicleRow& row) { row.shifting = row.engine_speed = row.turbine_speed = row.engine_torque = 0.0; }
 
 void add_driveline(const vehicle::Vehicle& car, VehicleRow& row) {
   const vehicle::System& system = car.system();
@@ -35,14 +33,12 @@ void finish_driveline(const vehicle::Vehicle& car, const MotionBefore& before, d
                       VehicleRow& row) {
   FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
   row.shifting /= substeps;
-  for (double* speed : {&row.engine_speed, &row.turbine_speed})
-    *speed *= 30.0 / std::numbers::pi / substeps;  // 1/min
+  for (double* speed : {&row.engine_speed, &row.turbine_speed}) *speed *= 30.0 / std::numbers::pi / substeps;  // 1/min
   row.engine_torque /= substeps;
   row.engine_power = (car.drive().work(car.system()) - before.drive_work) / duration;
 }
 
-void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration,
-                    VehicleRow& row) {
+void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration, VehicleRow& row) {
   FURROW_ASSERT(duration > 0.0, duration);
   const double psi = yaw_of(car);
   const Vec3 forward(std::cos(psi), std::sin(psi), 0.0), left(-forward.y(), forward.x(), 0.0);

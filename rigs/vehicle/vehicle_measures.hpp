@@ -24,8 +24,7 @@ void finish_driveline(const vehicle::Vehicle& car, const MotionBefore& before, d
                       VehicleRow& row);
 
 /// Mean motion over the advance. @pre duration > 0, in s; `row` holds the yaw of its beginning
-void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration,
-                    VehicleRow& row);
+void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration, VehicleRow& row);
 
 /// @param driver null: nobody drives
 void measure_driver(const vehicle::DriverInputs& inputs, const vehicle::Driver* driver, VehicleRow& row);

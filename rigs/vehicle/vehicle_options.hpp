@@ -18,11 +18,10 @@ namespace furrow::rigs {
 struct VehicleRigOptions {
   std::string vehicle;    // a vehicle's file
   nlohmann::json driver;  // a driver's file, or what is in one; null: nobody drives, the brakes hold
-  double start =
-      0.0;  // x of the vehicle's origin at t = 0, m; where the scenario does not say it, it is filled in
-  double lateral = 0.0;          // y of the vehicle's origin at t = 0, m
-  double heading = 0.0;          // of the vehicle's x axis at t = 0, about +z from the world's, rad
-  double slope = 0.0;            // of the ground, which rises along +x, rad
+  double start = 0.0;     // x of the vehicle's origin at t = 0, m; where the scenario does not say it, it is filled in
+  double lateral = 0.0;   // y of the vehicle's origin at t = 0, m
+  double heading = 0.0;   // of the vehicle's x axis at t = 0, about +z from the world's, rad
+  double slope = 0.0;     // of the ground, which rises along +x, rad
   double start_speed = 0.0;      // at t = 0, forward, m/s
   double lowering_speed = -1.0;  // at which the vehicle is let down, m/s; negative: open
   double touchdown_time = -1.0;  // how long the damper of the lowering acts, s; negative: open

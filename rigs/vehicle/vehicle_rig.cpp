@@ -198,9 +198,7 @@ bool VehicleRig::let_down() const {
   return plan_.options.lowering_speed > 0.0 && car_->system().time() < plan_.options.touchdown_time;
 }
 
-double VehicleRig::damping() const {
-  return car_->mass() * plan_.gravity.norm() / plan_.options.lowering_speed;
-}
+double VehicleRig::damping() const { return car_->mass() * plan_.gravity.norm() / plan_.options.lowering_speed; }
 
 Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
   check_built();
@@ -280,8 +278,7 @@ void VehicleRig::observe(int k, double lowest_point, double ground) {
     if (const auto rut = other == k ? std::nullopt : traces_[other].bottom(at.x(), at.y()))
       bottom = std::min(bottom, *rut);
   wheels_[k].row.sinkage_in_rut = bottom - lowest_point;
-  if (ground - lowest_point > kTraceDepth * tires_[k].radius)
-    traces_[k].add(Vec3(at.x(), at.y(), lowest_point));
+  if (ground - lowest_point > kTraceDepth * tires_[k].radius) traces_[k].add(Vec3(at.x(), at.y(), lowest_point));
 }
 
 LiveNote VehicleRig::live() const {
@@ -368,8 +365,8 @@ void VehicleRig::restore(const Archive& archive) {
 }  // namespace
 
 std::unique_ptr<Rig> make_vehicle_rig(const VehicleRigPlan& plan) {
-  FURROW_ASSERT(plan.options.lowering_speed >= 0.0 && plan.options.touchdown_time >= 0.0,
-                plan.options.lowering_speed, plan.options.touchdown_time);
+  FURROW_ASSERT(plan.options.lowering_speed >= 0.0 && plan.options.touchdown_time >= 0.0, plan.options.lowering_speed,
+                plan.options.touchdown_time);
   return std::make_unique<VehicleRig>(plan);
 }
 

@@ -51,14 +51,14 @@ struct VehicleRow {
   double wheel_power = 0.0;                   // of drive and brakes at the wheels, W
   double soil_power = 0.0;                    // that tires and ground take, W
   double target_speed = 0.0, path_distance = 0.0, cross_track = 0.0, heading_error = 0.0;  // of the driver
-  double drive_work = 0.0;      // of engine and motors, J
-  double converter_heat = 0.0;  // J
-  double clutch_heat = 0.0;     // of clutch and locks of differentials, J
-  double shift_heat = 0.0;      // J
-  double brake_heat = 0.0;      // J
-  double shock_heat = 0.0;      // J
-  double lowering_heat = 0.0;   // of the damper that lets the vehicle down, J
-  double spring_energy = 0.0;   // J
+  double drive_work = 0.0;                                                                 // of engine and motors, J
+  double converter_heat = 0.0;                                                             // J
+  double clutch_heat = 0.0;    // of clutch and locks of differentials, J
+  double shift_heat = 0.0;     // J
+  double brake_heat = 0.0;     // J
+  double shock_heat = 0.0;     // J
+  double lowering_heat = 0.0;  // of the damper that lets the vehicle down, J
+  double spring_energy = 0.0;  // J
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {

@@ -57,8 +57,7 @@ std::string wheel_name(const vehicle::VehicleSpec& vehicle, std::size_t wheel) {
 std::optional<vehicle::DriverSpec> read_driver_of(const json& driver, const ReadContext& context) {
   const std::string key = context.key("driver");
   if (driver.is_null()) return std::nullopt;
-  if (driver.is_string())
-    return vehicle::read_driver(find_file(driver.get<std::string>(), key, context.file));
+  if (driver.is_string()) return vehicle::read_driver(find_file(driver.get<std::string>(), key, context.file));
   json document = driver;
   if (!document.contains("format_version")) document["format_version"] = 1;
   return vehicle::read_driver(document, context.file, key);
@@ -127,10 +126,10 @@ class VehicleRigSpec final : public RigSpec {
   ReadContext context_;
   std::vector<WheelPlace> wheels_;
   int bodies_ = 0;
-  double mass_ = 0.0;             // without tires, kg
+  double mass_ = 0.0;                                       // without tires, kg
   std::vector<std::pair<std::string, std::string>> stops_;  // in which springs rest
-  std::optional<double> length_;  // of the bin, m
-  vehicle::DriverCar driven_;     // what a driver knows of it, if there is one
+  std::optional<double> length_;                            // of the bin, m
+  vehicle::DriverCar driven_;                               // what a driver knows of it, if there is one
 };
 
 void VehicleRigSpec::check_gears() const {
@@ -142,14 +141,14 @@ void VehicleRigSpec::check_gears() const {
     if (gear == vehicle::gear_request::reverse && !backward)
       throw input_error(
           context_.file, context_.key("driver"),
-          fmt::format("asks for gear -1 at {} s, expected 0 to {} or 'auto': the vehicle {} has {}",
-                      number_text(time), gears, name,
+          fmt::format("asks for gear -1 at {} s, expected 0 to {} or 'auto': the vehicle {} has {}", number_text(time),
+                      gears, name,
                       gearbox ? "no reverse gear" : "neither a gearbox nor motors, which turn backward in it"));
     if (gear > gears)
       throw input_error(
           context_.file, context_.key("driver"),
-          fmt::format("asks for gear {} at {} s, expected at most {}: the vehicle {} has {}",
-                      number_text(gear), number_text(time), gears, name, gearbox ? "no more" : "no gearbox"));
+          fmt::format("asks for gear {} at {} s, expected at most {}: the vehicle {} has {}", number_text(gear),
+                      number_text(time), gears, name, gearbox ? "no more" : "no gearbox"));
   }
 }
 
@@ -157,25 +156,21 @@ void VehicleRigSpec::check_driver() const {
   if (!plan_.driver) return;
   check_gears();
   const auto refuse = [&](const char* what, const char* lacks) {
-    throw input_error(context_.file, context_.key("driver"),
-                      fmt::format("{}, expected a driver that does not: the vehicle {} has {}", what,
-                                  plan_.vehicle.name, lacks));
+    throw input_error(
+        context_.file, context_.key("driver"),
+        fmt::format("{}, expected a driver that does not: the vehicle {} has {}", what, plan_.vehicle.name, lacks));
   };
   if (plan_.driver->path && !vehicle::can_steer(plan_.vehicle)) refuse("follows a path", "no steering");
-  if (plan_.driver->speed && !vehicle::can_drive(plan_.vehicle))
-    refuse("holds a speed", "neither engine nor motors");
+  if (plan_.driver->speed && !vehicle::can_drive(plan_.vehicle)) refuse("holds a speed", "neither engine nor motors");
   const vehicle::InputSpec& inputs = plan_.driver->inputs;
   const auto refuse_use = [&](const char* what, const vehicle::DriverPoints& points, const char* lacks) {
-    const auto used =
-        std::find_if(points.begin(), points.end(), [](const auto& point) { return point.second != 0.0; });
+    const auto used = std::find_if(points.begin(), points.end(), [](const auto& point) { return point.second != 0.0; });
     if (used == points.end()) return;
-    refuse(
-        fmt::format("gives {} {} at {} s", what, number_text(used->second), number_text(used->first)).c_str(),
-        lacks);
+    refuse(fmt::format("gives {} {} at {} s", what, number_text(used->second), number_text(used->first)).c_str(),
+           lacks);
   };
   if (!vehicle::can_steer(plan_.vehicle)) refuse_use("steering", inputs.steering, "no steering");
-  if (!vehicle::can_drive(plan_.vehicle))
-    refuse_use("throttle", inputs.throttle, "neither engine nor motors");
+  if (!vehicle::can_drive(plan_.vehicle)) refuse_use("throttle", inputs.throttle, "neither engine nor motors");
   if (!vehicle::can_brake(plan_.vehicle)) refuse_use("brake", inputs.brake, "no brakes");
 }
 
@@ -289,17 +284,15 @@ std::vector<std::pair<std::string, std::string>> VehicleRigSpec::unlikely_values
   auto of_file = vehicle::unlikely_values(plan_.vehicle, mass_);
   of_file.insert(of_file.end(), stops_.begin(), stops_.end());
   for (const auto& [key, what] : of_file)
-    odd.emplace_back(context_.key("vehicle"),
-                     fmt::format("is {}, whose key '{}' {}", file_.string(), key, what));
+    odd.emplace_back(context_.key("vehicle"), fmt::format("is {}, whose key '{}' {}", file_.string(), key, what));
   const auto brakes = [](const vehicle::AxleSpec& axle) {
     return axle.corners[vehicle::kLeft].brake || axle.corners[vehicle::kRight].brake;
   };
   if (!plan_.driver && std::none_of(plan_.vehicle.axles.begin(), plan_.vehicle.axles.end(), brakes))
-    odd.emplace_back(
-        context_.key("driver"),
-        fmt::format("is missing, and so the brakes hold the vehicle, but {} has no brakes: it may "
-                    "roll",
-                    plan_.vehicle.name));
+    odd.emplace_back(context_.key("driver"),
+                     fmt::format("is missing, and so the brakes hold the vehicle, but {} has no brakes: it may "
+                                 "roll",
+                                 plan_.vehicle.name));
   if (plan_.driver && plan_.driver->path)
     for (const std::string& what : oddities_of_path()) odd.emplace_back(context_.key("driver"), what);
   return odd;
@@ -320,14 +313,14 @@ std::vector<std::string> VehicleRigSpec::oddities_of_path() const {
                     "x = {:.2f} m, y = {:.2f} m",
                     off, axle.x(), axle.y()));
   else if (nearest.direction.dot(vehicle::Vec2(std::cos(psi), std::sin(psi))) < 0.0)
-    odd.emplace_back(
-        "has a path that leads backward where the vehicle starts: drivers drive forward and turn round");
+    odd.emplace_back("has a path that leads backward where the vehicle starts: drivers drive forward and turn round");
   const double tightest = base / std::tan(driven_.steering_lock);
   double sharpest = 0.0;
   for (int piece = 0; piece <= path.end().piece; ++piece)
     for (int i = 0; i < kPlacesOfPiece; ++i)
-      sharpest = std::max(sharpest, std::abs(path.curvature({piece, static_cast<double>(i) / kPlacesOfPiece},
-                                                            0.0, kBendLength * base)));
+      sharpest =
+          std::max(sharpest,
+                   std::abs(path.curvature({piece, static_cast<double>(i) / kPlacesOfPiece}, 0.0, kBendLength * base)));
   if (sharpest * tightest > kTooTight)
     odd.emplace_back(
         fmt::format("has a path that bends with a radius of {:.2f} m, the vehicle {} turns with {:.2f} m at "
@@ -337,8 +330,8 @@ std::vector<std::string> VehicleRigSpec::oddities_of_path() const {
 }
 
 /// The wheel that comes nearest to the wall behind the vehicle says where it starts.
-void VehicleRigSpec::fill_starts(std::span<const WheelSize> tires, double duration,
-                                 std::optional<double> length, std::span<const double> margins) {
+void VehicleRigSpec::fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
+                                 std::span<const double> margins) {
   FURROW_ASSERT(margins.size() == wheels_.size(), margins.size(), wheels_.size());
   length_ = length;
   if (start_given || !length) return;
@@ -387,8 +380,7 @@ std::vector<WheelTire> tires_of_vehicle(const json& section, const ReadContext& 
       const std::filesystem::path found = find_file(name, fmt::format("axles[{}].wheel.tire", axle), file);
       std::error_code error;
       const bool own = std::filesystem::equivalent(found.parent_path(), file.parent_path(), error);
-      WheelTire tire{{{"file", own ? std::filesystem::absolute(found, error).string() : name}},
-                     static_cast<int>(axle)};
+      WheelTire tire{{{"file", own ? std::filesystem::absolute(found, error).string() : name}}, static_cast<int>(axle)};
       if (corner.wheel.rigid) tire.section["rigid"] = true;
       tires.push_back(std::move(tire));
     }

@@ -24,8 +24,7 @@ vehicle::TireCurve spring(double radius, double load) {
 // First with springs for the mean load, then with each wheel's own for the load that it was found to have: all tires
 // are deflected alike, and the wheels' heights differ by their radii alone.
 vehicle::Trim stand_in(vehicle::Vehicle& vehicle, std::span<const double> radii, const Vec3& gravity) {
-  const double weight = vehicle.mass() * std::abs(gravity.z()),
-               mean = weight / static_cast<double>(radii.size());
+  const double weight = vehicle.mass() * std::abs(gravity.z()), mean = weight / static_cast<double>(radii.size());
   std::vector<vehicle::TireCurve> tires;
   for (const double radius : radii) tires.push_back(spring(radius, mean));
   const vehicle::Trim first = vehicle::trim(vehicle, tires, 0.0, gravity);

@@ -47,8 +47,8 @@ void add_step(const vehicle::Vehicle& car, int k, const RimState& before, const 
   if (wheel.shock) sums.shock += system.element_force(*wheel.shock);
 }
 
-void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench,
-                     const WheelSums& sums, double duration, int substeps, WheelRecord& wheel) {
+void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench, const WheelSums& sums,
+                     double duration, int substeps, WheelRecord& wheel) {
   FURROW_ASSERT(duration > 0.0 && substeps > 0 && radius > 0.0, duration, substeps, radius);
   WheelReport& report = wheel.report;
   const Vec3 forward = wheel_heading(car, k), left = Vec3::UnitZ().cross(forward);
@@ -82,8 +82,8 @@ void measure_now(const vehicle::Vehicle& car, int k, double heading, WheelRecord
   report.axle_position = Vec3(std::cos(heading), std::sin(heading), 0.0).dot(spindle.state.position);
   report.vertical_speed = system.body(wheel.carrier).state.velocity.z();
   report.carried_mass = -record.load / system.gravity().z();
-  report.vertical_momentum = spindle.mass * spindle.state.velocity.z() +
-                             (report.carried_mass - spindle.mass) * chassis.state.velocity.z();
+  report.vertical_momentum =
+      spindle.mass * spindle.state.velocity.z() + (report.carried_mass - spindle.mass) * chassis.state.velocity.z();
   report.joint_drift = system.max_violation();
   report.gravity = system.gravity();
   const Vec3 axle = chassis.R.transpose() * vehicle::spin_axis(car, k),

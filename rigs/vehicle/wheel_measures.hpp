@@ -50,8 +50,8 @@ void add_step(const vehicle::Vehicle& car, int k, const RimState& before, const 
 
 /// After the last step of an advance. @param radius of the tire, undeformed, m @param wrench on the rim during it
 /// @pre duration > 0, in s; substeps > 0
-void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench,
-                     const WheelSums& sums, double duration, int substeps, WheelRecord& wheel);
+void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench, const WheelSums& sums,
+                     double duration, int substeps, WheelRecord& wheel);
 
 /// Of the instant. @param heading of the vehicle's x axis at t = 0, about +z from the world's, rad
 void measure_now(const vehicle::Vehicle& car, int k, double heading, WheelRecord& wheel);

@@ -7,7 +7,8 @@ target_include_directories(furrow_interface INTERFACE $<BUILD_INTERFACE:${CMAKE_
 target_compile_features(furrow_interface INTERFACE cxx_std_20)
 target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-math-errno -fno-trapping-math)
 # GCC 12 warns of overlaps and overflows inside std::string and std::vector where there are none (GCC bug 105651 and
-# the like), and of uninitialized vectors inside its own AVX-512 header (GCC bug 105593); the sanitizers look for real ones.
+# the like), and of uninitialized vectors inside its own AVX-512 header (GCC bug 105593); the sanitizers look for real
+# ones.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(furrow_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
     -Wno-stringop-overread -Wno-maybe-uninitialized -Wno-uninitialized)
@@ -79,9 +80,9 @@ function(furrow_precompile)
   endforeach()
 endfunction()
 
-# furrow_test(<name> LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest program, one CTest entry.
-# The target tests_<label> builds all programs with that label. The sources of a program are compiled together, which
-# takes less than half of the time.
+# furrow_test(<name> LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest program, one CTest
+# entry. The target tests_<label> builds all programs with that label. The sources of a program are compiled together,
+# which takes less than half of the time.
 function(furrow_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;LIBS;SOURCES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

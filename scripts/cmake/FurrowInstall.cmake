@@ -1,6 +1,6 @@
 # What `cmake --install` puts where: a tree that may be moved, and hold builds for several instruction sets beside each
-# other (scripts/install.sh). The program finds share/furrow/ from its own place. The component `program` is all that runs;
-# FurrowLibraries.cmake adds the component `libraries`.
+# other (scripts/install.sh). The program finds share/furrow/ from its own place. The component `program` is all that
+# runs; FurrowLibraries.cmake adds the component `libraries`.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 if(FURROW_NATIVE)
   set(_level native)

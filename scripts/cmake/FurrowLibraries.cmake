@@ -1,5 +1,5 @@
-# What `cmake --install` adds for programs of others: the libraries of tires and terrains with their headers, and the CMake
-# package that `find_package(Furrow)` finds (package/FurrowConfig.cmake.in).
+# What `cmake --install` adds for programs of others: the libraries of tires and terrains with their headers, and the
+# CMake package that `find_package(Furrow)` finds (package/FurrowConfig.cmake.in).
 include(CMakePackageConfigHelpers)
 set(_libraries furrow_interface furrow_core furrow_files furrow_tire furrow_terrain)
 foreach(_library ${_libraries})

@@ -1,6 +1,6 @@
 # `cpack` in the build folder makes a Debian package of the program: furrow_<version>_<architecture>.deb.
-# scripts/install.sh --deb makes the one to pass on, with a build for every level of processors. A build for the processor
-# of this machine alone says so in the name of its file.
+# scripts/install.sh --deb makes the one to pass on, with a build for every level of processors. A build for the
+# processor of this machine alone says so in the name of its file.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME furrow)
 set(CPACK_PACKAGE_CONTACT "The Furrow authors <maintainers@furrow.invalid>")

@@ -17,15 +17,20 @@ import help_text
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # What an argument or the value of an option is, beyond the words that its description lists.
-KINDS = {"SCENARIO": "list:scenarios", "validate SCENARIO": "list:scenarios vehicles calibrations", "STUDY": "list:studies", "calibrate STUDY": "list:calibrations", "VEHICLE": "list:vehicles", "--tire": "list:tires",
-         "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder", "OTHERS": "folder", "--out": "folder", "--vtk": "folder",
+KINDS = {"SCENARIO": "list:scenarios", "validate SCENARIO": "list:scenarios vehicles calibrations",
+         "STUDY": "list:studies", "calibrate STUDY": "list:calibrations",
+         "VEHICLE": "list:vehicles", "--tire": "list:tires",
+         "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder",
+         "OTHERS": "folder", "--out": "folder", "--vtk": "folder",
          "KEY": "key", "--set": "setting", "--profile": "file", "--bed": "file", "--save-bed": "file"}
 
 
 def value_of(command, entry):
-    """What an argument or the value of an option of a command may be: 'words:a b', or one of the kinds above, or 'free'."""
+    """What an argument or the value of an option of a command may be: 'words:a b', or one of the kinds above, or
+    'free'."""
     words = [word for word in entry.words if word.isascii()]
-    return "words:" + " ".join(words) if words else KINDS.get(f"{command.name} {entry.names[-1]}", KINDS.get(entry.names[-1], "free"))
+    return "words:" + " ".join(words) if words else KINDS.get(f"{command.name} {entry.names[-1]}",
+                                                              KINDS.get(entry.names[-1], "free"))
 
 
 def all_commands(program):
@@ -100,7 +105,8 @@ complete -F _furrow furrow
 def bash(program):
     lists = {"@COMMANDS@": " ".join(command.name for command in program.commands),
              "@PARENTS@": "|".join(command.name for command in program.commands if command.commands)}
-    lists["@RULES@"] = "\n".join(f"    {quoted(pattern)}) echo {quoted(kind)} ;;" for pattern, kind in rules(program).items())
+    lists["@RULES@"] = "\n".join(f"    {quoted(pattern)}) echo {quoted(kind)} ;;" for pattern,
+                                 kind in rules(program).items())
     lists["@OPTIONS@"] = "\n".join(f"    {quoted(command.name)}) echo {quoted(options_of(command))} ;;"
                                    for command in all_commands(program))
     text = BASH
@@ -116,7 +122,8 @@ def quoted(text):
 def zsh_action(kind):
     """What _arguments calls to complete a value."""
     what, _, rest = kind.partition(":")
-    return {"words": f"({rest})", "list": f"_furrow_list {rest}", "folder": "_files -/", "file": "_files", "key": "_furrow_keys",
+    return {"words": f"({rest})", "list": f"_furrow_list {rest}", "folder": "_files -/",
+            "file": "_files", "key": "_furrow_keys",
             "setting": "_furrow_keys -S=", "free": " "}[what]
 
 
@@ -182,13 +189,15 @@ if [[ $funcstack[1] == _furrow ]]; then _furrow "$@"; else compdef _furrow furro
 
 def fish_value(command, entry):
     what, _, rest = value_of(command, entry).partition(":")
-    return {"words": f"-x -a {quoted(rest)}", "list": f"-r -a '(__furrow_list {rest})'", "folder": "-x -a '(__fish_complete_directories)'",
+    return {"words": f"-x -a {quoted(rest)}", "list": f"-r -a '(__furrow_list {rest})'",
+            "folder": "-x -a '(__fish_complete_directories)'",
             "file": "-r", "key": "-x -a '(__furrow_keys)'", "setting": "-x -a '(__furrow_keys)'", "free": "-x"}[what]
 
 
 def fish(program):
     lines = ["# Completion of furrow for fish, made from its help.",
-             "function __furrow_list; for kind in $argv; furrow list $kind; end 2>/dev/null | awk '/^  [^ ]/ {print $1}'; end",
+             "function __furrow_list; for kind in $argv; furrow list $kind; end 2>/dev/null | awk '/^  [^ ]/ {print "
+             "$1}'; end",
              "function __furrow_keys; furrow explain 2>/dev/null | awk '/^[^ ]/ {print $1}'; end",
              "complete -c furrow -f"]
     for command in program.commands:
@@ -200,7 +209,8 @@ def fish(program):
             lines.append(f"{start} -a {below.name.split()[-1]} -d {quoted(below.purpose)}")
         for entry in command.options:
             names = " ".join(f"-l {name[2:]}" if name.startswith("--") else f"-s {name[1:]}" for name in entry.names)
-            lines.append(f"{start} {names} -d {quoted(entry.text)}" + (f" {fish_value(command, entry)}" if entry.kind else ""))
+            lines.append(f"{start} {names} -d {quoted(entry.text)}"
+                         + (f" {fish_value(command, entry)}" if entry.kind else ""))
         for entry in command.arguments:
             value = fish_value(command, entry).replace("-x", "").replace("-r", "-F").strip()
             lines.append(f"{start} {value}" if value else f"{start} -F")

@@ -1,9 +1,9 @@
 """Sphinx extension: the parts that Debian's package of furo leaves to a build step which it does not run.
 
-Its script is a module that imports another one, and its page loads it as a plain script, so that neither the theme button
-nor the marked heading in "On this page" works. Its style sheet has dark colours for the theme "dark", and none for a
-browser that prefers dark pages, although the colours of code follow the browser. It also takes a second sheet from a web
-server's root. All three are mended in the built site; a furo without them is left as it is.
+Its script is a module that imports another one, and its page loads it as a plain script, so that neither the theme
+button nor the marked heading in "On this page" works. Its style sheet has dark colours for the theme "dark", and none
+for a browser that prefers dark pages, although the colours of code follow the browser. It also takes a second sheet
+from a web server's root. All three are mended in the built site; a furo without them is left as it is.
 """
 import pathlib
 import re
@@ -27,13 +27,17 @@ def dark_for_dark_browsers(sheet):
     text = sheet.read_text()
     colours = DARK.search(text)
     if colours and "prefers-color-scheme" not in text:
-        sheet.write_text(text + '\n@media not print { @media (prefers-color-scheme: dark) {\n  body:not([data-theme="light"]) '
-                         + colours[1] + '\n  html body:not([data-theme="light"]) .only-light { display: none !important; }\n'
+        sheet.write_text(text
+                         + '\n@media not print { @media (prefers-color-scheme: dark) {\n  '
+                           'body:not([data-theme="light"]) '
+                         + colours[1]
+                         + '\n  html body:not([data-theme="light"]) .only-light { display: none !important; }\n'
                          + '  body:not([data-theme="light"]) .only-dark { display: block !important; } } }\n')
 
 
 def sheets_beside(sheet):
-    """Sheets that are imported from the root of a web server come into the site, or are left out where Debian has none."""
+    """Sheets that are imported from the root of a web server come into the site, or are left out where Debian has
+    none."""
     def beside(found):
         source = JAVASCRIPT / found[1]
         if not source.is_file():

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prints the manual page furrow(1): usage: scripts/docs/manual.py [--program FURROW]. It is made from the program's help."""
+"""Prints the manual page furrow(1): usage: scripts/docs/manual.py [--program FURROW]. It is made from the program's
+help."""
 import argparse
 import os
 import pathlib
@@ -13,7 +14,8 @@ ENVIRONMENT = {
     "FURROW_HOME": "folder that holds rigs/, tire/ and scripts/, if it is not that of the program",
     "FURROW_MPIRUN": "another launcher: Open MPI's mpirun, or Slurm's srun",
     "FURROW_START_TIMEOUT": "seconds after which a launcher that starts no ranks is ended (120)",
-    "FURROW_LEVEL": "build that an installed furrow starts, such as x86-64-v3, if not the richest that the processor runs",
+    "FURROW_LEVEL": "build that an installed furrow starts, such as x86-64-v3, if not the richest that the processor "
+                    "runs",
     "XDG_CACHE_HOME": "folder of caches, whose furrow/ keeps settled beds and the speed of this machine (~/.cache)",
 }
 
@@ -31,7 +33,8 @@ def sentence(text):
 
 def entry_lines(entry):
     names = ", ".join(f"\\fB{escaped(name)}\\fR" for name in entry.names)
-    value = f" \\fI{entry.kind}\\fR" + (" ..." if entry.repeated else "") if entry.kind and entry.names[0].startswith("-") else ""
+    value = f" \\fI{entry.kind}\\fR" + (" ..." if entry.repeated
+                                        else "") if entry.kind and entry.names[0].startswith("-") else ""
     default = f" The default is {escaped(entry.default)}." if entry.default else ""
     relations = f" {sentence(entry.relations)}" if entry.relations else ""
     return [".TP", f"{names}{value}", sentence(entry.text) + default + relations]
@@ -59,9 +62,12 @@ def manual(program, version):
     lines = [f".TH FURROW 1 \"\" \"Furrow {version}\" \"User Commands\"", ".SH NAME",
              f"furrow \\- {escaped(program.purpose.removeprefix('Furrow: ').rstrip('.'))}", ".SH SYNOPSIS"]
     for command in program.commands:
-        lines += [f".B {escaped(command.usage.split(' [')[0])}", escaped(command.usage[len(command.usage.split(" [")[0]):].strip()), ".br"]
-    lines += [".SH DESCRIPTION", "Furrow simulates flexible tires and whole vehicles on grains, empirical soil or hard ground.",
-              "A scenario, one JSON file, describes tires, terrain, and test rig or vehicle.", "\\fBfurrow explain\\fR lists all its keys."]
+        lines += [f".B {escaped(command.usage.split(' [')[0])}",
+                  escaped(command.usage[len(command.usage.split(" [")[0]):].strip()), ".br"]
+    lines += [".SH DESCRIPTION",
+              "Furrow simulates flexible tires and whole vehicles on grains, empirical soil or hard ground.",
+              "A scenario, one JSON file, describes tires, terrain, and test rig or vehicle.",
+              "\\fBfurrow explain\\fR lists all its keys."]
     for heading, group in program.groups.items():
         lines.append(f".SH {escaped(heading.upper())}")
         for command in group:

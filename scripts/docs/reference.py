@@ -15,7 +15,8 @@ import help_text
 from stage import write_if_changed
 
 TABLES = (  # header with the list of columns, struct, heading
-    ("nodes/output/wheel_row.hpp", "WheelRow", "Every wheel", "`timeseries.csv`, or `timeseries_wheel<k>.csv` of several wheels"),
+    ("nodes/output/wheel_row.hpp", "WheelRow", "Every wheel",
+     "`timeseries.csv`, or `timeseries_wheel<k>.csv` of several wheels"),
     ("rigs/drawbar_rig.cpp", "DrawbarRow", "A wheel of the drawbar rig, besides", "the same tables"),
     ("rigs/ride_row.hpp", "RideRow", "A wheel of a quarter car or a half car, besides", "the same tables"),
     ("rigs/half_car_rig.hpp", "HalfCarBodyRow", "The body of a half car", "`timeseries_body.csv`"),
@@ -70,7 +71,8 @@ def bounds(entry):
         parts.append(("below " if "exclusiveMaximum" in entry else "to ") + number(high))
     if "minItems" in entry or "maxItems" in entry:
         few, many = entry.get("minItems", 0), entry.get("maxItems")
-        parts.append(f"{few} entries" if few == many else f"{few} to {many} entries" if many else f"{few} or more entries")
+        parts.append(f"{few} entries" if few == many else f"{few} to {many} entries"
+                     if many else f"{few} or more entries")
     return cell(", ".join(filter(None, [words, " ".join(parts)])))
 
 
@@ -81,7 +83,8 @@ class Schema:
     def resolved(self, entry):
         if "$ref" not in entry:
             return entry
-        return {**self.content["definitions"][entry["$ref"].rsplit("/", 1)[1]], **{k: v for k, v in entry.items() if k != "$ref"}}
+        return {**self.content["definitions"][entry["$ref"].rsplit("/", 1)[1]],
+                **{k: v for k, v in entry.items() if k != "$ref"}}
 
     def rows(self, entry, path=""):
         """(path, entry) of every key below, dotted; entries of a list as [k]."""
@@ -96,8 +99,10 @@ class Schema:
 
 def section_pages(schema):
     """The page of scenario keys: one table for every section."""
-    text = ("# Scenario keys\n\nEvery key of a scenario, made from its schema. SI units, angles in radians. `furrow explain KEY` "
-            "prints the same. [Writing a scenario](../rigs/README.md#writing-one) explains how the sections fit together.\n")
+    text = ("# Scenario keys\n\nEvery key of a scenario, made from its schema. SI units, angles in radians. `furrow "
+            "explain KEY` "
+            "prints the same. [Writing a scenario](../rigs/README.md#writing-one) explains how the sections fit "
+            "together.\n")
     plain = []
     for name, entry in schema.content["properties"].items():
         entry = schema.resolved(entry)
@@ -135,14 +140,17 @@ def file_page(title, lead, schema):
         required = set(entry.get("required", []))
         rows = []
         for key, child in entry["properties"].items():
-            refs = [part["$ref"] for part in [child, child.get("items", {})] + child.get("oneOf", []) + child.get("anyOf", [])
+            refs = [part["$ref"] for part in [child, child.get("items", {})]
+                    + child.get("oneOf", []) + child.get("anyOf", [])
                     if isinstance(part, dict) and "$ref" in part]
             refers = "".join(f" [{ref.rsplit('/', 1)[1]}](#{ref.rsplit('/', 1)[1]})" for ref in refs
                              if schema.content["definitions"][ref.rsplit("/", 1)[1]].get("properties"))
             child = schema.resolved(child)
-            rows.append([code(key), "yes" if key in required else "", code(shown(child["default"])) if "default" in child else "",
+            rows.append([code(key), "yes" if key in required else "",
+                         code(shown(child["default"])) if "default" in child else "",
                          bounds(child) + refers, sentence(child)])
-        text += f"\n## {name}\n\n{sentence(entry)}\n\n" + table(["key", "required", "default", "allowed", "meaning"], rows)
+        text += f"\n## {name}\n\n{sentence(entry)}\n\n" + table(["key", "required", "default", "allowed", "meaning"],
+                                                                rows)
     return text
 
 
@@ -160,7 +168,8 @@ def columns(source, struct):
             meaning[name] = field[2] or before
         before = ""
     listed = re.search(rf"FieldsOf<{struct}> auto& r\) \{{(.*?)\n\}}", source, re.DOTALL)[1]
-    found = re.findall(r"visit\((?:column::)?(\w+)\(\"(\w+)\"(?:, \"([^\"]*)\")?\)[^;]*?, r\.(\w+)(?:\.\w\(\))?\);", listed)
+    found = re.findall(r"visit\((?:column::)?(\w+)\(\"(\w+)\"(?:, \"([^\"]*)\")?\)[^;]*?, r\.(\w+)(?:\.\w\(\))?\);",
+                       listed)
     if len(found) != len(re.findall(r"visit\(", listed)):
         raise ValueError(f"{struct}: {len(found)} columns were understood of those that its list has")
     return [(name, unit or "-", KINDS[kind], meaning.get(member, "")) for kind, name, unit, member in found]
@@ -175,8 +184,10 @@ def without_unit(text, unit):
 
 
 def columns_page(root):
-    text = ("# Result columns\n\nThe columns of the time series, made from the lists of fields in the sources. `results.h5` holds "
-            "the same tables. [Signs](../rigs/README.md#signs) defines axes and signs; `columns` of `summary.json` has the mean of "
+    text = ("# Result columns\n\nThe columns of the time series, made from the lists of fields in the sources. "
+            "`results.h5` holds "
+            "the same tables. [Signs](../rigs/README.md#signs) defines axes and signs; `columns` of `summary.json` has "
+            "the mean of "
             "every column over the averaging window, or the last value of a sum.\n")
     for path, struct, heading, where in TABLES:
         rows = [[code(name), cell(unit), kind, cell(without_unit(meaning, unit))]
@@ -189,7 +200,8 @@ def option_rows(entries):
     for item in entries:
         names = ", ".join(code(name) for name in item.names)
         value = item.kind + (" (repeatable)" if item.repeated else "")
-        yield [names, value, code(item.default), cell(item.text) + (f" {cell(item.relations)}." if item.relations else "")]
+        yield [names, value, code(item.default), cell(item.text)
+               + (f" {cell(item.relations)}." if item.relations else "")]
 
 
 def command_text(command, level):
@@ -198,13 +210,15 @@ def command_text(command, level):
     head = ["argument or option", "value", "default", "meaning"]
     rows = list(option_rows(command.arguments + [option for option in command.options if "--help" not in option.names]))
     text += table(head, rows) if rows else ""
-    text += "\n" + table(["example", "what it does"], [[code(line), cell(what)] for line, what in command.examples]) if command.examples else ""
+    text += "\n" + table(["example", "what it does"],
+                         [[code(line), cell(what)] for line, what in command.examples]) if command.examples else ""
     return text + "".join(command_text(below, level + 1) for below in command.commands)
 
 
 def commands_page(program):
     text = f"# Commands\n\n{program.purpose} Every command has `--help`; this page is made from it.\n\n"
-    text += "Examples:\n\n" + table(["command", "what it does"], [[code(line), cell(what)] for line, what in program.examples])
+    text += "Examples:\n\n" + table(["command", "what it does"],
+                                    [[code(line), cell(what)] for line, what in program.examples])
     for heading, group in program.groups.items():
         text += f"\n## {heading}\n" + "".join(command_text(command, 3) for command in group)
     return text
@@ -217,7 +231,8 @@ def exit_codes_page(program, survives):
     if listed != set(program.exit_codes):
         raise ValueError(f"exit codes: --help has {sorted(program.exit_codes)}, nodes/SURVIVES.md {sorted(listed)}")
     return ("# Exit codes\n\nEvery command ends with one of these.\n\n" + table(["code", "meaning"], rows) +
-            "\n[What survives what](../nodes/SURVIVES.md#exit-codes) says what each leaves behind and what to do next.\n")
+            "\n[What survives what](../nodes/SURVIVES.md#exit-codes) says what each leaves behind and what to do "
+            "next.\n")
 
 
 def index_page():
@@ -255,11 +270,13 @@ def main():
         "exit_codes": exit_codes_page(program, (root / "nodes/SURVIVES.md").read_text()),
         "scenario_keys": section_pages(Schema(root / "rigs/scenario.schema.json")),
         "columns": columns_page(root),
-        "tire_files": file_page("Tire files", "Every key of a tire file, made from its schema. One section for each model. "
+        "tire_files": file_page("Tire files",
+                                "Every key of a tire file, made from its schema. One section for each model. "
                                 "[A new tire from a drawing](../tire/HOWTO.md) shows where the numbers come from.",
                                 Schema(root / "tire/data/tire.schema.json")),
         "vehicle_files": file_page("Vehicle files", "Every key of a vehicle file, made from its schema. "
-                                   "[Vehicles](../vehicle/README.md#vehicle-files) explains how the parts fit together.",
+                                   "[Vehicles](../vehicle/README.md#vehicle-files) explains how the parts fit "
+                                   "together.",
                                    Schema(root / "vehicle/data/vehicle.schema.json")),
     }
     for name, text in pages.items():

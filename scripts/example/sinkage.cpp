@@ -69,8 +69,7 @@ void press(furrow::tire::Tire& tire, furrow::terrain::Terrain& bed) {
     require(tire.advance(motion, forces[0], 1), "the tire");
     rim = motion.end();
     if (step % 100 == 0)
-      std::printf("%.4f,%.1f,%lld\n", depth(), contact[0].force.z(),
-                  static_cast<long long>(contact[0].contacts));
+      std::printf("%.4f,%.1f,%lld\n", depth(), contact[0].force.z(), static_cast<long long>(contact[0].contacts));
   }
   std::printf("load at %.0f mm: %.0f N\n", 1e3 * kDepth, contact[0].force.z());
 }

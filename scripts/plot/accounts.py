@@ -7,20 +7,28 @@ from .run_data import Damaged, Missing, check_types
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window
 
 # Entries of accounts.energy, in J.
-WORK = {"drive_work": "drive of the wheels", "pull_work": "what moves the rig along", "guide_work": "rails and steering",
+WORK = {"drive_work": "drive of the wheels", "pull_work": "what moves the rig along",
+        "guide_work": "rails and steering",
         "wall_work": "walls"}
-STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation", "terrain_potential": "grains: height",
-          "terrain_elastic_normal": "grains: normal springs", "terrain_elastic_tangential": "grains: tangential springs",
+STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation",
+          "terrain_potential": "grains: height",
+          "terrain_elastic_normal": "grains: normal springs",
+          "terrain_elastic_tangential": "grains: tangential springs",
           "terrain_cohesion": "grains: cohesion", "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain",
-          "tire_pressure": "tires: air", "tire_potential": "tires: height", "rig_kinetic_and_potential": "rig: motion and height"}
-LOST = {"sliding_loss": "sliding", "normal_damping_loss": "normal damping", "tangential_damping_loss": "tangential damping",
-        "rolling_loss": "rolling", "opening_loss": "contacts that open", "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
-        "tire_numerical_loss": "tires: numerical", "tire_solver_loss": "tires: solver", "damper_loss": "touch-down damper",
+          "tire_pressure": "tires: air", "tire_potential": "tires: height",
+          "rig_kinetic_and_potential": "rig: motion and height"}
+LOST = {"sliding_loss": "sliding", "normal_damping_loss": "normal damping",
+        "tangential_damping_loss": "tangential damping",
+        "rolling_loss": "rolling", "opening_loss": "contacts that open",
+        "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
+        "tire_numerical_loss": "tires: numerical", "tire_solver_loss": "tires: solver",
+        "damper_loss": "touch-down damper",
         "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
 GROUPS = (("work", WORK, BLUE), ("stored", STORED, PURPLE), ("lost", LOST, ORANGE))
 LEAST_SHARE = 1e-3  # of what is turned over: smaller entries have no bar
 
-MOMENTUM = {"grains": "grains", "tires": "tires", "carrier": "carrier and rim", "under_way": "under way", "gravity": "gravity",
+MOMENTUM = {"grains": "grains", "tires": "tires", "carrier": "carrier and rim",
+            "under_way": "under way", "gravity": "gravity",
             "walls": "walls", "guide": "rails and drives", "sleep": "sleep", "residual": "residual"}
 CHANGES = ("grains", "tires", "carrier", "under_way")
 
@@ -35,7 +43,8 @@ def account(run, name):
     found = accounts.get(name)
     if not found:
         raise Missing(f"{run.told_in} has no account of {name}")
-    check_types(found, f"{where}: key '{name}'", numbers=("residual_share", "turnover", "largest", "bound"), flags=("closes",))
+    check_types(found, f"{where}: key '{name}'", numbers=("residual_share", "turnover", "largest", "bound"),
+                flags=("closes",))
     return found
 
 
@@ -48,7 +57,8 @@ def entries(found, file):
     for group, labels, colour in GROUPS:
         values = found.get(group) or {}
         check_types(values, f"{where}: key '{group}'", numbers=list(values))
-        rows += [(f"{label} ({'in' if group == 'work' else group})", float(values[key]), colour) for key, label in labels.items()
+        rows += [(f"{label} ({'in' if group == 'work' else group})", float(values[key]), colour) for key,
+                 label in labels.items()
                  if values.get(key) is not None and abs(values[key]) > least]
     return rows + [("residual", float(found.get("residual") or 0.0), RED)]
 
@@ -64,8 +74,9 @@ def over_time(run, axis):
     for group, labels, colour in GROUPS:
         parts = [series[f"{key}_J"] for key in labels if f"{key}_J" in series]
         if parts:
-            axis.plot(time, sum(parts), color=colour, label={"work": "put in: work from outside", "stored": "stored since the start",
-                                                             "lost": "lost, by all mechanisms"}[group])
+            axis.plot(time, sum(parts), color=colour,
+                      label={"work": "put in: work from outside", "stored": "stored since the start",
+                             "lost": "lost, by all mechanisms"}[group])
     if "residual_J" in series:
         axis.plot(time, series["residual_J"], color=RED, lw=1.3, label="residual: none of them")
     mark_window(axis, run)

@@ -103,7 +103,8 @@ def earliest(v):
     if moved is None or None in touched:
         return None, ""
     begin = float(max(v.time[moved], max(v.time[at] for at in touched)))
-    full = np.flatnonzero(v["throttle"] >= 0.99 * v["throttle"].max()) if "throttle" in v and v["throttle"].max() > 0.0 else []
+    full = np.flatnonzero(v["throttle"] >= 0.99
+                          * v["throttle"].max()) if "throttle" in v and v["throttle"].max() > 0.0 else []
     begin = max(begin, float(v.time[full[0]])) if len(full) else begin
     met = events.meetings(v, touched)
     if not v.hard_ground and len(met) == len(v.wheels) - 2 and met:
@@ -111,7 +112,8 @@ def earliest(v):
         clear = events.first(last[0]["position_m"] >= last[0]["position_m"][last[2]] + 0.5 * last[0].radius)
         if clear is not None and v.time[-1] - v.time[clear] >= SHORTEST:
             return max(begin, float(v.time[clear])), "all axles behind are in the ruts"
-    return begin, "the vehicle moves" + ("" if v.hard_ground else "; the axles behind have not rolled in the ruts for long")
+    return begin, "the vehicle moves" + ("" if v.hard_ground
+                                         else "; the axles behind have not rolled in the ruts for long")
 
 
 def window(v, begin=None, end=None):
@@ -166,10 +168,12 @@ def text(c):
     rows = [head] + [[f"{row.what}, {row.unit}" if row.unit != "–" else row.what,
                       *(told(found) for found in row.axles + row.differences)] for row in c.rows]
     if c.in_ruts:
-        rows.append(["share of time in a rut", *(f"{100 * share:.0f} %" for share in c.in_ruts), *[""] * (len(names) - 1)])
+        rows.append(["share of time in a rut", *(f"{100 * share:.0f} %" for share in c.in_ruts),
+                     *[""] * (len(names) - 1)])
     widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
     lines = [f"Axles from {c.begin:.3g} to {c.end:.3g} s ({c.chosen}); an axle has the sum of its wheels' forces"]
-    lines += ["  ".join([f"{row[0]:<{widths[0]}}", *(f"{cell:>{width}}" for cell, width in zip(row[1:], widths[1:]))]).rstrip()
+    lines += ["  ".join([f"{row[0]:<{widths[0]}}",
+                         *(f"{cell:>{width}}" for cell, width in zip(row[1:], widths[1:]))]).rstrip()
               for row in rows]
     lines += [f"{row.what}, {name} axle: {note}; the mean leaves that out, a wheel that does not turn has no slip"
               for row in c.rows for name, note in zip(names, row.notes) if note]

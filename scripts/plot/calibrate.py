@@ -19,14 +19,17 @@ class Calibration:
         self.directory = directory
         self.values = read_object(directory / "calibration.json")
         check_types(self.values, "calibration.json", texts=("study", "calibrate", "start", "result"),
-                    objects=("parameters", "fitted", "held_out", "identifiability"), lists=("targets", "held_out_targets", "warnings", "starts"))
+                    objects=("parameters", "fitted", "held_out", "identifiability"),
+                    lists=("targets", "held_out_targets", "warnings", "starts"))
 
     def title(self, figure, what):
-        figure.suptitle(f"{self.values.get('study', self.directory.name)} · {self.values.get('calibrate', '')} · {what}",
+        figure.suptitle(f"{self.values.get('study', self.directory.name)} · {self.values.get('calibrate', '')} · "
+                        f"{what}",
                         fontsize=11, x=0.01, ha="left", fontweight="bold")
 
     def targets(self):
-        """What calibration.json says of each target, with x_name and y_name, and its points: x, data, sigma, model (NaN: no answer),
+        """What calibration.json says of each target, with x_name and y_name, and its points: x, data, sigma, model
+        (NaN: no answer),
         labels."""
         points = {}
         with open(self.directory / "fit.csv", newline="", encoding="utf-8") as file:
@@ -38,8 +41,10 @@ class Calibration:
                 rows = points.get(told.get("name"))
                 if not rows:
                     raise Missing(f"fit.csv has no points of {told.get('name')}")
-                columns = {name: np.array([float(row[name] or "nan") for row in rows]) for name in ("x", "data", "sigma", "model")}
-                found.append({**told, "x_name": told.get("x"), "y_name": told.get("y"), **columns, "held_out": key == "held_out_targets", "labels": [row["label"] for row in rows]})
+                columns = {name: np.array([float(row[name] or "nan") for row in rows])
+                           for name in ("x", "data", "sigma", "model")}
+                found.append({**told, "x_name": told.get("x"), "y_name": told.get("y"), **columns,
+                              "held_out": key == "held_out_targets", "labels": [row["label"] for row in rows]})
         if not found:
             raise Missing("there are no targets")
         return found
@@ -98,12 +103,14 @@ def fit_of_figures(axis, target, colour):
     single = len(target["x"]) == 1
     factor = 1.0 if single else quantity(target["y_name"])[2]
     place, told = mark_places(axis, target), target.get("figures") or []
-    axis.errorbar(place, factor * target["data"], factor * target["sigma"], fmt="o", color=colour, ms=4, capsize=3, label="data")
+    axis.errorbar(place, factor * target["data"], factor * target["sigma"],
+                  fmt="o", color=colour, ms=4, capsize=3, label="data")
     spans = [figure.get("evaluations_span") for figure in told]
     if len(spans) == len(place) and all(spans):
         axis.vlines(place + 0.15, *(factor * np.array(spans).T), color=GREY, lw=1.0, alpha=0.6, label="all evaluations")
     errors = [factor * (figure.get("standard_error") or 0.0) for figure in told]
-    axis.errorbar(place + 0.15, factor * target["model"], errors if len(errors) == len(place) and any(errors) else None, fmt="_", ms=10,
+    axis.errorbar(place + 0.15, factor * target["model"], errors if len(errors) == len(place) and any(errors) else None,
+                  fmt="_", ms=10,
                   capsize=3, color=RED, label="model, held out" if target["held_out"] else "model")
     axis.set(ylabel=target["y_name"] if single else label_of(target["y_name"]))
 
@@ -118,7 +125,8 @@ def fit(run):
                 fit_of_figures(axis, target, colour)
                 continue
             axis.plot(x_factor * target["x"], y_factor * target["data"], "o", ms=3.5, color=colour)
-            axis.plot(x_factor * target["x"], y_factor * target["model"], "--" if target["held_out"] else "-", color=colour,
+            axis.plot(x_factor * target["x"], y_factor * target["model"],
+                      "--" if target["held_out"] else "-", color=colour,
                       label=f"{target['name']} ({target.get('what', '')})")
         if alone:
             axis.set_title(alone)
@@ -135,7 +143,8 @@ def residual(run):
         for k, target in enumerate(targets):
             peak = np.max(np.abs(target["data"])) or 1.0
             place = mark_places(axis, target) if alone else quantity(x)[2] * target["x"]
-            axis.plot(place, 100.0 * (target["model"] - target["data"]) / peak, "o", ms=3, color=COLOURS[k % len(COLOURS)],
+            axis.plot(place, 100.0 * (target["model"] - target["data"]) / peak,
+                      "o", ms=3, color=COLOURS[k % len(COLOURS)],
                       mfc="none" if target["held_out"] else None, label=f"{target['name']} ({target.get('what', '')})")
         if alone:
             axis.set_title(alone)

@@ -69,7 +69,8 @@ def pull_slip_sinkage(run):
     theory = run.soil_estimate.get("drawbar_pull_N")
     if theory is not None:
         error = run.soil_estimate.get("drawbar_pull_standard_error_N")
-        top.axhline(theory, color=ORANGE, ls="--", lw=1.5, label=f"soil theory for a rigid wheel, furrow soil's parameters: "
+        top.axhline(theory, color=ORANGE, ls="--", lw=1.5,
+                    label=f"soil theory for a rigid wheel, furrow soil's parameters: "
                     f"{with_error(theory, error) if error is not None else digits(theory)} N")
     top.axhline(0.0, color="black", lw=0.8)
     settled_limits(top, run, *([pull] if theory is None else [pull, np.full_like(pull, theory)]))
@@ -161,7 +162,8 @@ def ranks(run):
     names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "") + unknowns(run, r["node"])
              + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
     compute = np.array([r["compute_s"] for r in table])
-    communicate = np.array([r.get("communicate_s", 0.0) for r in table])  # runs before it was counted have it in computing
+    # runs before it was counted have it in computing
+    communicate = np.array([r.get("communicate_s", 0.0) for r in table])
     wait = np.array([r["wait_s"] for r in table])
     position = np.arange(len(table))
     axis.barh(position, compute, color=BLUE, label="computing")

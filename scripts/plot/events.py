@@ -55,7 +55,8 @@ def contact_events(v, touched):
             closes = v.time[min(end, len(v.time) - 1)]
             if closes - v.time[begin] >= LIFT:
                 yield Event(v.time[begin], "wheel lifts", wheel.name, closes - v.time[begin], "s",
-                            f"vertical force below {100 * TOUCH:.0f} % of the load for {LIFT:g} s or more; value: how long")
+                            f"vertical force below {100 * TOUCH:.0f} % of the load for {LIFT:g} s or more; value: how "
+                            f"long")
 
 
 def settled_at(v, touched):
@@ -122,7 +123,8 @@ def wheel_speed(v):
 
 
 def meetings(v, touched):
-    """[(axle behind, axle before, index)]: each axle but the first reaches the place where the one before it came down."""
+    """[(axle behind, axle before, index)]: each axle but the first reaches the place where the one before it came
+    down."""
     found = []
     for before, behind in zip(v.order, v.order[1:]):
         for leading, following in zip(v.of_axle(before), v.of_axle(behind)):
@@ -146,12 +148,14 @@ def rut_events(v, touched):
     met = meetings(v, touched)
     for following, leading, at in met:
         yield Event(v.time[at], "reaches the place of touch-down", following.name,
-                    following["position_m"][at], "m", "position at or beyond that of the wheel before it when that touched down")
+                    following["position_m"][at], "m",
+                    "position at or beyond that of the wheel before it when that touched down")
         begin = first(in_rut(following))
         if begin is not None:
             depth = following["sinkage_m"][begin] - following["sinkage_in_rut_m"][begin]
             yield Event(v.time[begin], "rolls in a rut", following.name, 1e3 * depth, "mm",
-                        f"a rut deeper than {1e3 * RUT * following.radius:.1f} mm ({RUT:g} R) under it; value: that rut's depth")
+                        f"a rut deeper than {1e3 * RUT * following.radius:.1f} mm ({RUT:g} R) under it; value: that "
+                        f"rut's depth")
     yield from pitch_events(v, met)
 
 
@@ -167,7 +171,8 @@ def pitch_change(v):
 
 
 def pitch_events(v, met):
-    """The change of pitch that is steepest near the meeting, if it rises above those of other times since driving off."""
+    """The change of pitch that is steepest near the meeting, if it rises above those of other times since driving
+    off."""
     moved, _ = drive_off(v)
     if not met or moved is None or len(v.time) < 10:
         return
@@ -186,8 +191,10 @@ def pitch_events(v, met):
         seen_it = abs(change[here]) > PITCH_NOISE * noise
         yield Event(v.time[here], "pitch changes" if seen_it else "pitch changes (not above its noise)",
                     f"{v.axles[following.axle]} axle", math.degrees(change[here]), "°",
-                    f"steepest within {PITCH_SEARCH[0]:g} to {PITCH_SEARCH[1]:g} s of the axle's meeting; value: mean of "
-                    f"{PITCH_SPAN:g} s after less that before, nose down positive; elsewhere {math.degrees(noise):.2g}° (rms)")
+                    f"steepest within {PITCH_SEARCH[0]:g} to {PITCH_SEARCH[1]:g} s of the axle's meeting; value: mean "
+                    f"of "
+                    f"{PITCH_SPAN:g} s after less that before, nose down positive; elsewhere "
+                    f"{math.degrees(noise):.2g}° (rms)")
 
 
 def sinkage_events(v, touched):
@@ -200,7 +207,8 @@ def sinkage_events(v, touched):
         inside = in_rut(wheel)
         if inside.any():
             deepest = int(np.argmax(np.where(inside, wheel["sinkage_in_rut_m"], -np.inf)))
-            yield Event(v.time[deepest], "largest sinkage in a rut", wheel.name, 1e3 * wheel["sinkage_in_rut_m"][deepest], "mm",
+            yield Event(v.time[deepest], "largest sinkage in a rut", wheel.name,
+                        1e3 * wheel["sinkage_in_rut_m"][deepest], "mm",
                         "maximum of sinkage_in_rut_m, below the rut's bottom, while it rolls in one")
 
 
@@ -244,6 +252,7 @@ def text(found):
     rows = [("time, s", "event", "of", "value")]
     rows += [(f"{e.time:.3f}", e.what, e.subject, f"{significant(e.value)} {e.unit}".rstrip()) for e in found]
     widths = [max(len(row[i]) for row in rows) for i in range(4)]
-    lines = [f"{row[0]:>{widths[0]}}  {row[1]:<{widths[1]}}  {row[2]:<{widths[2]}}  {row[3]:>{widths[3]}}" for row in rows]
+    lines = [f"{row[0]:>{widths[0]}}  {row[1]:<{widths[1]}}  {row[2]:<{widths[2]}}  {row[3]:>{widths[3]}}"
+             for row in rows]
     kinds = dict(sorted((e.what, e.threshold) for e in found))
     return "\n".join([*lines, "", *(f"{what}: {threshold}" for what, threshold in kinds.items())]) + "\n"

@@ -36,7 +36,8 @@ class Driveline:
     def converter_torque(self, crank, turbine):
         """(impeller, turbine)."""
         ratio = turbine / crank
-        capacity, gain = pairs(self.converter["capacity"], "capacity"), pairs(self.converter["torque_ratio"], "torque_ratio")
+        capacity, gain = pairs(self.converter["capacity"], "capacity"), pairs(self.converter["torque_ratio"],
+                                                                              "torque_ratio")
         low = min(ratio, 1.0 - BLEND)
         if ratio <= 1.0 - BLEND:
             taken = (crank / np.interp(ratio, *capacity)) ** 2
@@ -107,7 +108,8 @@ class Balance:
         if self.changed:
             return f"the gear was changed, gross traction {self.gross:.3f} beside {self.limit:.3f}"
         if self.gross < self.limit:
-            return f"gross traction {self.gross:.3f} is below {self.limit:.3f}: the wheels gain speed, but the run ends before the change"
+            return (f"gross traction {self.gross:.3f} is below {self.limit:.3f}: the wheels gain speed, but the run "
+                    f"ends before the change")
         return f"gross traction {self.gross:.3f} is above {self.limit:.3f}: at this traction no change of gear comes"
 
 
@@ -137,8 +139,10 @@ def balance(v):
 
 
 def text(b):
-    return (f"Change of gear: at {b.shift_speed:.2f} m/s of the wheels (ω R), where engine and gears give {b.limit:.3f} of the weight "
+    return (f"Change of gear: at {b.shift_speed:.2f} m/s of the wheels (ω R), where engine and gears give "
+            f"{b.limit:.3f} of the weight "
             f"at throttle {b.throttle:.2g}\n"
-            f"  largest wheel speed in the lowest gear {b.reached:.2f} m/s at {b.time:.3f} s; there gross traction {b.gross:.3f}, "
+            f"  largest wheel speed in the lowest gear {b.reached:.2f} m/s at {b.time:.3f} s; there gross traction "
+            f"{b.gross:.3f}, "
             f"torque over radius {b.torque:.3f} of the weight\n"
             f"  {b.verdict}\n")

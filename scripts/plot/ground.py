@@ -52,14 +52,17 @@ def top_view(figure, axis, field, depth, start, end, sign, tread, lateral, windo
     depth = median3(depth)
     limit = max(float(np.nanpercentile(np.abs(depth), 99.5)), 1.0)
     image = axis.pcolormesh(field.x, field.y, depth.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="nearest")
-    figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)", pad=0.01, shrink=0.8)
+    figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)",
+                    pad=0.01, shrink=0.8)
     axis.set_aspect("equal")
     axis.grid(False)
     axis.plot([start, end], [lateral, lateral], color="black", ls=":", lw=1.0)
     axis.plot(start, lateral, "o", color="black", ms=5, label="axle at the start")
-    axis.plot(end, lateral, ">" if sign > 0 else "<", color="black", ms=9, label="axle at the end, in direction of travel")
+    axis.plot(end, lateral, ">" if sign > 0 else "<", color="black", ms=9,
+              label="axle at the end, in direction of travel")
     if tread:
-        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread), window[1] - window[0], tread, fill=False, lw=1.4,
+        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread),
+                                     window[1] - window[0], tread, fill=False, lw=1.4,
                                      label="tread width, where the rut is measured"))
     axis.set_xlabel("x, m")
     axis.set_ylabel("y, m (left of +x)")
@@ -81,7 +84,8 @@ def across(axis, run, field, depth, end, tread, lateral, window):
     if measured is not None:
         axis.axhline(-1e3 * measured, color=RED, ls="--", lw=1.2, label=f"rut depth {digits(1e3 * measured)} mm")
     if measured is not None and width is not None:
-        axis.axhline(-500.0 * measured, color=RED, ls=":", lw=1.2, label=f"width at half depth {digits(1e3 * width)} mm")
+        axis.axhline(-500.0 * measured, color=RED, ls=":", lw=1.2,
+                     label=f"width at half depth {digits(1e3 * width)} mm")
     axis.set_xlabel("y, mm")
     axis.set_ylabel("height change, mm")
     axis.margins(y=0.25)

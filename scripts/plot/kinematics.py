@@ -67,7 +67,8 @@ def draw(run, motion, against, panels, columns, what):
     figure, axes = plt.subplots(rows, columns, figsize=(3.6 * columns, 2.7 * rows), squeeze=False, sharex=True)
     figure.suptitle(f"{run.values.get('vehicle')} · {what}", fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     places = dict(run.curves(motion, name))
-    colour = {axle: COLOURS[k % len(COLOURS)] for k, axle in enumerate(dict.fromkeys(wheel.rsplit(" ", 1)[0] for wheel in places))}
+    colour = {axle: COLOURS[k % len(COLOURS)] for k,
+              axle in enumerate(dict.fromkeys(wheel.rsplit(" ", 1)[0] for wheel in places))}
     for axis, (column, scale, title) in zip(axes.flat, shown):
         for wheel, values in run.curves(motion, column):
             axis.plot(factor * places[wheel], scale * values, "--" if wheel.endswith("right") else "-", label=wheel,
@@ -86,8 +87,10 @@ def draw(run, motion, against, panels, columns, what):
 
 
 def parallel(run):
-    return draw(run, "parallel", TRAVEL, [CAMBER, TOE, CASTER, KINGPIN, HALF_TRACK, SCRUB, TRAIL, ROLL_CENTER, ANTI_DIVE,
-                                          SPRING_RATIO, SHOCK_RATIO, WHEEL_RATE], 4, "both wheels of an axle lifted alike (grey: at rest)")
+    return draw(run, "parallel", TRAVEL, [CAMBER, TOE, CASTER, KINGPIN,
+                                          HALF_TRACK, SCRUB, TRAIL, ROLL_CENTER, ANTI_DIVE,
+                                          SPRING_RATIO, SHOCK_RATIO, WHEEL_RATE],
+                4, "both wheels of an axle lifted alike (grey: at rest)")
 
 
 def opposite(run):
@@ -96,4 +99,5 @@ def opposite(run):
 
 
 def steering(run):
-    return draw(run, "steering", WHEEL, [STEER, ACKERMANN, CAMBER, CASTER, KINGPIN, SCRUB, TRAIL, HALF_TRACK], 4, "steered, wheels as drawn")
+    return draw(run, "steering", WHEEL, [STEER, ACKERMANN, CAMBER, CASTER, KINGPIN, SCRUB, TRAIL, HALF_TRACK],
+                4, "steered, wheels as drawn")

@@ -18,10 +18,12 @@ class Modes(Soil):
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("tire", "details"), numbers=("pressure_Pa", "mass_kg"), flags=("stable",))
+        check_types(self.values, "summary.json", texts=("tire", "details"),
+                    numbers=("pressure_Pa", "mass_kg"), flags=("stable",))
 
     def title(self, figure, what):
-        figure.suptitle(f"{self.values.get('tire', self.directory.name)} · {what}", fontsize=11, x=0.01, ha="left", fontweight="bold")
+        figure.suptitle(f"{self.values.get('tire', self.directory.name)} · {what}",
+                        fontsize=11, x=0.01, ha="left", fontweight="bold")
 
     def frequencies(self):
         """{(order, number): Hz}"""
@@ -51,7 +53,8 @@ def frequencies(run):
         orders = sorted(order for order, which in found if which == number)
         values = np.array([found[order, number] for order in orders])
         axis.plot(orders, values, "o-", ms=4, color=COLOURS[k % len(COLOURS)])
-        axis.plot(np.array(orders)[values < 0], values[values < 0], "x", color=RED, label="not stable: growth rate / 2π" if np.any(values < 0) else None)
+        axis.plot(np.array(orders)[values < 0], values[values < 0], "x",
+                  color=RED, label="not stable: growth rate / 2π" if np.any(values < 0) else None)
     axis.axhline(0.0, color=GREY, lw=0.6)
     if axis.get_legend_handles_labels()[0]:
         axis.legend()
@@ -67,7 +70,8 @@ def panels(run, what, height):
     numbers = sorted({number for _, number in shapes})[:MOST_NUMBERS]
     if not orders:
         raise Missing("shapes.csv has no modes")
-    figure, axes = plt.subplots(len(numbers), len(orders), figsize=(2.3 * len(orders) + 0.3, height * len(numbers) + 0.5), squeeze=False)
+    figure, axes = plt.subplots(len(numbers), len(orders),
+                                figsize=(2.3 * len(orders) + 0.3, height * len(numbers) + 0.5), squeeze=False)
     run.title(figure, what)
     for row, number in zip(axes, numbers):
         for axis, order in zip(row, orders):

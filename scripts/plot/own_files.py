@@ -45,7 +45,8 @@ def add_name(path, name):
 
 
 def may_write(folder, name):
-    """Whether `name` may be written in a folder: it is free, or furrow wrote it. A free one is put on the folder's list,
+    """Whether `name` may be written in a folder: it is free, or furrow wrote it. A free one is put on the folder's
+    list,
     before its file is made. If it may not, a message says why."""
     why = None
     if os.path.islink(folder / name):

@@ -13,7 +13,8 @@ class Press(Soil):
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"), objects=("footprint", "sticking_stiffness"),
+        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"),
+                    objects=("footprint", "sticking_stiffness"),
                     numbers=("deflection_m", "load_N", "secant_stiffness_N_per_m"))
         check_types(self.values.get("footprint") or {}, "summary.json: key 'footprint'",
                     numbers=("force_N", "length_m", "width_m", "mean_pressure_Pa"))
@@ -61,6 +62,7 @@ def footprint(run):
     figure.colorbar(points, label="kPa")
     axis.set_aspect("equal")
     axis.set(xlabel="across, mm", ylabel="along, mm",
-             title=f"{1e-3 * values['force_N']:.3g} kN: {1e3 * values['length_m']:.0f} × {1e3 * values['width_m']:.0f} mm, "
+             title=f"{1e-3 * values['force_N']:.3g} kN: {1e3 * values['length_m']:.0f} × {1e3 * values['width_m']:.0f} "
+                   f"mm, "
                    f"mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
     return figure

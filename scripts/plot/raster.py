@@ -55,7 +55,8 @@ class Buffers:
         """Fragments with columns in common; the nearest of each pixel stays."""
         nearer = depth < self.depth[pixel]
         order = np.flatnonzero(nearer)
-        order = order[np.argsort(-depth[order], kind="stable")]  # of equal pixels the last assignment, the nearest, stays
+        # of equal pixels the last assignment, the nearest, stays
+        order = order[np.argsort(-depth[order], kind="stable")]
         pixel = pixel[order]
         self.depth[pixel] = depth[order]
         if self.depth_only:
@@ -99,7 +100,8 @@ class Buffers:
         self.put(pixel, surface, normal, colour[grain])
 
     def triangles(self, vertex, index, normal=None, colour=None, gloss=0.0, edge=None):
-        """`normal` per vertex, `colour` per triangle; `edge`: (n, 3) which sides, opposite to each corner, are drawn."""
+        """`normal` per vertex, `colour` per triangle; `edge`: (n, 3) which sides, opposite to each corner, are
+        drawn."""
         column, row, depth, _ = self.camera.project(vertex)
         x, y, z = column[index], row[index], depth[index]
         area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
@@ -131,11 +133,14 @@ class Buffers:
         if edge is not None:
             line = ((weight / sharp[which] < 0.8) & edge[chosen][which]).any(1)
             shade[line] *= 0.45
-        self.put(pixel, depth, np.einsum("ij,ijk->ik", weight, normal[index[chosen]][which]).astype(np.float32), shade, gloss)
+        self.put(pixel, depth, np.einsum("ij,ijk->ik", weight, normal[index[chosen]][which]).astype(np.float32),
+                 shade, gloss)
 
     def _covered(self, x, y, side):
-        """(triangle, column, row) of the pixels of triangles within squares of `side` pixels or, of larger ones, within all
-        that is seen of them; barycentric weights, and per triangle the weights' change per pixel. None: there are none."""
+        """(triangle, column, row) of the pixels of triangles within squares of `side` pixels or, of larger ones, within
+        all
+        that is seen of them; barycentric weights, and per triangle the weights' change per pixel. None: there are
+        none."""
         camera = self.camera
         left, above = (np.maximum(np.floor(v.min(1)), 0.0).astype(int) for v in (x, y))
         wide, high = side, side
@@ -147,9 +152,10 @@ class Buffers:
         area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
         dx, dy = np.roll(x, -2, 1) - np.roll(x, -1, 1), np.roll(y, -2, 1) - np.roll(y, -1, 1)
         x1, y1 = np.roll(x, -1, 1), np.roll(y, -1, 1)
-        weight = [((py + 0.5 - y1[:, k, None]) * dx[:, k, None] - (px + 0.5 - x1[:, k, None]) * dy[:, k, None]) / area[:, None]
+        weight = [((py + 0.5 - y1[:, k, None]) * dx[:, k, None] - (px + 0.5 - x1[:, k, None]) * dy[:, k, None])
+                  / area[:, None]
                   for k in range(3)]
-        inside = (weight[0] >= 0.0) & (weight[1] >= 0.0) & (weight[2] >= 0.0) & (px < camera.width) & (py < camera.height)
+        inside = ((weight[0] >= 0.0) & (weight[1] >= 0.0) & (weight[2] >= 0.0) & (px < camera.width) & (py < camera.height))
         which, _ = np.nonzero(inside)
         if not len(which):
             return None

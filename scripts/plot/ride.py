@@ -41,10 +41,12 @@ def ride(run):
         values = ride_values(time, acceleration)
         axis.plot(time, acceleration, color=GREY, lw=0.7, label=f"{where}, rms {digits(values['rms'])} m/s²")
         axis.plot(time, weighted(time, acceleration), color=colour, lw=1.0,
-                  label=f"weighted by $W_k$, rms {digits(values['weighted_rms'])} m/s²: {in_words(values['weighted_rms'])}")
+                  label=f"weighted by $W_k$, rms {digits(values['weighted_rms'])} m/s²: "
+                        f"{in_words(values['weighted_rms'])}")
         axis.set_ylabel("vertical acceleration (m/s²)")
         axis.set_xlabel("time (s)")
-        axis.legend(loc="upper right", fontsize=8, title=f"MTVV {digits(values['mtvv'])} m/s², VDV {digits(values['vdv'])} m/s$^{{1.75}}$, "
+        axis.legend(loc="upper right", fontsize=8,
+                    title=f"MTVV {digits(values['mtvv'])} m/s², VDV {digits(values['vdv'])} m/s$^{{1.75}}$, "
                     f"crest {digits(values['crest'])} (ISO 2631-1)", title_fontsize=8)
         frequency, power = density(time, acceleration)
         low = (frequency > 0.0) & (frequency <= 100.0)

@@ -1,8 +1,8 @@
 """Vibration of a seat or a body as ISO 2631-1 rates it: accelerations weighted by frequency, and figures of them.
 
-ISO 2631-1:1997, annex A: the weighting W_k (vertical, seated or standing) is the product of a band limit (f1, f2), a transition from
-acceleration to velocity (f3, f4, Q4) and an upward step (f5, Q5, f6, Q6), table A.1. Paragraph 6.2 gives the weighted mean
-square, 6.3.1 the running one (MTVV), 6.3.2 the fourth-power dose (VDV).
+ISO 2631-1:1997, annex A: the weighting W_k (vertical, seated or standing) is the product of a band limit (f1, f2), a
+transition from acceleration to velocity (f3, f4, Q4) and an upward step (f5, Q5, f6, Q6), table A.1. Paragraph 6.2
+gives the weighted mean square, 6.3.1 the running one (MTVV), 6.3.2 the fourth-power dose (VDV).
 """
 import numpy as np
 
@@ -48,7 +48,8 @@ def density(time, values, segments=8):
 
 
 def ride_values(time, acceleration):
-    """@returns {"rms": m/s², "weighted_rms": m/s², "mtvv": m/s², "vdv": m/s^1.75, "crest": weighted peak over weighted rms}"""
+    """@returns {"rms": m/s², "weighted_rms": m/s², "mtvv": m/s², "vdv": m/s^1.75, "crest": weighted peak over weighted
+    rms}"""
     a = weighted(time, acceleration)
     step = float(np.median(np.diff(time)))
     rms = float(np.sqrt(np.mean(a ** 2)))
@@ -57,7 +58,8 @@ def ride_values(time, acceleration):
         running = decay * running + (1.0 - decay) * value * value
         most = max(most, running)
     return {"rms": float(np.std(acceleration)), "weighted_rms": rms, "mtvv": float(np.sqrt(most)),
-            "vdv": float((np.sum(a ** 4) * step) ** 0.25), "crest": float(np.max(np.abs(a)) / rms) if rms > 0.0 else 0.0}
+            "vdv": float((np.sum(a ** 4) * step) ** 0.25), "crest": float(np.max(np.abs(a)) / rms)
+            if rms > 0.0 else 0.0}
 
 
 def in_words(weighted_rms):

@@ -85,7 +85,8 @@ def read_dataset(file, name):
     stored = group.id.get_storage_size()
     most = stored * (RATIO if group.id.get_create_plist().get_nfilters() else 1)
     if stored > os.path.getsize(file.filename) or group.size * group.dtype.itemsize > most:
-        raise Damaged(f"{what} is said to have {group.size} numbers, but {stored} bytes are stored: it was never written, "
+        raise Damaged(f"{what} is said to have {group.size} numbers, but {stored} bytes are stored: it was never "
+                      f"written, "
                       "or the file is cut short or damaged")
     return group[()]
 
@@ -94,13 +95,15 @@ def table(file, name, columns):
     """A dataset of as many columns; a vector where `columns` is 0."""
     values = read_dataset(file, name)
     if (values.ndim != 1) if columns == 0 else (values.ndim != 2 or values.shape[1] != columns):
-        raise Damaged(f"{pathlib.Path(file.filename).name}: the dataset '{name}' has the shape {values.shape}, expected "
+        raise Damaged(f"{pathlib.Path(file.filename).name}: the dataset '{name}' has the shape {values.shape}, "
+                      f"expected "
                       + (f"N × {columns}" if columns else "N numbers"))
     return values
 
 
 # Keys of summary.json that plots read.
-NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient", "tread_width_m", "rut_depth_m", "rut_width_m",
+NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient",
+           "tread_width_m", "rut_depth_m", "rut_width_m",
            "surface_height_m", "sinkage_m", "grains", "bed_clearance_m")
 OBJECTS = ("drawbar_pull_N", "accounts")
 
@@ -156,7 +159,8 @@ class Run:
         if not isinstance(wheels[0], dict):
             raise Damaged(f"{name}: key 'wheels.0': expected an object")
         summary = {**wheels[0], **summary}
-        check_types(summary, name, texts=("scenario", "terrain_engine", "law"), numbers=NUMBERS, objects=OBJECTS + ("failed",),
+        check_types(summary, name, texts=("scenario", "terrain_engine", "law"),
+                    numbers=NUMBERS, objects=OBJECTS + ("failed",),
                     lists=("net_terrain_force_N", "ranks"))
         pull = summary.get("drawbar_pull_N") or {}
         check_types(pull, name + ": key 'drawbar_pull_N'", numbers=("mean", "sem", "from_s", "to_s"), flags=("steady",),
@@ -277,7 +281,8 @@ class Run:
         if "terrain_engine" in self.summary:
             engine = self.summary["terrain_engine"]
             law = self.summary.get("law")  # of grains
-            what.append({"rigid": "rigid ground", "scm": "empirical soil"}.get(engine, f"{engine}, {law}" if law else engine))
+            what.append({"rigid": "rigid ground", "scm": "empirical soil"}.get(engine,
+                                                                               f"{engine}, {law}" if law else engine))
         if self.number("slip") is not None:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None and not self.has_vehicle:
@@ -286,5 +291,6 @@ class Run:
         if wheels > 1:
             what.append(f"wheel 0 of {wheels}")
         if self.scenario and not self.summary:
-            what.append("ended by an error" if (self.directory / "summary_failed.json").exists() else "stopped before its end")
+            what.append("ended by an error" if (self.directory / "summary_failed.json").exists()
+                        else "stopped before its end")
         return " · ".join(what)

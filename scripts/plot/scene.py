@@ -110,7 +110,8 @@ def draw(buffers, tire, soil, colours, centre, sign, ground):
     if soil is not None:
         buffers.spheres(soil.position, soil.radius, colours)
     else:
-        add_squares(buffers, centre[0] + sign * np.arange(-BEHIND, AHEAD, 0.1), np.arange(-0.4, 0.4, 0.1), sign * 0.1, 0.1, ground)
+        add_squares(buffers, centre[0] + sign * np.arange(-BEHIND, AHEAD, 0.1),
+                    np.arange(-0.4, 0.4, 0.1), sign * 0.1, 0.1, ground)
     add_tire(buffers, *tire)
 
 
@@ -200,7 +201,8 @@ def scene(run):
     if soil is not None:
         bar = figure.add_axes([0.72, 0.075, 0.25, 0.018])
         map_ = mpl.colors.LinearSegmentedColormap.from_list("soil", np.array(SOIL) ** (1 / 2.2))
-        colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span / scale, 1e3 * span / scale), map_), cax=bar,
+        colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span / scale, 1e3 * span / scale),
+                                                          map_), cax=bar,
                                     orientation="horizontal")
         colourbar.set_label("height of grains about the undisturbed surface, mm", fontsize=9)
         colourbar.ax.tick_params(labelsize=8)

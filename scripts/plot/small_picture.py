@@ -36,7 +36,8 @@ def small(picture):
     picture = picture.resize((WIDTH, round(picture.height * WIDTH / picture.width)), Image.Resampling.LANCZOS)
     pixels = np.asarray(picture).reshape(-1, 3).astype(int)
     part = part_of(pixels)
-    colours = np.vstack([palette_of(pixels[part == k], count) for k, count in enumerate(SHARES.values()) if np.any(part == k)])
+    colours = np.vstack([palette_of(pixels[part == k], count) for k,
+                         count in enumerate(SHARES.values()) if np.any(part == k)])
     palette = Image.new("P", (1, 1))
     palette.putpalette(colours.astype(np.uint8).ravel().tolist())
     return picture.quantize(palette=palette, dither=Image.Dither.NONE)

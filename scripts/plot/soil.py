@@ -14,10 +14,12 @@ class Soil:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "soil.json")
-        check_types(self.values, "soil.json", texts=("scenario",), objects=("grains", "standard_error"), flags=("quick",))
+        check_types(self.values, "soil.json", texts=("scenario",), objects=("grains", "standard_error"),
+                    flags=("quick",))
         for key in ("grains", "standard_error"):
             values = self.values.get(key) or {}
-            check_types(values, f"soil.json: key '{key}'", numbers=[name for name in values if key != "grains" or name.endswith(("_m", "_Pa"))])
+            check_types(values, f"soil.json: key '{key}'",
+                        numbers=[name for name in values if key != "grains" or name.endswith(("_m", "_Pa"))])
 
     def table(self, name):
         """The columns of a CSV file as arrays."""
@@ -43,7 +45,8 @@ class Soil:
         grains = self.values.get("grains") or {}
         note = ", quick look: no result to quote" if self.values.get("quick") else ""
         figure.suptitle(f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
-                        f"{1e3 * grains.get('radius_m', np.nan):g} mm, cohesion {1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}",
+                        f"{1e3 * grains.get('radius_m', np.nan):g} mm, cohesion "
+                        f"{1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}",
                         fontsize=11, x=0.01, ha="left", fontweight="bold")
         return figure, axes[0]
 
@@ -73,7 +76,8 @@ def plate(soil):
     axis.set_xlabel("sinkage below the mean surface, mm")
     axis.set_ylabel("pressure, kPa")
     axis.set_title("Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, "
-                   f"n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²", fontsize=9)
+                   f"n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²",
+                   fontsize=9)
     axis.legend(loc="upper left")
     return figure
 
@@ -102,7 +106,8 @@ def shear(soil):
     left.legend(loc="upper left")
     sigma = 1e-3 * np.array([t["normal_stress_Pa"] for t in tests])
     right.plot(sigma, [1e-3 * t["tau_max_Pa"] for t in tests], "o", color=BLUE, label="fitted τ_max")
-    right.plot(sigma, [1e-3 * t["final_shear_stress_Pa"] for t in tests], "x", color=GREY, label="at the end of the travel")
+    right.plot(sigma, [1e-3 * t["final_shear_stress_Pa"] for t in tests],
+               "x", color=GREY, label="at the end of the travel")
     c, phi = soil.values.get("cohesion_Pa"), soil.values.get("friction_angle_deg")
     if c is not None and len(sigma):
         x = np.linspace(0.0, 1.05 * sigma.max(), 2)
@@ -130,7 +135,8 @@ def cone(soil):
     axis.set_xlabel("force over base area, kPa")
     axis.set_ylabel("depth of the cone's base, mm")
     axis.set_title(f"30° cone, base {1e3 * about.get('base_diameter_m', np.nan):g} mm "
-                   f"({about.get('base_diameter_grains', np.nan):g} grains): cone index {soil.text('cone_index_Pa', 1e-3)} kPa")
+                   f"({about.get('base_diameter_grains', np.nan):g} grains): cone index "
+                   f"{soil.text('cone_index_Pa', 1e-3)} kPa")
     return figure
 
 

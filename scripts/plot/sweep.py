@@ -19,7 +19,8 @@ class Sweep:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "sweep.json")
-        check_types(self.values, "sweep.json", texts=("study", "description"), objects=("plot", "beds"), lists=("results",))
+        check_types(self.values, "sweep.json", texts=("study", "description"),
+                    objects=("plot", "beds"), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
             table = csv.DictReader(line for line in file if not line.startswith("#"))
             rows = list(table)
@@ -70,10 +71,12 @@ def unsteady(row):
 
 
 def points(rows, x, y, error, over):
-    """Rows x, y, half bar, sorted by x: each run, or the mean over the runs with the same x with its 95 % interval; and 1
+    """Rows x, y, half bar, sorted by x: each run, or the mean over the runs with the same x with its 95 % interval; and
+    1
     where a run of the point is not steady."""
     if not over:
-        return np.array(sorted((number(row.get(x)), number(row.get(y)), number(row.get(error)), unsteady(row)) for row in rows)).T
+        return np.array(sorted((number(row.get(x)), number(row.get(y)), number(row.get(error)), unsteady(row))
+                               for row in rows)).T
     same = {}
     for row in rows:
         same.setdefault(number(row.get(x)), []).append(row)
@@ -87,7 +90,8 @@ def open_points(axis, x, y, which, colour):
     if not which.any():
         return
     axis.plot(np.asarray(x)[which], np.asarray(y)[which], ls="none", marker="o", mfc="white", mec=colour, zorder=5)
-    axis.annotate("open: not steady", (0.99, 0.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=8.5, color=RED)
+    axis.annotate("open: not steady", (0.99, 0.02), xycoords="axes fraction",
+                  ha="right", va="bottom", fontsize=8.5, color=RED)
 
 
 def bars(error):
@@ -162,7 +166,8 @@ def passes(sweep):
         by_pass = [[sweep.summary(row) for row in rows if number(row["pass"]) == n] for n in of_pass]
         sinkage, bar = np.array([mean_and_interval([1e3 * number(s["sinkage_m"]) for s in run]) for run in by_pass]).T
         clearance = [np.mean([1e3 * number(s["bed_clearance_m"]) for s in run]) for run in by_pass]
-        middle.errorbar(of_pass, sinkage, yerr=bars(bar), marker="o", capsize=4, color=colour, label="sinkage" if i == 0 else None)
+        middle.errorbar(of_pass, sinkage, yerr=bars(bar), marker="o", capsize=4,
+                        color=colour, label="sinkage" if i == 0 else None)
         middle.plot(of_pass, clearance, "s--", color=colour, alpha=0.5, label="tire to floor" if i == 0 else None)
     left.set_ylabel("drawbar pull, N" + (bar_meaning(sweep.plot) if over else " (bars: standard error)"))
     middle.set_ylabel("depth, mm")
@@ -173,7 +178,8 @@ def passes(sweep):
         axis.set_xlabel("pass")
         axis.set_xticks(range(1, int(sweep.values["passes"]) + 1))
     profiles(sweep, right)
-    figure.suptitle(f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes", x=0.01, ha="left", fontweight="bold")
+    figure.suptitle(f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes",
+                    x=0.01, ha="left", fontweight="bold")
     figure.tight_layout()
     return figure
 
@@ -201,8 +207,10 @@ def rut_lines(sweep, axis, where, profile):
                 undisturbed = before
             lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after - undisturbed))
         for n, of_runs in sorted(lines.items()):
-            axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)], alpha=0.35 + 0.65 * n / len(lines),
-                      lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label else f"{label}, pass 1 (thin) to {n}" if n == max(lines) else None)
+            axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)],
+                      alpha=0.35 + 0.65 * n / len(lines),
+                      lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label
+                      else f"{label}, pass 1 (thin) to {n}" if n == max(lines) else None)
     axis.axhline(0.0, color=GREY, lw=0.8)
 
 
@@ -250,7 +258,8 @@ def beds(sweep):
         if not np.isfinite(values).any():
             axis.set_title(f"{what}: not measured")
             continue
-        axis.errorbar(at, values, yerr=bars(errors), ls="none", marker="o", capsize=3, color=BLUE, label="a bed, its own standard error")
+        axis.errorbar(at, values, yerr=bars(errors), ls="none", marker="o",
+                      capsize=3, color=BLUE, label="a bed, its own standard error")
         open_points(axis, at, values, which, BLUE)
         mean, half = mean_and_interval(values[np.isfinite(values)])
         axis.axhline(mean, color=ORANGE, label=f"mean over beds {with_error(mean, half)} {unit} (95 %)")

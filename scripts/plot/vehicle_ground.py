@@ -1,4 +1,5 @@
-"""The ruts of a vehicle: the ground from above with the ways of all wheels, across behind each axle and along a side."""
+"""The ruts of a vehicle: the ground from above with the ways of all wheels, across behind each axle and along a
+side."""
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -24,7 +25,8 @@ def rut(v):
     depth = 1e3 * (before.z - after.z)  # mm
     if not np.isfinite(depth).any() or not np.nanmax(np.abs(depth)) > 0.0:
         raise Missing("the ground has not changed its shape")
-    reach = max(np.ptp(np.concatenate(track)) for track in v.tracks()) + max(abs(place) for both in v.places for place in both)
+    reach = max(np.ptp(np.concatenate(track)) for track in v.tracks()) + max(abs(place)
+                                                                             for both in v.places for place in both)
     if not reach < LARGEST * after.cell:
         raise Damaged("the vehicle's way is beyond what its ground could be")
     depth = median3(depth)
@@ -40,7 +42,8 @@ def rut(v):
 def top_view(figure, axis, v, field, depth):
     limit = max(float(np.nanpercentile(np.abs(depth), 99.5)), 1.0)
     image = axis.pcolormesh(field.x, field.y, depth.T, cmap="RdBu_r", vmin=-limit, vmax=limit, shading="nearest")
-    figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)", pad=0.01, shrink=0.8)
+    figure.colorbar(image, ax=axis, label="depth below the surface before, mm\n(red: rut, blue: heaped up)",
+                    pad=0.01, shrink=0.8)
     axis.set_aspect("equal", anchor="W")
     axis.grid(False)
     for set_limit, all_, cells in ((axis.set_xlim, [x for x, _ in v.tracks()], field.x),
@@ -51,7 +54,8 @@ def top_view(figure, axis, v, field, depth):
         colour = AXLES[v.order.index(wheel.axle) % len(AXLES)]
         axis.plot(x, y, color=colour, lw=0.9, ls=":")
         axis.plot(x[-1], y[-1], "o", color=colour, mec="black", ms=6,
-                  label=f"{v.axles[wheel.axle]} wheels at the end; dotted: their path" if wheel.side == "left" else None)
+                  label=f"{v.axles[wheel.axle]} wheels at the end; dotted: their path"
+                  if wheel.side == "left" else None)
     axis.set_xlabel("x, m")
     axis.set_ylabel("y, m (left of +x)")
     axis.set_title("Seen from above (medians over 3 × 3 cells)", pad=24)
@@ -66,8 +70,10 @@ def across(axis, v, field, depth):
     radius = v.wheels[0].radius
     for number, axle in enumerate(v.order):
         ahead = v.places[2 * axle][0] - radius * np.linspace(NEAREST, FARTHEST, LINES)[:, None]
-        values = at_points(field, depth, x0 + np.cos(yaw) * ahead - np.sin(yaw) * left, y0 + np.sin(yaw) * ahead + np.cos(yaw) * left)
-        axis.plot(left, -row_mean(values, 0), color=AXLES[number % len(AXLES)], label=f"behind the {v.axles[axle]} axle")
+        values = at_points(field, depth, x0 + np.cos(yaw) * ahead - np.sin(yaw) * left,
+                           y0 + np.sin(yaw) * ahead + np.cos(yaw) * left)
+        axis.plot(left, -row_mean(values, 0), color=AXLES[number % len(AXLES)],
+                  label=f"behind the {v.axles[axle]} axle")
     for _, place in v.places[:2]:
         axis.axvline(place, color=GREY, ls=":", lw=0.9)
     axis.axhline(0.0, color=GREY, lw=1.0)
@@ -79,7 +85,8 @@ def across(axis, v, field, depth):
 
 
 def along(axis, v, field, depth):
-    """Where the front wheels have rolled, and beyond it from the rear wheels at the start to a little ahead at the end."""
+    """Where the front wheels have rolled, and beyond it from the rear wheels at the start to a little ahead at the
+    end."""
     front, radius = v.order[0], v.wheels[0].radius
     wheelbase = v.places[2 * front][0] - v.places[2 * v.order[-1]][0]
     behind, ahead = wheelbase + 2.0 * radius, 2.0 * radius
@@ -92,7 +99,8 @@ def along(axis, v, field, depth):
         points = np.arange(0.0, way[-1], 0.5 * field.cell)
         values = at_points(field, depth, np.interp(points, way, x), np.interp(points, way, y))
         axis.plot(points - behind, -values, color=SIDES[wheel.side], lw=0.7, alpha=0.4)
-        axis.plot(points - behind, -moving(values, points, 0.5 * radius), color=SIDES[wheel.side], label=f"{wheel.side} side")
+        axis.plot(points - behind, -moving(values, points, 0.5 * radius),
+                  color=SIDES[wheel.side], label=f"{wheel.side} side")
     axis.axhline(0.0, color=GREY, lw=1.0)
     for place, what in ((0.0, "front axle at the start"), (way[-1] - behind - ahead, "front axle at the end"),
                         (way[-1] - behind - ahead - wheelbase, "rear axle at the end")):
@@ -109,5 +117,6 @@ def along(axis, v, field, depth):
 def moving(values, points, width):
     """Mean over `width`, of what is finite."""
     half = max(int(0.5 * width / (points[1] - points[0])), 1) if len(points) > 1 else 1
-    rows = np.array([np.interp(points + shift * (points[1] - points[0]), points, values) for shift in range(-half, half + 1)])
+    rows = np.array([np.interp(points + shift * (points[1] - points[0]), points, values)
+                     for shift in range(-half, half + 1)])
     return row_mean(rows, 0)

@@ -76,7 +76,8 @@ def inputs(axis, v):
 
 def powers(axis, v):
     curves = []
-    for name, colour, label in (("power_W", PURPLE, "engine and motors give"), ("wheel_power_W", BLUE, "arrives at the wheels"),
+    for name, colour, label in (("power_W", PURPLE, "engine and motors give"),
+                                ("wheel_power_W", BLUE, "arrives at the wheels"),
                                 ("soil_power_W", ORANGE, "tires and ground take")):
         values = 1e-3 * running_mean(v.time, v[name])
         axis.plot(v.time, values, color=colour, label=label)
@@ -136,12 +137,14 @@ def path(v):
     above.set_ylabel("y, m" + (" (stretched)" if wide else ""))
     above.set_title("Seen from above")
     above.legend(loc="best", fontsize=8, ncol=2)
-    for axis, values, unit, title in ((error, v["cross_track_error_m"], "m", "Error across the path: left of it positive"),
+    for axis, values, unit, title in ((error, v["cross_track_error_m"],
+                                       "m", "Error across the path: left of it positive"),
                                       (heading, np.degrees(v["heading_error_rad"]), "°", "Error of the heading")):
         axis.plot(v["path_distance_m"], values, color=BLUE)
         axis.axhline(0.0, color="black", lw=0.6)
         axis.set_ylabel(f"error, {unit}")
-        axis.set_title(f"{title} (largest {np.abs(values).max():.3g} {unit}, rms {np.sqrt(np.mean(values ** 2)):.3g} {unit})")
+        axis.set_title(f"{title} (largest {np.abs(values).max():.3g} {unit}, rms {np.sqrt(np.mean(values ** 2)):.3g} "
+                       f"{unit})")
     heading.set_xlabel("distance along the path, m")
     return figure
 
@@ -154,14 +157,18 @@ def gear(v):
     figure, axis = plt.subplots(figsize=(10, 6.2))
     wheel = np.linspace(0.02, 1.25, 120) * found.shift_speed
     given = [line.wheel_torque(u / radius, found.throttle) / radius / v.weight for u in wheel]
-    axis.plot(wheel, given, color=PURPLE, lw=1.8, label=f"engine and lowest gear give, steady, throttle {found.throttle:.2g}")
+    axis.plot(wheel, given, color=PURPLE, lw=1.8,
+              label=f"engine and lowest gear give, steady, throttle {found.throttle:.2g}")
     driving = (v["throttle"] >= 0.99 * found.throttle) & (v["gear"] == 1)
     for values, colour, label in ((torque, BLUE, "torque at the wheels / radius"),
                                   (gross, GREEN, "gross traction: tractive effort of all tires")):
-        axis.plot(np.where(driving, speed, np.nan), np.where(driving, values, np.nan), color=colour, lw=1.0, label=label)
-    axis.axvline(found.shift_speed, color=RED, lw=1.0, ls="--", label=f"speed of the change, {found.shift_speed:.2f} m/s")
+        axis.plot(np.where(driving, speed, np.nan), np.where(driving, values, np.nan),
+                  color=colour, lw=1.0, label=label)
+    axis.axvline(found.shift_speed, color=RED, lw=1.0, ls="--",
+                 label=f"speed of the change, {found.shift_speed:.2f} m/s")
     axis.plot(found.shift_speed, found.limit, "o", color=RED, label=f"gross traction must be below {found.limit:.3f}")
-    axis.plot(found.reached, found.gross, "o", color=GREEN, label=f"largest wheel speed {found.reached:.2f} m/s: {found.gross:.3f}")
+    axis.plot(found.reached, found.gross, "o", color=GREEN,
+              label=f"largest wheel speed {found.reached:.2f} m/s: {found.gross:.3f}")
     axis.axhline(0.0, color="black", lw=0.6)
     axis.set_ylim(min(0.0, 1.1 * np.nanmin(np.where(driving, gross, 0.0))), 1.15 * max(max(given), 0.2))
     axis.set_xlim(0.0, wheel[-1])

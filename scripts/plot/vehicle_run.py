@@ -55,7 +55,8 @@ class Wheel:
         """Undeformed, m."""
         found = float(self["sinkage_kinematic_m"][0] + self["axle_height_m"][0]) - self.surface
         if not found > 0.0:
-            raise Damaged(f"timeseries_wheel{self.index}.csv: sinkages and heights give the wheel a radius of {found:g} m")
+            raise Damaged(f"timeseries_wheel{self.index}.csv: sinkages and heights give the wheel a radius of "
+                          f"{found:g} m")
         return found
 
 
@@ -70,7 +71,8 @@ class VehicleRun:
             self.wheels.append(Wheel(len(self.wheels), columns))
         files = sum(1 for path in run.directory.glob("timeseries_wheel*.csv"))
         if len(self.wheels) < files:
-            raise Missing(f"timeseries_wheel{len(self.wheels)}.csv is missing or empty, but there are tables of {files} wheels")
+            raise Missing(f"timeseries_wheel{len(self.wheels)}.csv is missing or empty, but there are tables of "
+                          f"{files} wheels")
         if not self.wheels or len(self.wheels) % 2:
             raise Missing(f"there are tables of {len(self.wheels)} wheels, expected two per axle")
         self._cut()
@@ -202,7 +204,8 @@ class VehicleRun:
     def tracks(self):
         """(x, y) of each wheel's centre over the ground against time."""
         yaw = self["yaw_rad"]
-        return [(self["x_m"] + np.cos(yaw) * ahead - np.sin(yaw) * left, self["y_m"] + np.sin(yaw) * ahead + np.cos(yaw) * left)
+        return [(self["x_m"] + np.cos(yaw) * ahead - np.sin(yaw) * left,
+                 self["y_m"] + np.sin(yaw) * ahead + np.cos(yaw) * left)
                 for ahead, left in self.places]
 
     @functools.cached_property

@@ -15,7 +15,8 @@ WIDTH, HEIGHT, STRIP = 1500, 800, 400  # pixels: the oblique view; height of tho
 TITLE = 50
 BODY, CAB, BEAM = (0.10, 0.16, 0.10), (0.16, 0.22, 0.15), (0.05, 0.05, 0.055)  # linear RGB
 HEAPED, SAND, RUT = (0.55, 0.66, 0.78), (0.50, 0.36, 0.22), [(0.70, 0.30, 0.06), (0.55, 0.04, 0.03), (0.16, 0.01, 0.14)]
-COLOURS = mpl.colors.LinearSegmentedColormap.from_list("ruts", [HEAPED, (0.54, 0.46, 0.40), SAND, RUT[0], RUT[1], RUT[2]])
+COLOURS = mpl.colors.LinearSegmentedColormap.from_list("ruts",
+                                                       [HEAPED, (0.54, 0.46, 0.40), SAND, RUT[0], RUT[1], RUT[2]])
 DARK = (0.16, 0.11, 0.07)
 LIGHT = scene.LIGHT / np.linalg.norm(scene.LIGHT)
 ZERO = 0.4  # where in COLOURS the undisturbed surface is
@@ -62,7 +63,8 @@ class Bed:
         return median3(self._tops(old, old_radius) - self.top)
 
     def near(self, ahead, left, cut):
-        """Numbers of the grains within these ranges that are worth drawing: near the top, or near faces that are cut."""
+        """Numbers of the grains within these ranges that are worth drawing: near the top, or near faces that are
+        cut."""
         x, y = self.position[:, 0], self.position[:, 1]
         inside = (x > ahead[0]) & (x < ahead[1]) & (y > left[0]) & (y < left[1])
         if not inside.any():
@@ -74,7 +76,8 @@ class Bed:
 
 def grains(path, scale):
     with h5py.File(path, "r") as file:
-        position, radius = scale * table(file, "position", 3).astype(float), scale * table(file, "radius", 0).astype(float)
+        position, radius = scale * table(file, "position",
+                                         3).astype(float), scale * table(file, "radius", 0).astype(float)
     if not len(radius) or len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
         raise Damaged(f"{path.name} holds no grains that could be drawn")
     return position, radius
@@ -88,10 +91,12 @@ def colours(depth, span, number):
 
 
 def prism(outline, half):
-    """(vertices, triangles) of a convex side view, as wide as twice `half`; no corners shared, so that edges are sharp."""
+    """(vertices, triangles) of a convex side view, as wide as twice `half`; no corners shared, so that edges are
+    sharp."""
     n = len(outline)
     right, left = (np.array([(x, side * half, z) for x, z in outline]) for side in (-1.0, 1.0))
-    vertex, triangle = [*right, *left], [(0, k, k + 1) for k in range(1, n - 1)] + [(n, n + k + 1, n + k) for k in range(1, n - 1)]
+    vertex, triangle = [*right, *left], [(0, k, k + 1) for k in range(1, n - 1)] + [(n, n + k + 1, n + k)
+                                                                                    for k in range(1, n - 1)]
     for k in range(n):
         at, j = len(vertex), (k + 1) % n
         vertex += [right[k], left[k], left[j], right[j]]
@@ -138,7 +143,8 @@ def add_solid(buffers, vertex, triangle, colour, gloss=0.10):
     if buffers.depth_only:
         buffers.triangles(vertex, triangle)
         return
-    buffers.triangles(vertex, triangle, face_normals(vertex, triangle), np.tile(np.float32(colour), (len(triangle), 1)), gloss)
+    buffers.triangles(vertex, triangle, face_normals(vertex, triangle),
+                      np.tile(np.float32(colour), (len(triangle), 1)), gloss)
 
 
 def spin_axis(vertex):
@@ -160,7 +166,8 @@ class Stage:
         self.tires = [(self.scale * (vertex - foot) @ turn.T, triangle) for vertex, triangle in tires]
         half_tire = 0.5 * float(np.median([np.ptp(vertex @ spin_axis(vertex)) for vertex, _ in self.tires]))
         self.solids = [(vertex @ (turn @ rotation).T + [0.0, 0.0, self.scale * origin[2]], triangle, colour)
-                       for vertex, triangle, colour in sketch(v, self.scale, half_tire)] + beams(v, self.tires, self.scale)
+                       for vertex, triangle, colour in sketch(v, self.scale, half_tire)] + beams(v,
+                                                                                                 self.tires, self.scale)
         corners = np.concatenate([vertex for vertex, _ in self.tires])
         self.front, self.back = corners[:, 0].max(), corners[:, 0].min()
         self.size = self.front - self.back
@@ -221,7 +228,8 @@ def clip(polygon, axis, limit, sign):
 
 
 def add_bottom(buffers, bed, soil):
-    """What shows between the grains, where those below are left out: a dark sheet under them, as far as the bed reaches."""
+    """What shows between the grains, where those below are left out: a dark sheet under them, as far as the bed
+    reaches."""
     position, radius = soil[0], float(soil[1].max())
     sheet = bed.floor_plan
     for axis in (0, 1):
@@ -253,7 +261,8 @@ def picture(stage, soil, camera, light):
     lit = 1.0 if light is None else shadow(buffers, light, bias=0.004 * stage.size)
     hidden = occlusion(buffers, (6, 16, 40), 0.02 * stage.size)
     row = np.linspace(0.0, 1.0, camera.height)[:, None, None]
-    background = np.broadcast_to((1 - row) * [0.80, 0.86, 0.92] + row * [0.97, 0.97, 0.96], (camera.height, camera.width, 3))
+    background = np.broadcast_to((1 - row) * [0.80, 0.86, 0.92] + row * [0.97, 0.97, 0.96],
+                                 (camera.height, camera.width, 3))
     image = shade(buffers, LIGHT, lit, hidden, background)
     return image.reshape(camera.height // 2, 2, camera.width // 2, 2, 3).mean((1, 3))
 
@@ -261,7 +270,8 @@ def picture(stage, soil, camera, light):
 def shadows(stage, soil):
     """What the light sees."""
     target = np.array([0.5 * (stage.front + stage.back), 0.0, stage.ground])
-    seen = Buffers(Camera(target + 3.0 * stage.size * LIGHT, target, 1500, 1500, width_m=2.1 * stage.size), depth_only=True)
+    seen = Buffers(Camera(target + 3.0 * stage.size * LIGHT, target, 1500, 1500, width_m=2.1 * stage.size),
+                   depth_only=True)
     stage.draw(seen, soil)
     return seen
 
@@ -275,12 +285,16 @@ def pictures(stage):
         stage.span = max(soil[3], 0.5 * float(np.median(soil[1])))
     light = shadows(stage, soil)
     target = middle + [0.0, 0.0, 0.10 * size]
-    camera = Camera(target + size * np.array([-1.45, -1.80, 1.15]), target, 2 * WIDTH, 2 * HEIGHT, field_of_view=np.radians(32.0))
+    camera = Camera(target + size * np.array([-1.45, -1.80, 1.15]), target,
+                    2 * WIDTH, 2 * HEIGHT, field_of_view=np.radians(32.0))
     oblique = picture(stage, soil, camera, light)
-    above = picture(stage, soil, Camera(middle + size * np.array([0.0, -3e-3, 3.0]), middle, WIDTH, 2 * STRIP, width_m=1.4 * size), light)
-    cut = stage.soil((stage.back - 0.3 * size, stage.front + 0.2 * size), (stage.outside, stage.outside + 0.5 * size), cut=False)
+    above = picture(stage, soil, Camera(middle + size * np.array([0.0, -3e-3, 3.0]),
+                                        middle, WIDTH, 2 * STRIP, width_m=1.4 * size), light)
+    cut = stage.soil((stage.back - 0.3 * size, stage.front + 0.2 * size),
+                     (stage.outside, stage.outside + 0.5 * size), cut=False)
     target = middle + [0.0, 0.0, 0.15 * size]
-    side = picture(stage, cut, Camera(target - size * np.array([0.0, 3.0, 0.0]), target, WIDTH, 2 * STRIP, width_m=1.4 * size), None)
+    side = picture(stage, cut, Camera(target - size * np.array([0.0, 3.0, 0.0]),
+                                      target, WIDTH, 2 * STRIP, width_m=1.4 * size), None)
     return oblique, side, above
 
 
@@ -324,9 +338,11 @@ def vehicle_scene(v):
     figure.text(0.015, 1 - 0.5 * TITLE / total, v.title, fontsize=12, fontweight="bold", va="center")
     oblique, side, above = pictures(stage)
     show(figure, oblique, 0, STRIP, WIDTH, HEIGHT, words(v, stage))
-    show(figure, side, 0, 0, WIDTH // 2, STRIP, "from the right" + ("" if stage.bed is None else ", cut beside the right wheels"))
+    show(figure, side, 0, 0, WIDTH // 2, STRIP, "from the right"
+         + ("" if stage.bed is None else ", cut beside the right wheels"))
     axis = show(figure, above, WIDTH // 2, 0, WIDTH // 2, STRIP, "from above")
-    axis.annotate("travel", (0.97, 0.93), (0.82, 0.93), xycoords="axes fraction", va="center", arrowprops={"arrowstyle": "-|>"}, fontsize=9,
+    axis.annotate("travel", (0.97, 0.93), (0.82, 0.93), xycoords="axes fraction",
+                  va="center", arrowprops={"arrowstyle": "-|>"}, fontsize=9,
                   bbox={"facecolor": "white", "alpha": 0.6, "lw": 0, "pad": 2.0})
     if stage.bed is not None:
         scale_of_depth(figure, stage)
@@ -337,10 +353,12 @@ def scale_of_depth(figure, stage):
     total = TITLE + HEIGHT + STRIP
     bar = figure.add_axes([0.72, (STRIP + 60) / total, 0.25, 14 / total])
     span = 1e3 * stage.span / stage.scale
-    shown = mpl.colors.LinearSegmentedColormap.from_list("shown", COLOURS(np.linspace(0.0, 1.0, 64))[:, :3] ** (1 / 2.2))
+    shown = mpl.colors.LinearSegmentedColormap.from_list("shown",
+                                                         COLOURS(np.linspace(0.0, 1.0, 64))[:, :3] ** (1 / 2.2))
     bar.imshow(np.linspace(0.0, 1.0, 256)[None], cmap=shown, aspect="auto", extent=(0.0, 1.0, 0.0, 1.0))
     ticks = [-0.5 * span, 0.0, 0.25 * span, 0.5 * span, 0.75 * span, span]
-    bar.set_xticks([ZERO + (1 - ZERO) * t / span if t > 0 else ZERO * (1 + t / (0.5 * span)) for t in ticks], [digits(t) for t in ticks])
+    bar.set_xticks([ZERO + (1 - ZERO) * t / span if t > 0 else ZERO * (1 + t / (0.5 * span)) for t in ticks],
+                   [digits(t) for t in ticks])
     bar.set_yticks([])
     bar.grid(False)
     bar.tick_params(labelsize=8)

@@ -35,7 +35,8 @@ def wheel_forces(v):
     for column, axle in columns_of(v):
         for wheel in v.of_axle(axle):
             colour = SIDES[wheel.side]
-            for row, name in ((0, "iso_force_x_N"), (1, "tractive_effort_N"), (2, "iso_force_y_N"), (3, "iso_force_z_N")):
+            for row, name in ((0, "iso_force_x_N"), (1, "tractive_effort_N"),
+                              (2, "iso_force_y_N"), (3, "iso_force_z_N")):
                 line(axes[row][column], v.time, v.time, wheel[name], colour, wheel.side)
                 curves[row].append(wheel[name])
             line(axes[1][column], v.time, v.time, -wheel["terrain_resistance_N"], colour, style="--")
@@ -53,7 +54,8 @@ def wheel_forces(v):
 def wheel_motion(v):
     titles = ["spin; grey: speed over undeformed radius", "slip: 1 − v/(ω R), where the wheel is not slow",
               "sinkage below the undisturbed surface; dotted: below the rut",
-              "height of the wheel's centre above the undisturbed surface", "suspension travel, upward from the drawn position"]
+              "height of the wheel's centre above the undisturbed surface",
+              "suspension travel, upward from the drawn position"]
     labels = ["spin, rad/s", "slip, –", "sinkage, mm", "height, mm", "travel, mm"]
     if v.hard_ground:
         titles[2], labels[2] = "deflection of the tire at its lowest point", "deflection, mm"
@@ -63,7 +65,8 @@ def wheel_motion(v):
     for column, axle in columns_of(v):
         for wheel in v.of_axle(axle):
             colour = SIDES[wheel.side]
-            axes[0][column].plot(v.time, running_mean(v.time, wheel["speed_m_per_s"]) / wheel.radius, color=GREY, lw=0.9)
+            axes[0][column].plot(v.time, running_mean(v.time, wheel["speed_m_per_s"]) / wheel.radius,
+                                 color=GREY, lw=0.9)
             turns = np.maximum(np.abs(wheel["spin_rad_per_s"]) * wheel.radius, np.abs(wheel["speed_m_per_s"])) > slow
             shown = (wheel["spin_rad_per_s"], np.where(turns, np.clip(wheel["slip"], -2.0, 2.0), np.nan),
                      1e3 * (wheel["sinkage_kinematic_m"] if v.hard_ground else wheel["sinkage_m"]),
@@ -73,7 +76,8 @@ def wheel_motion(v):
                 curves[row].append(values)
             inside = events.in_rut(wheel)
             if inside.any() and not v.hard_ground:
-                axes[2][column].plot(v.time, np.where(inside, 1e3 * wheel["sinkage_in_rut_m"], np.nan), ":", color=colour)
+                axes[2][column].plot(v.time, np.where(inside, 1e3 * wheel["sinkage_in_rut_m"], np.nan),
+                                     ":", color=colour)
     finish(axes, v, titles)
     for row, found, label, zero in zip(axes, curves, labels, (True, True, True, False, True)):
         limits(row[0], v, found, zero)
@@ -98,7 +102,8 @@ def front_and_rear(v):
              ("terrain_resistance_N", "resistance of the axle's wheels, N", 1.0, True),
              ("sinkage_m", "sinkage below the undisturbed surface, mm", 1e3, False)]
     figure, axes = plt.subplots(2, 2, figsize=(13, 7.6), sharex=True)
-    figure.suptitle(f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the same soil", fontsize=11,
+    figure.suptitle(f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the "
+                    f"same soil", fontsize=11,
                     x=0.01, ha="left", fontweight="bold")
     begin = events.first(v.time >= quiet_time(v)) or 0
     for axis, (column, title, factor, total) in zip(axes.flat, shown):
@@ -115,7 +120,8 @@ def front_and_rear(v):
         axis.set_title(title, fontsize=9.5)
     axes[1][1].invert_yaxis()
     axes[0][0].legend(loc="best", fontsize=8)
-    axes[1][0].annotate("dotted: where the axle before it came down", (0.01, 0.97), xycoords="axes fraction", fontsize=8, va="top")
+    axes[1][0].annotate("dotted: where the axle before it came down", (0.01, 0.97),
+                        xycoords="axes fraction", fontsize=8, va="top")
     for axis in axes[1]:
         axis.set_xlabel("place of the axle along the heading at the start, m")
     comparison_box(axes[1][1], v)
@@ -144,6 +150,7 @@ def comparison_box(axis, v):
     for row in found.rows:
         if row.what in ("net longitudinal force", "resistance") or row.what.startswith("sinkage below the undisturbed"):
             what = row.what.split(" below")[0]
-            lines.append(f"{what}, {row.unit}: " + ", ".join(f"{name} {axles.told(one)}" for name, one in zip(found.names, row.axles)))
+            lines.append(f"{what}, {row.unit}: " + ", ".join(f"{name} {axles.told(one)}" for name,
+                                                             one in zip(found.names, row.axles)))
     axis.text(0.01, 0.98, "\n".join(lines), transform=axis.transAxes, va="top", fontsize=7.5,
               color=RED if found.unsteady else "black", bbox={"facecolor": "white", "alpha": 0.75, "lw": 0})

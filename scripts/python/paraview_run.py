@@ -1,4 +1,5 @@
-"""Shows the frames that furrow.open(folder).write_vtk(FOLDER) has written, in ParaView: tires coloured by the force of the
+"""Shows the frames that furrow.open(folder).write_vtk(FOLDER) has written, in ParaView: tires coloured by the force of
+the
 terrain, arrows of these forces, grains as spheres of their own size coloured by speed.
 
 In ParaView's window: View, Python Shell, Run Script, with the folder in the variable FURROW_VTK. From a shell, and on a
@@ -43,7 +44,8 @@ def show_forces(reader, view):
     pushed = pv.Threshold(Input=size, Scalars=["POINTS", "size"], ThresholdMethod="Above Upper Threshold",
                           UpperThreshold=SMALLEST_FORCE)
     largest = reader.PointData["force"].GetRange(-1)[1]
-    arrows = pv.Glyph(Input=pushed, GlyphType="Arrow", OrientationArray=["POINTS", "force"], ScaleArray=["POINTS", "size"],
+    arrows = pv.Glyph(Input=pushed, GlyphType="Arrow", OrientationArray=["POINTS", "force"],
+                      ScaleArray=["POINTS", "size"],
                       ScaleFactor=ARROW / max(largest, SMALLEST_FORCE), GlyphMode="All Points")
     pv.ColorBy(pv.Show(arrows, view), None)
 

@@ -22,8 +22,7 @@ void Activity::spread(const Strips& strips, Need from, Need to, const int (&besi
 
 void Activity::plan(const Strips& strips) {
   // A list names grains of its own parcel, of the next one across, and of three in the next strip.
-  static constexpr int kAround[9][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 0},
-                                        {0, 1},   {1, -1}, {1, 0},  {1, 1}};
+  static constexpr int kAround[9][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   static constexpr int kListedBy[5][2] = {{0, 0}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}};
   static constexpr int kListed[5][2] = {{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   constexpr Need kAwake{8};
@@ -47,8 +46,8 @@ void Activity::plan(const Strips& strips) {
 
 bool Activity::calm(const Parcel& parcel) const {
   const MotionTotals& m = parcel.motion;
-  return m.speed2 <= limits_.mean_speed * limits_.mean_speed * parcel.part.grains() &&
-         m.max_speed < limits_.speed && m.max_net_force < limits_.sleep_force;
+  return m.speed2 <= limits_.mean_speed * limits_.mean_speed * parcel.part.grains() && m.max_speed < limits_.speed &&
+         m.max_net_force < limits_.sleep_force;
 }
 
 void Activity::put_to_sleep(const Strip& strip, Parcel& parcel, Grains& grains) {

@@ -101,8 +101,7 @@ class Activity {
   /// @param near(strip) a tire is near some of it  @param near_parcel(strip, p) it is near parcel p of a strip that it
   /// is near
   template <class Near, class NearParcel>
-  Stopped update(Strips& strips, Grains& grains, bool counts, const Near& near,
-                 const NearParcel& near_parcel) const {
+  Stopped update(Strips& strips, Grains& grains, bool counts, const Near& near, const NearParcel& near_parcel) const {
     Stopped stopped;
     for (int k = 0; k < strips.count(); ++k) {
       Strip& strip = strips[k];

@@ -47,8 +47,7 @@ struct Bin {
   /// Whether it holds a centre that is farther than `distance` ≥ 0 from each wall, m.
   bool holds_apart(const Quad& p, double distance) const {
     return (periodic_x ? std::isfinite(p.x) : p.x > distance && length - p.x > distance) &&
-           (periodic_y ? std::isfinite(p.y) : 0.5 * width - std::abs(p.y) > distance) && p.z > distance &&
-           p.z < kHigh;
+           (periodic_y ? std::isfinite(p.y) : 0.5 * width - std::abs(p.y) > distance) && p.z > distance && p.z < kHigh;
   }
   /// Brings a point back between the periodic sides.
   void wrap(Quad& p) const {

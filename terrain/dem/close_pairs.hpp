@@ -30,8 +30,7 @@ void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double rea
   FURROW_ASSERT(reach > 0.0 && std::isfinite(reach), reach);
   FURROW_ASSERT(!bin.periodic_x || bin.length >= 2.0 * reach, bin.length, reach);
   FURROW_ASSERT(!bin.periodic_y || bin.width >= 2.0 * reach, bin.width, reach);
-  FURROW_ASSERT(std::all_of(points.begin(), points.end(), [&](const Quad& p) { return bin.holds(p); }),
-                points.size());
+  FURROW_ASSERT(std::all_of(points.begin(), points.end(), [&](const Quad& p) { return bin.holds(p); }), points.size());
   struct Cell {
     std::int64_t x, y, z;
   };
@@ -40,14 +39,12 @@ void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double rea
   const auto cells = [&](double size) {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(size / reach), 1, 4096);
   };
-  const std::int64_t nx = cells(bin.length), ny = cells(bin.width),
-                     nz = std::min<std::int64_t>(cells(top), 256);
+  const std::int64_t nx = cells(bin.length), ny = cells(bin.width), nz = std::min<std::int64_t>(cells(top), 256);
   const auto at = [](double v, double size, std::int64_t n) {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(v / size * static_cast<double>(n)), 0, n - 1);
   };
   const auto cell_of = [&](const Quad& p) {
-    return Cell{at(p.x, bin.length, nx), at(p.y + 0.5 * bin.width, bin.width, ny),
-                top > 0.0 ? at(p.z, top, nz) : 0};
+    return Cell{at(p.x, bin.length, nx), at(p.y + 0.5 * bin.width, bin.width, ny), top > 0.0 ? at(p.z, top, nz) : 0};
   };
   const auto index = [&](const Cell& c) { return (c.x * ny + c.y) * nz + c.z; };
   std::vector<std::int64_t> start(static_cast<std::size_t>(nx * ny * nz) + 1, 0), order(points.size());

@@ -115,8 +115,7 @@ inline Triple<T> cut_at_limit(Triple<T>& spring, const Triple<T>& damper, T limi
   const auto over = square > limit * limit;
   const T factor = over ? limit / root(larger(square, constant<T>(kTiny))) : constant<T>(1.0);
   const Triple<T> cut = factor * sum;
-  spring = {over ? cut.x - damper.x : spring.x, over ? cut.y - damper.y : spring.y,
-            over ? cut.z - damper.z : spring.z};
+  spring = {over ? cut.x - damper.x : spring.x, over ? cut.y - damper.y : spring.y, over ? cut.z - damper.z : spring.z};
   return cut;
 }
 
@@ -167,8 +166,7 @@ struct HertzTanhLaw {
   static constexpr bool kHistory = false;
 
   template <bool kRolling, class C, class S, class T>
-  static inline ContactForce<T> force(const Coefficients<C>& c, S, const ContactMotion<T>& at,
-                                      ContactHistory<T>&) {
+  static inline ContactForce<T> force(const Coefficients<C>& c, S, const ContactMotion<T>& at, ContactHistory<T>&) {
     const T zero = constant<T>(0.0), tiny = constant<T>(1e-30);
     const T s = at.root_overlap;
     const T v_n = dot(at.velocity, at.normal);
@@ -185,8 +183,7 @@ struct HertzTanhLaw {
     if constexpr (kRolling) {
       const Triple<T> w = at.roll - dot(at.roll, at.normal) * at.normal;
       const T rate = larger(root(dot(w, w)), tiny);
-      const T brake =
-          c.rolling_arm * f.elastic * tanh_of_positive(c.velocity_scale * c.rolling_radius * rate) / rate;
+      const T brake = c.rolling_arm * f.elastic * tanh_of_positive(c.velocity_scale * c.rolling_radius * rate) / rate;
       f.rolling = -smaller(brake, zero + c.roll_limit) * w;
     } else {
       f.rolling = {zero, zero, zero};

@@ -36,10 +36,7 @@ struct LawSettings {
 };
 LawSettings law_settings(const DemOptions& options);
 
-enum class Partner {
-  grain,
-  surface
-};  // surface: wall or tire, flat; of infinite mass, or of its area density
+enum class Partner { grain, surface };  // surface: wall or tire, flat; of infinite mass, or of its area density
 
 /// Mixing: k_n, g_n arithmetic mean; μ, e, c_t minimum; 1/E* = Σ(1−ν²)/E, 1/G* = Σ 2(2−ν)(1+ν)/E; R* = r/2 or r;
 /// 1/m* = Σ 1/m, of a tire its area density × 2√3 r²: a damper made for the grain's mass alone would, felt one step

@@ -11,10 +11,10 @@ namespace furrow::terrain::dem {
 /// The keys, and what the run supplies.
 struct DemOptions : TerrainContext {
   std::string scenario = "scenario";  // what messages name: the scenario's file
-  bool periodic_x = false;  // grains that leave at one end of the bin come back at the other; no end walls
-  bool piece = false;       // of a tiled bed: its layers continue across its periodic sides, with no gap
-  std::string law = "mindlin";  // mindlin | hertz_tanh
-  std::string material;         // soil file whose values the other keys hold already; empty: none
+  bool periodic_x = false;            // grains that leave at one end of the bin come back at the other; no end walls
+  bool piece = false;                 // of a tiled bed: its layers continue across its periodic sides, with no gap
+  std::string law = "mindlin";        // mindlin | hertz_tanh
+  std::string material;               // soil file whose values the other keys hold already; empty: none
   // Bed.
   double radius = 0.006;                      // grain radius, m
   std::string size_distribution = "uniform";  // uniform | normal, by number of grains
@@ -27,8 +27,7 @@ struct DemOptions : TerrainContext {
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
   std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
   double tile = 0.0;  // a new bed is put together of settled pieces about this long and wide, m; 0: of one
-  double undisturbed_height =
-      -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
+  double undisturbed_height = -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
   double settling_friction = -1.0;   // friction while a new bed falls and is pressed, -; negative: friction
   double compaction_pressure = 0.0;  // a lid pressed on the settled bed and lifted again, Pa; 0: none
   bool cache = true;                 // keep settled beds under the user's cache directory
@@ -44,9 +43,8 @@ struct DemOptions : TerrainContext {
   double friction_velocity_scale = 5.0;  // c in F_t = μ F_e tanh(c |v_t|), s/m, law hertz_tanh
   bool friction_impulse_limit = true;    // law hertz_tanh: caps F_t at β m_t |v_t| / dt
   bool activity = true;                  // let resting grains sleep
-  std::string precision =
-      "mixed";  // of the contact law between grains: mixed (single, sums in double) | double
-  bool allow_unstable_step = false;  // *_tr scenarios: warn instead of refusing
+  std::string precision = "mixed";       // of the contact law between grains: mixed (single, sums in double) | double
+  bool allow_unstable_step = false;      // *_tr scenarios: warn instead of refusing
 
   bool periodic_y() const { return sides == "periodic"; }
 };

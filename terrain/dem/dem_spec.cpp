@@ -54,8 +54,6 @@ std::unique_ptr<TerrainSpec> read_dem_spec(const nlohmann::json& section, const 
   return make_dem_spec(options);
 }
 
-std::unique_ptr<TerrainSpec> make_dem_spec(const DemOptions& options) {
-  return std::make_unique<DemSpec>(options);
-}
+std::unique_ptr<TerrainSpec> make_dem_spec(const DemOptions& options) { return std::make_unique<DemSpec>(options); }
 
 }  // namespace furrow::terrain::dem

@@ -45,8 +45,7 @@ void check(const DemOptions& o) {
   require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
   require(o.density > 0.0 && std::isfinite(o.density), "density", o.density, "a positive number, kg/m³");
   require(o.layers >= 1 && o.layers < 10000, "layers", o.layers, "1 to 9999");
-  require(o.length >= 4.0 * o.radius && std::isfinite(o.length), "length", o.length,
-          "at least two grains, m");
+  require(o.length >= 4.0 * o.radius && std::isfinite(o.length), "length", o.length, "at least two grains, m");
   require(o.width >= 4.0 * o.radius && std::isfinite(o.width), "width", o.width, "at least two grains, m");
   require(o.young_modulus > 0.0, "young_modulus", o.young_modulus, "a positive number, Pa");
   require(o.poisson_ratio > -1.0 && o.poisson_ratio <= 0.5, "poisson_ratio", o.poisson_ratio, "-1 < ν ≤ 0.5");
@@ -61,8 +60,7 @@ void check(const DemOptions& o) {
   dem::check_sizes(o);
   dem::check_bed_options(o);
   if (!(o.step > 0.0))
-    throw input_error(o.scenario, "run.step",
-                      fmt::format("{} is out of range, expected a positive number, s", o.step));
+    throw input_error(o.scenario, "run.step", fmt::format("{} is out of range, expected a positive number, s", o.step));
 }
 
 class DemTerrain : public Terrain {
@@ -104,13 +102,12 @@ class DemTerrain : public Terrain {
   }
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
-    dem::check_surface_start(options_, solver_.params().bin, mesh, material, start,
-                             solver_.surfaces().count());
+    dem::check_surface_start(options_, solver_.params().bin, mesh, material, start, solver_.surfaces().count());
     solver_.surfaces().attach(mesh, material, dem::surface_coefficients(options_, material, part_), start);
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                  std::span<NodalForces> forces, std::span<ContactSums> contact) override {
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> contact) override {
     FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
     const double dt = duration / substeps;
     if (dt != dt_) set_step(dt);
@@ -155,8 +152,7 @@ class DemTerrain : public Terrain {
     s.energies = solver_.reported_energies();
     s.energies.surface_work = surface_work_;  // walls stand still: they do none
     s.dissipation = s.energies.losses();
-    s.momenta = {s.momentum, solver_.gravity_impulse(), s.wall_impulse, s.surface_impulse,
-                 -s.momentum_removed};
+    s.momenta = {s.momentum, solver_.gravity_impulse(), s.wall_impulse, s.surface_impulse, -s.momentum_removed};
     return s;
   }
 
@@ -217,8 +213,8 @@ class DemTerrain : public Terrain {
     part_ = dt;
     solver_.set_coefficients(dem::run_coefficients(options_, dt));
     for (int k = 0; k < solver_.surfaces().count(); ++k)
-      solver_.surfaces().set_coefficients(
-          k, dem::surface_coefficients(options_, solver_.surfaces().material(k), part_));
+      solver_.surfaces().set_coefficients(k,
+                                          dem::surface_coefficients(options_, solver_.surfaces().material(k), part_));
   }
 
   /// One step of dt_, in as many parts as its hardest contact needs.
@@ -299,9 +295,8 @@ TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
   const double volume =
       grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * dem::mean_volume_ratio(options);
   e.expected_height = volume / (kLooseFraction * options.length * options.width);
-  e.text =
-      fmt::format("about {} grains of {:g} mm, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
-                  1e3 * options.radius, options.law, 1e3 * e.expected_height, options.length, options.width);
+  e.text = fmt::format("about {} grains of {:g} mm, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
+                       1e3 * options.radius, options.law, 1e3 * e.expected_height, options.length, options.width);
   return e;
 }
 

@@ -12,8 +12,7 @@ void check_dem_run(const dem::DemOptions& options);
 
 /// @param each_substep is called in every substep of an advance and may throw to stop; the terrain is of no use then
 /// @throws Error(bad_input) for values out of range and for a step above the stable one.
-std::unique_ptr<Terrain> make_dem_terrain(const dem::DemOptions& options,
-                                          std::function<void()> each_substep = {});
+std::unique_ptr<Terrain> make_dem_terrain(const dem::DemOptions& options, std::function<void()> each_substep = {});
 
 TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options);
 

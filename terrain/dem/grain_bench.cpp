@@ -42,9 +42,9 @@ std::vector<Quad> bed_of(const GrainBench& bench, DemOptions& options, const Pro
   for (std::size_t k = 0; k < grains.size(); ++k) {
     Quad& p = grains[k];
     if (!(p.x >= 0.0 && p.y >= 0.0 && p.y <= kReferenceWidth))
-      throw input_error(bench.bed, fmt::format("line {}", k + 2),
-                        fmt::format("the grain is outside the bin, expected x from 0 m on, y 0 to {:g} m",
-                                    kReferenceWidth));
+      throw input_error(
+          bench.bed, fmt::format("line {}", k + 2),
+          fmt::format("the grain is outside the bin, expected x from 0 m on, y 0 to {:g} m", kReferenceWidth));
     if (p.x > kLongest)
       throw input_error(bench.bed, fmt::format("line {}", k + 2),
                         fmt::format("x is {:g} m, expected at most {:g} m", p.x, kLongest));

@@ -12,8 +12,7 @@ namespace furrow::terrain::dem {
 struct GrainBench {
   /// Law, material and precision; step and threads of the run.
   DemOptions grains;
-  std::string bed =
-      "default";  // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
+  std::string bed = "default";  // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
   int steps = 1000;
   int warm = 100;       // steps before, not timed
   double settle = 0.0;  // first settled for that long at most, s

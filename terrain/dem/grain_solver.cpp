@@ -48,8 +48,7 @@ GrainSolver::GrainSolver(const SolverParams& params)
       surfaces_(params.grain, params.largest_radius(), params.rolling),
       energies_(params.sample_every) {
   FURROW_ASSERT(params.grain.radius > 0.0, params.grain.radius);
-  FURROW_ASSERT(params.grain.mass > 0.0 && params.grain.inertia > 0.0, params.grain.mass,
-                params.grain.inertia);
+  FURROW_ASSERT(params.grain.mass > 0.0 && params.grain.inertia > 0.0, params.grain.mass, params.grain.inertia);
   FURROW_ASSERT(params.bin.length > 0.0 && params.bin.width > 0.0, params.bin.length, params.bin.width);
   FURROW_ASSERT(params.skin >= 0.0 && params.gravity.allFinite(), params.skin, params.gravity.norm());
   FURROW_ASSERT(params.threads > 0, params.threads);
@@ -98,9 +97,7 @@ void GrainSolver::wake(int grain) {
     }
 }
 
-double GrainSolver::rebuilds() const {
-  return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count);
-}
+double GrainSolver::rebuilds() const { return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count); }
 
 /// @pre room for `last`
 void GrainSolver::LoadBuffer::copy(const Loads& from, int first, int last) {
@@ -131,8 +128,7 @@ void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
     const StripPart part = joined(strips_[strip].parcels, from, to);
     const int first = strips_[strip].first + part.first, n = part.grains(), at = offset + part.first;
     if (n == 0) return;
-    s.motion.template set<kSizes>(at, &grains_.position[first], &grains_.velocity[first],
-                                  &grains_.spin[first], n);
+    s.motion.template set<kSizes>(at, &grains_.position[first], &grains_.velocity[first], &grains_.spin[first], n);
     double* const force = flat(s.loads.force.data() + at);
     double* const torque = flat(s.loads.torque.data() + at);
     for (int g = 0; g < kQuad * n; g += kQuad) {  // a call of memset would cost more than it saves
@@ -160,20 +156,19 @@ const Quad* GrainSolver::positions(Scratch<Real>& s, int k) {
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::contacts_of_part(Scratch<Real>& s, int k, const StripPart& part, const Quad* x, int offset,
-                                   double dt, Wanted wanted, ContactTotals& sums) {
+void GrainSolver::contacts_of_part(Scratch<Real>& s, int k, const StripPart& part, const Quad* x, int offset, double dt,
+                                   Wanted wanted, ContactTotals& sums) {
   Strip& strip = strips_[k];
   const double diameter = 2.0 * params_.grain.radius;
   const double reference = params_.grain.radius;
-  find_touching<kSizes>(
-      strip, part.pair_first, part.pair_last, x, diameter, params_.bin.periodic_y ? params_.bin.width : 0.0,
-      s.touching, [&](int p) {
-        if (!wanted.losses) return;
-        const double r_i = kSizes ? x[strip.grain_i(p)].w : reference,
-                     r_j = kSizes ? x[strip.grain_j(p)].w : reference;
-        sums.sample.power.opening +=
-            held_by_pair(pair_coefficients(coefficients_.pair, reference, r_i, r_j), strip, p) / dt;
-      });
+  find_touching<kSizes>(strip, part.pair_first, part.pair_last, x, diameter,
+                        params_.bin.periodic_y ? params_.bin.width : 0.0, s.touching, [&](int p) {
+                          if (!wanted.losses) return;
+                          const double r_i = kSizes ? x[strip.grain_i(p)].w : reference,
+                                       r_j = kSizes ? x[strip.grain_j(p)].w : reference;
+                          sums.sample.power.opening +=
+                              held_by_pair(pair_coefficients(coefficients_.pair, reference, r_i, r_j), strip, p) / dt;
+                        });
   PairLaw<Real> law;
   law.coefficients = rounded<Real>(coefficients_.pair);
   law.diameter = static_cast<Real>(diameter);
@@ -184,8 +179,8 @@ void GrainSolver::contacts_of_part(Scratch<Real>& s, int k, const StripPart& par
   const Motion motion{flat(s.motion.v.data()) + kQuad * offset,
                       s.motion.w.empty() ? nullptr : flat(s.motion.w.data()) + kQuad * offset};
   PairForces<Law, kRolling, kSizes, Real>(law, s.touching, motion, strip.history<Real>(), loads).run(sums);
-  wall_forces<Law, kRolling, kSizes>(grains_, strip, part.wall_first, part.wall_last, params_.bin,
-                                     params_.grain.radius, coefficients_, dt, wanted, loads, sums);
+  wall_forces<Law, kRolling, kSizes>(grains_, strip, part.wall_first, part.wall_last, params_.bin, params_.grain.radius,
+                                     coefficients_, dt, wanted, loads, sums);
 }
 
 template <class Real, class Law, bool kRolling, bool kSizes>
@@ -318,8 +313,7 @@ void GrainSolver::change_activity(bool counts) {
     return surfaces_.any_low_between(strip.x_min - margin, strip.x_max + margin, also);
   };
   const Activity::Stopped stopped = activity_.update(
-      strips_, grains_, counts,
-      [&](const Strip& strip) { return near(strip, [](double, double) { return true; }); },
+      strips_, grains_, counts, [&](const Strip& strip) { return near(strip, [](double, double) { return true; }); },
       [&](const Strip& strip, int p) {
         return near(strip, [&](double y_min, double y_max) {
           return strips_.parcel_between(p, y_min - margin, y_max + margin);
@@ -400,9 +394,7 @@ int GrainSolver::step_part(const StepPart& part, bool measure) {
   const int count = static_cast<int>(chunks_.size());
 #pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
   for (int c = 0; c < count; ++c) {
-    const Chunk* const before = c > 0                    ? &chunks_[c - 1]
-                                : params_.bin.periodic_x ? &chunks_[count - 1]
-                                                         : nullptr;
+    const Chunk* const before = c > 0 ? &chunks_[c - 1] : params_.bin.periodic_x ? &chunks_[count - 1] : nullptr;
     finish_chunk(chunks_[c], before, part, wanted);
   }
   reduce(part, wanted);

@@ -210,8 +210,8 @@ class GrainSolver {
   const Quad* positions(Scratch<Real>& scratch, int strip);
   /// Contacts that a part of the strip lists; their sums are added to `sums`.
   template <class Real, class Law, bool kRolling, bool kSizes>
-  void contacts_of_part(Scratch<Real>& scratch, int strip, const StripPart& part, const Quad* x, int offset,
-                        double dt, Wanted wanted, ContactTotals& sums);
+  void contacts_of_part(Scratch<Real>& scratch, int strip, const StripPart& part, const Quad* x, int offset, double dt,
+                        Wanted wanted, ContactTotals& sums);
   template <class Real, class Law, bool kRolling, bool kSizes>
   void contacts_of_strip(Scratch<Real>& scratch, int strip, int offset, double dt, Wanted wanted);
   template <class Real, class Law, bool kRolling, bool kSizes>
@@ -223,8 +223,7 @@ class GrainSolver {
   void evaluate(const StepPart& part, Wanted wanted);
   /// Moves the grains of the parcels of strip k whose loads are complete, or sees whether they are pushed awake.
   void finish_strip(int k, const Loads& loads, const StepPart& part, Wanted wanted);
-  void move_parcel(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part,
-                   Wanted wanted);
+  void move_parcel(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part, Wanted wanted);
   /// `loads` start at the parcel's first grain.
   template <bool kMaySleep, bool kSizes>
   void integrate(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part, Wanted wanted);

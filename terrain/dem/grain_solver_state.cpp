@@ -155,22 +155,20 @@ void GrainSolver::restore(const Archive& archive) {
     for (std::size_t k = 0; k + 1 < samples.size(); k += 2)
       samples_.push_back({samples[k], static_cast<std::int64_t>(samples[k + 1])});
   }
-  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")),
-                        archive.get_int("strips/resorted"));
+  strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")), archive.get_int("strips/resorted"));
 
   const std::size_t count = strips_.count();
   const bool same_parcels = saved_across(archive) == strips_.across();
   std::optional<ColumnReader<Parcel>> parcels;
   if (same_parcels && strips_.across() > 1) parcels.emplace(archive, "parcels", count * strips_.across());
   ColumnReader<Strip> strips(archive, "strips", count);
-  const auto* const pressed =
-      archive.has("strips/pressed") ? &archive.get<double>("strips/pressed", count) : nullptr;
+  const auto* const pressed = archive.has("strips/pressed") ? &archive.get<double>("strips/pressed", count) : nullptr;
   const auto& walls = archive.get<std::int32_t>("strips/walls", count);
   const auto& cells = archive.get<std::int32_t>("strips/cells");
   const auto& partners = archive.get<std::uint64_t>("pairs/partners");
   const auto& touching = archive.get<std::uint8_t>("pairs/touching");
-  ColumnReader<WallContact> wall_contacts(
-      archive, "walls", static_cast<std::size_t>(std::accumulate(walls.begin(), walls.end(), 0)));
+  ColumnReader<WallContact> wall_contacts(archive, "walls",
+                                          static_cast<std::size_t>(std::accumulate(walls.begin(), walls.end(), 0)));
   const double* tangential = archive.get<double>("pairs/tangential").data();
   const double* rolling = archive.get<double>("pairs/rolling").data();
 
@@ -207,15 +205,14 @@ void GrainSolver::restore(const Archive& archive) {
 
 std::size_t GrainSolver::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum =
-      of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
+  std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
   for (const Chunk& chunk : chunks_)
     for (const LoadBuffer* buffer : {&chunk.own, &chunk.ahead}) sum += of(buffer->force) + of(buffer->torque);
   const auto scratch = [&](const auto& all) {
     for (const auto& s : all) {
       const auto& t = s.touching;
-      sum += of(s.motion.v) + of(s.motion.w) + of(s.loads.force) + of(s.loads.torque) + of(s.shifted) +
-             4 * of(t.dx) + 3 * of(t.i);
+      sum += of(s.motion.v) + of(s.motion.w) + of(s.loads.force) + of(s.loads.torque) + of(s.shifted) + 4 * of(t.dx) +
+             3 * of(t.i);
     }
   };
   scratch(single_);

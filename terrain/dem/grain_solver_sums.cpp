@@ -25,9 +25,8 @@ void GrainSolver::reset_accounts() {
   for (int g = 0; g < grains_.count; ++g) {
     const Quad &v = grains_.velocity[g], &w = grains_.spin[g];
     const double size = grains_.position[g].w / params_.grain.radius, mass = cube(size);
-    accounts_.kinetic +=
-        mass * (0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
-                0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z));
+    accounts_.kinetic += mass * (0.5 * params_.grain.mass * (v.x * v.x + v.y * v.y + v.z * v.z) +
+                                 0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z));
     rotation += mass * 0.5 * params_.grain.inertia * size * size * (w.x * w.x + w.y * w.y + w.z * w.z);
     const Quad& x = grains_.position[g];
     accounts_.height += mass * up_.dot(Vec3(x.x, x.y, x.z));

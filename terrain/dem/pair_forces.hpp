@@ -119,8 +119,7 @@ inline RelativeMotion<kRoll, Double4> relative_motion(const Motion& motion, cons
 
 /// Adds (f, t + q) to grain i and (−f, t − q) to grain j; q is the couple.
 template <bool kCouple>
-inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Double4 f, Double4 t,
-                     Double4 q) {
+inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32_t j, Double4 f, Double4 t, Double4 q) {
   const auto increase = [](double* at, Double4 by) { store_lanes(at, load_lanes<Double4>(at) + by); };
   increase(force + i, f);
   increase(torque + i, kCouple ? t + q : t);
@@ -131,8 +130,7 @@ inline void add_load(double* force, double* torque, std::uint32_t i, std::uint32
 /// Adds the loads of the first `valid` lanes.
 template <bool kCouple>
 inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
-                      const Triple<Float8>& force, const Triple<Float8>& torque,
-                      const Triple<Float8>& couple) {
+                      const Triple<Float8>& force, const Triple<Float8>& torque, const Triple<Float8>& couple) {
   Float8 r[8] = {force.x, force.y, force.z, {}, torque.x, torque.y, torque.z, {}};
   transpose(r);
   Float8 c[4] = {couple.x, couple.y, couple.z, {}};
@@ -152,8 +150,7 @@ inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uin
 
 template <bool kCouple>
 inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uint32_t* j, int valid,
-                      const Triple<Double4>& force, const Triple<Double4>& torque,
-                      const Triple<Double4>& couple) {
+                      const Triple<Double4>& force, const Triple<Double4>& torque, const Triple<Double4>& couple) {
   Double4 f[4] = {force.x, force.y, force.z, {}}, t[4] = {torque.x, torque.y, torque.z, {}};
   Double4 q[4] = {couple.x, couple.y, couple.z, {}};
   transpose(f);
@@ -172,8 +169,7 @@ inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Tri
   v = {r[0], r[1], r[2]};
   w = r[3];
 }
-inline void read_history(const HistoryRow<double>* h, const std::uint32_t* p, Triple<Double4>& v,
-                         Double4& w) {
+inline void read_history(const HistoryRow<double>* h, const std::uint32_t* p, Triple<Double4>& v, Double4& w) {
   Double4 r[4];
   for (int k = 0; k < 4; ++k) r[k] = load_lanes<Double4>(&h->x + 2 * p[k]);
   transpose(r);
@@ -189,8 +185,7 @@ inline void write_history(HistoryRow<float>* h, const std::uint32_t* p, const Tr
     store_lanes(reinterpret_cast<double*>(h) + p[k + 4], high_half(r[k]));
   }
 }
-inline void write_history(HistoryRow<double>* h, const std::uint32_t* p, const Triple<Double4>& v,
-                          Double4 w) {
+inline void write_history(HistoryRow<double>* h, const std::uint32_t* p, const Triple<Double4>& v, Double4 w) {
   Double4 r[4] = {v.x, v.y, v.z, w};
   transpose(r);
   for (int k = 0; k < 4; ++k) store_lanes(&h->x + 2 * p[k], r[k]);
@@ -336,9 +331,8 @@ class PairForces {
     const L zero{}, order = lane_numbers();
     ContactSampleOf<L> sum;
     for (int at = 0; at < count; at += kAtOnce) {
-      const ContactSampleOf<L> one =
-          contact_sample<Law, kRolling>(coefficients(first + at, at), law_.step, contact_motion(at),
-                                        contact_history(&pairs_.pair[first + at]));
+      const ContactSampleOf<L> one = contact_sample<Law, kRolling>(
+          coefficients(first + at, at), law_.step, contact_motion(at), contact_history(&pairs_.pair[first + at]));
       const auto real = order < constant<L>(count - at);
       const auto increase = [&](L& to, L by) { to += real ? by : zero; };
       increase(sum.power.sliding, one.power.sliding);
@@ -365,8 +359,7 @@ class PairForces {
       const std::uint32_t* p = &pairs_.pair[first + at];
       const ContactMotion<L> m = contact_motion(at);
       ContactHistory<L> history = contact_history(p);
-      const ContactForce<L> f =
-          Law::template force<kRolling>(coefficients(first + at, at), law_.step, m, history);
+      const ContactForce<L> f = Law::template force<kRolling>(coefficients(first + at, at), law_.step, m, history);
       if constexpr (Law::kHistory) {
         // Lanes beyond the last pair repeat it: they write the same again.
         detail::write_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
@@ -399,9 +392,8 @@ class PairForces {
     for (int at = 0; at < count; at += kAtOnce) {
       Triple<L> couple{};
       if constexpr (kCouple) couple = get(t_.qx, t_.qy, t_.qz, at);
-      detail::add_loads<kCouple>(loads_, &pairs_.i[first + at], &pairs_.j[first + at],
-                                 std::min(kAtOnce, count - at), get(t_.fx, t_.fy, t_.fz, at),
-                                 get(t_.tx, t_.ty, t_.tz, at), couple);
+      detail::add_loads<kCouple>(loads_, &pairs_.i[first + at], &pairs_.j[first + at], std::min(kAtOnce, count - at),
+                                 get(t_.fx, t_.fy, t_.fz, at), get(t_.tx, t_.ty, t_.tz, at), couple);
     }
   }
 

@@ -43,15 +43,15 @@ struct Wanted {
 
 /// Sums and extremes over grains after the last step; a speed or force is that of its largest components.
 struct MotionTotals {
-  double net_force = 0.0;  // Σ |contact forces + weight| of grains, N, when measured
-  double kinetic = 0.0;    // J
-  double spin2 = 0.0;      // Σ I ω² / I₀, rad²/s²
-  double height = 0.0;     // Σ z, m
-  Quad velocity;           // Σ v, m/s
-  double step_work = 0.0;  // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
-  Quad fastest2;           // largest squares of each component of v, m²/s²
-  double max_speed = 0.0;  // the root of their sum, m/s
-  double speed2 = 0.0;     // Σ v², m²/s²
+  double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
+  double kinetic = 0.0;        // J
+  double spin2 = 0.0;          // Σ I ω² / I₀, rad²/s²
+  double height = 0.0;         // Σ z, m
+  Quad velocity;               // Σ v, m/s
+  double step_work = 0.0;      // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
+  Quad fastest2;               // largest squares of each component of v, m²/s²
+  double max_speed = 0.0;      // the root of their sum, m/s
+  double speed2 = 0.0;         // Σ v², m²/s²
   double max_net_force = 0.0;  // N, only when grains may sleep
   Quad held;                   // Σ contact forces + weight, N, only when grains may sleep
 };

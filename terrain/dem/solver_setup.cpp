@@ -50,13 +50,12 @@ SolverCoefficients run_coefficients(const DemOptions& options, double step) {
   return {mix(material, material, Partner::grain, grain, law), wall, wall};
 }
 
-ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material,
-                                         double step) {
+ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material, double step) {
   LawSettings law = law_settings(options);
   law.step = step;
   law.rolling_friction = 0.0;  // a couple could not be handed to vertices
-  return mix(grain_material(options), material, Partner::surface,
-             grain_properties(options.radius, options.density), law);
+  return mix(grain_material(options), material, Partner::surface, grain_properties(options.radius, options.density),
+             law);
 }
 
 /// The smallest grains are the least stable. A contact of radii r and R = ρ r has R* = ρ/(1 + ρ) r, so that it is

@@ -17,8 +17,7 @@ SolverParams settling_params(const DemOptions& options);
 /// Coefficients of a run with this step, s: walls are of the grains' material.
 SolverCoefficients run_coefficients(const DemOptions& options, double step);
 /// Of a grain on the surface of a tire, for the same.
-ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material,
-                                         double step);
+ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material, double step);
 /// Of a bed of these grains whose contacts have overlap `overlap`, m.
 StableStep stable_at(const DemOptions& options, double overlap);
 /// The overlap at which scenarios are checked, m.

@@ -26,9 +26,7 @@ void require(bool ok, const char* array, const What& what) {
   if (!ok) throw Error(ExitCode::io, fmt::format("saved state '{}' {}: it is damaged", array, what()));
 }
 
-std::size_t lanes(std::int64_t pairs) {
-  return (static_cast<std::size_t>(pairs) + kFloatLanes - 1) / kFloatLanes;
-}
+std::size_t lanes(std::int64_t pairs) { return (static_cast<std::size_t>(pairs) + kFloatLanes - 1) / kFloatLanes; }
 
 /// One strip after another, with what stands before it in the lists of all.
 class Check {
@@ -77,8 +75,7 @@ class Check {
   void samples() {
     force("mean_contact_force", archive_.get_double("mean_contact_force"));
     if (archive_.has("parcels/measured_force"))
-      for (const double sum : archive_.get<double>("parcels/measured_force"))
-        force("parcels/measured_force", sum);
+      for (const double sum : archive_.get<double>("parcels/measured_force")) force("parcels/measured_force", sum);
     if (!archive_.has("samples/until")) return;
     const auto& samples = archive_.get<double>("samples/strips");
     require(samples.empty() || samples.size() == 2 * count_, "samples/strips",
@@ -100,8 +97,7 @@ class Check {
               [&] { return fmt::format("begins strip {} with grain {}, expected {}", k, first_[k], next); });
       next = last_[k];
     }
-    require(next == n_, "strips/last",
-            [&] { return fmt::format("ends with grain {}, expected {}", next, n_); });
+    require(next == n_, "strips/last", [&] { return fmt::format("ends with grain {}, expected {}", next, n_); });
   }
 
   void cells() {
@@ -130,8 +126,7 @@ class Check {
     const auto& pairs = archive_.get<std::int32_t>("strips/pairs", count_);
     std::size_t all = 0, groups = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-      require(pairs[k] >= 0, "strips/pairs",
-              [&] { return fmt::format("has {} pairs for strip {}", pairs[k], k); });
+      require(pairs[k] >= 0, "strips/pairs", [&] { return fmt::format("has {} pairs for strip {}", pairs[k], k); });
       all += static_cast<std::size_t>(pairs[k]), groups += lanes(pairs[k]);
     }
     const auto& partners = archive_.get<std::uint64_t>("pairs/partners", all);
@@ -139,8 +134,7 @@ class Check {
     std::size_t pair = 0, group = 0, touches = 0;
     for (std::size_t k = 0; k < count_; ++k) {
       const int next = strips_.next(static_cast<int>(k));
-      const std::int64_t own = grains_of(k),
-                         reach = own + (next < 0 ? 0 : grains_of(static_cast<std::size_t>(next)));
+      const std::int64_t own = grains_of(k), reach = own + (next < 0 ? 0 : grains_of(static_cast<std::size_t>(next)));
       std::uint64_t before = 0;
       for (std::int32_t p = 0; p < pairs[k]; ++p) {
         const std::uint64_t i = partners[pair + static_cast<std::size_t>(p)] >> 32,
@@ -156,8 +150,8 @@ class Check {
     }
     // Beds may bring histories that a run does not use.
     const Strips::Options& options = strips_.options();
-    require(!options.history || archive_.get<double>("pairs/tangential").size() >= 4 * touches,
-            "pairs/tangential", [&] { return fmt::format("is too short for {} contacts", touches); });
+    require(!options.history || archive_.get<double>("pairs/tangential").size() >= 4 * touches, "pairs/tangential",
+            [&] { return fmt::format("is too short for {} contacts", touches); });
     const bool rolling = options.history && options.rolling;
     require(archive_.get<double>("pairs/rolling").size() >= (rolling ? 4 * touches : 0), "pairs/rolling",
             [&] { return fmt::format("is too short for {} contacts", touches); });
@@ -167,8 +161,7 @@ class Check {
     const auto& walls = archive_.get<std::int32_t>("strips/walls", count_);
     std::size_t all = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-      require(walls[k] >= 0, "strips/walls",
-              [&] { return fmt::format("has {} contacts for strip {}", walls[k], k); });
+      require(walls[k] >= 0, "strips/walls", [&] { return fmt::format("has {} contacts for strip {}", walls[k], k); });
       all += static_cast<std::size_t>(walls[k]);
     }
     const auto& grain = archive_.get<std::int32_t>("walls/grain", all);
@@ -198,18 +191,15 @@ void check_solver_state(const Archive& archive, const Strips& strips, double sma
   Check(archive, strips, smallest, largest).run();
 }
 
-std::int64_t saved_across(const Archive& archive) {
-  return archive.has(kAcross) ? archive.get_int(kAcross) : 1;
-}
+std::int64_t saved_across(const Archive& archive) { return archive.has(kAcross) ? archive.get_int(kAcross) : 1; }
 
 void require_same_parcels(const Archive& archive, const Strips& strips) {
   const std::int64_t across = saved_across(archive);
   if (across != strips.across())
-    throw Error(
-        ExitCode::io,
-        fmt::format("saved state '{}' is {}, expected {}: another version of the program cut the strips "
-                    "of the bed otherwise, and what sleeps with them",
-                    kAcross, across, strips.across()));
+    throw Error(ExitCode::io,
+                fmt::format("saved state '{}' is {}, expected {}: another version of the program cut the strips "
+                            "of the bed otherwise, and what sleeps with them",
+                            kAcross, across, strips.across()));
 }
 
 double saved_step(const Archive& archive, const char* name) {

@@ -26,8 +26,7 @@ int cell_at(double at, int count) { return at > 0.0 ? static_cast<int>(std::min(
 /// values[first + k] = values[order[k]].
 template <class T>
 void permute(std::vector<T>& values, const Resorted& range, std::vector<T>& spare, int threads) {
-  FURROW_ASSERT(values.size() >= range.order.size() + range.first, values.size(), range.first,
-                range.order.size());
+  FURROW_ASSERT(values.size() >= range.order.size() + range.first, values.size(), range.first, range.order.size());
   FURROW_ASSERT(threads > 0, threads);
   const int n = static_cast<int>(range.order.size());
   spare.resize(std::max<std::size_t>(spare.size(), n));
@@ -73,8 +72,7 @@ void Strips::sum_parcels(int k) {
 
 void Strips::find_parts(Strip& strip) const {
   FURROW_ASSERT(static_cast<int>(strip.parcels.size()) == across_, strip.parcels.size(), across_);
-  FURROW_ASSERT(strip.cell_start.size() == static_cast<std::size_t>(ny_ * nz_ + 1), strip.cell_start.size(),
-                ny_, nz_);
+  FURROW_ASSERT(strip.cell_start.size() == static_cast<std::size_t>(ny_ * nz_ + 1), strip.cell_start.size(), ny_, nz_);
   StripPart at;
   for (int p = 0; p < across_; ++p) {
     at.last = strip.cell_start[column_of(p + 1) * nz_];
@@ -83,9 +81,9 @@ void Strips::find_parts(Strip& strip) const {
       at.wall_last = static_cast<std::int32_t>(strip.walls.size());
     } else {
       const auto pairs_end = strip.i.begin() + strip.pairs;
-      at.pair_last = static_cast<std::int32_t>(std::lower_bound(strip.i.begin() + at.pair_first, pairs_end,
-                                                                static_cast<std::uint32_t>(kQuad * at.last)) -
-                                               strip.i.begin());
+      at.pair_last = static_cast<std::int32_t>(
+          std::lower_bound(strip.i.begin() + at.pair_first, pairs_end, static_cast<std::uint32_t>(kQuad * at.last)) -
+          strip.i.begin());
       at.wall_last = static_cast<std::int32_t>(
           std::lower_bound(strip.walls.begin() + at.wall_first, strip.walls.end(), at.last,
                            [](const WallContact& contact, int grain) { return contact.grain < grain; }) -
@@ -108,17 +106,15 @@ std::size_t Strips::bytes() const {
   std::size_t sum = of(scratch_.cell) + of(scratch_.start) + of(scratch_.ids) + of(scratch_.quads);
   for (const auto* strips : {&strips_, &old_})
     for (const Strip& s : *strips)
-      sum += sizeof s + of(s.cell_start) + of(s.i) + of(s.j) + of(s.touching) + of(s.walls) +
-             of(s.single.tangential) + of(s.single.rolling) + of(s.full.tangential) + of(s.full.rolling) +
-             of(s.parcels);
+      sum += sizeof s + of(s.cell_start) + of(s.i) + of(s.j) + of(s.touching) + of(s.walls) + of(s.single.tangential) +
+             of(s.single.rolling) + of(s.full.tangential) + of(s.full.rolling) + of(s.parcels);
   return sum;
 }
 
 int Strips::strip_at(double x) const { return cell_at(x * inverse_x_, count()); }
 
 void Strips::sort(Grains& grains, Resorted& range, int threads) {
-  FURROW_ASSERT(range.from < range.to && range.from >= 0 && range.to <= count(), range.from, range.to,
-                count());
+  FURROW_ASSERT(range.from < range.to && range.from >= 0 && range.to <= count(), range.from, range.to, count());
   const int first = strips_[range.from].first, last = strips_[range.to - 1].last, n = last - first;
   const int per_strip = ny_ * nz_, cells = (range.to - range.from) * per_strip;
   const double y0 = -0.5 * options_.bin.width;
@@ -129,8 +125,8 @@ void Strips::sort(Grains& grains, Resorted& range, int threads) {
     Quad& p = grains.position[first + k];
     options_.bin.wrap(p);
     const int strip = std::clamp(strip_at(p.x), range.from, range.to - 1);
-    cell[k] = ((strip - range.from) * ny_ + cell_at((p.y - y0) * inverse_y_, ny_)) * nz_ +
-              cell_at(p.z * inverse_z_, nz_);
+    cell[k] =
+        ((strip - range.from) * ny_ + cell_at((p.y - y0) * inverse_y_, ny_)) * nz_ + cell_at(p.z * inverse_z_, nz_);
   }
   start.assign(cells + 1, 0);
   for (int k = 0; k < n; ++k) ++start[cell[k] + 1];
@@ -161,8 +157,7 @@ void Strips::size_lists(Strip& strip, int pairs) const {
   std::fill(strip.i.begin() + pairs, strip.i.end(), 0);
   std::fill(strip.j.begin() + pairs, strip.j.end(), 0);
   strip.touching.assign(room / kFloatLanes, 0);
-  const int histories = options_.history ? room : 0,
-            rolling = options_.history && options_.rolling ? room : 0;
+  const int histories = options_.history ? room : 0, rolling = options_.history && options_.rolling ? room : 0;
   if (options_.single) {
     strip.single.tangential.assign(histories, {});
     strip.single.rolling.assign(rolling, {});

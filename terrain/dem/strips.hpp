@@ -64,11 +64,11 @@ struct Strip {
   PairHistory<float> single;           // used with precision mixed
   PairHistory<double> full;            // used with precision double
   std::vector<WallContact> walls;
-  double travel = 0.0;  // bound on the way of any of its grains since it was sorted, m
+  double travel = 0.0;                           // bound on the way of any of its grains since it was sorted, m
   double x_min = 0.0, x_max = 0.0, z_max = 0.0;  // of the centres when sorted, m
   bool asleep = false;                           // all its parcels are
   bool stale = false;                            // one of its parcels is
-  std::int32_t lost = -1;  // a grain outside the bin or not finite, counted from `first`
+  std::int32_t lost = -1;                        // a grain outside the bin or not finite, counted from `first`
   std::vector<Parcel> parcels = std::vector<Parcel>(1);
   ContactTotals contact;  // of all parcels
   MotionTotals motion;

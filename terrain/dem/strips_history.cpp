@@ -47,11 +47,9 @@ class OldPairs {
     const Strip& strip = old_[strip_of_[owner - base_]];
     const int i = owner - strip.first;
     // Across periodic sides the owner may come after its partner, in one strip (y) or from the last to the first (x).
-    const int j =
-        partner >= strip.first ? partner - strip.first : strip.grains() + partner - old_.front().first;
+    const int j = partner >= strip.first ? partner - strip.first : strip.grains() + partner - old_.front().first;
     for (int p = row_[owner - base_]; p < strip.pairs && strip.grain_i(p) == i; ++p)
-      if (strip.grain_j(p) == j && (strip.touching[p / kFloatLanes] >> p % kFloatLanes & 1))
-        return {&strip, p, false};
+      if (strip.grain_j(p) == j && (strip.touching[p / kFloatLanes] >> p % kFloatLanes & 1)) return {&strip, p, false};
     return {};
   }
 
@@ -95,8 +93,8 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
 }
 
 void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorted& range) {
-  FURROW_ASSERT(old_from <= range.from && static_cast<int>(old.size()) == range.to - old_from, old.size(),
-                old_from, range.from);
+  FURROW_ASSERT(old_from <= range.from && static_cast<int>(old.size()) == range.to - old_from, old.size(), old_from,
+                range.from);
   std::vector<std::int32_t> start(range.order.size() + 1, 0);  // old wall contacts per old grain of the range
   std::vector<const WallContact*> contacts;
   for (int s = range.from; s < range.to; ++s) {
@@ -104,8 +102,7 @@ void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorte
     std::size_t at = 0;
     for (int g = 0; g < strip.grains(); ++g) {
       start[strip.first + g - range.first] = static_cast<std::int32_t>(contacts.size());
-      for (; at < strip.walls.size() && strip.walls[at].grain == g; ++at)
-        contacts.push_back(&strip.walls[at]);
+      for (; at < strip.walls.size() && strip.walls[at].grain == g; ++at) contacts.push_back(&strip.walls[at]);
     }
   }
   start.back() = static_cast<std::int32_t>(contacts.size());
@@ -129,8 +126,7 @@ void Strips::mark_stale(std::span<const Strip> old, int old_from, const Resorted
     const Strip &now = strips_[s], &then = old[s - old_from];
     const StripPart &part = now.parcels[p].part, &was = then.parcels[p].part;
     const auto order = range.order.begin() + (now.first - range.first);
-    return part.grains() != was.grains() ||
-           std::any_of(order + part.first, order + part.last, [&](std::int32_t g) {
+    return part.grains() != was.grains() || std::any_of(order + part.first, order + part.last, [&](std::int32_t g) {
              return g < then.first + was.first || g >= then.first + was.last;
            });
   };

@@ -59,8 +59,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
           } else if (wanted < 0 || wanted >= ny_) {
             return;
           }
-          scan(i, from, other, base, other.cell_start[other_y * nz_ + below],
-               other.cell_start[other_y * nz_ + above]);
+          scan(i, from, other, base, other.cell_start[other_y * nz_ + below], other.cell_start[other_y * nz_ + above]);
         };
         scan(i, at, strip, 0, i + 1, strip.cell_start[y * nz_ + above]);
         row(strip, 0, at, y + 1);
@@ -78,8 +77,8 @@ void Strips::list_pairs(const Grains& grains, int k) {
 }
 
 void Strips::list_walls(const Grains& grains, Strip& strip) const {
-  FURROW_ASSERT(strip.first >= 0 && strip.first <= strip.last && strip.last <= grains.count, strip.first,
-                strip.last, grains.count);
+  FURROW_ASSERT(strip.first >= 0 && strip.first <= strip.last && strip.last <= grains.count, strip.first, strip.last,
+                grains.count);
   strip.walls.clear();
   strip.x_min = 1e300, strip.x_max = strip.z_max = -1e300;
   for (int g = strip.last - 1; g >= strip.first; --g)

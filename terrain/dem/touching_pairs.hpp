@@ -96,8 +96,7 @@ void find_touching(Strip& strip, int from, int to, const Quad* x, double diamete
   FURROW_ASSERT(x != nullptr || from == to, from, to);
   FURROW_ASSERT(kSizes || diameter > 0.0, diameter);
   FURROW_ASSERT(width >= 0.0, width);
-  FURROW_ASSERT(strip.i.size() == strip.j.size() && strip.i.size() % kFloatLanes == 0, strip.i.size(),
-                strip.j.size());
+  FURROW_ASSERT(strip.i.size() == strip.j.size() && strip.i.size() % kFloatLanes == 0, strip.i.size(), strip.j.size());
   FURROW_ASSERT(in_range(strip.pairs, strip.i.size() + 1), strip.pairs, strip.i.size());
   FURROW_ASSERT(strip.touching.size() * kFloatLanes == strip.i.size(), strip.touching.size(), strip.i.size());
   out.reserve(to - from);
@@ -106,12 +105,11 @@ void find_touching(Strip& strip, int from, int to, const Quad* x, double diamete
   const Int32x8 steps{0, 2, 4, 6, 8, 10, 12, 14};
   PairHistory<Real>& history = strip.history<Real>();
   const double* const at = flat(x);
-  const int whole =
-      from / kFloatLanes * kFloatLanes;  // lanes before `from` belong to another part of the strip
+  const int whole = from / kFloatLanes * kFloatLanes;  // lanes before `from` belong to another part of the strip
   const std::uint32_t *i = strip.i.data() + whole, *j = strip.j.data() + whole;
   std::uint8_t* const touching = strip.touching.data();
-  Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(),
-              *const gap = out.gap.data(), *const sum = out.sum.data();
+  Real *const dx = out.dx.data(), *const dy = out.dy.data(), *const dz = out.dz.data(), *const gap = out.gap.data(),
+              *const sum = out.sum.data();
   std::uint32_t *const out_i = out.i.data(), *const out_j = out.j.data(), *const pair = out.pair.data();
   const auto parted = [&](int p, unsigned ended) {
     for (int k = 0; k < kFloatLanes; ++k)
@@ -123,9 +121,7 @@ void find_touching(Strip& strip, int from, int to, const Quad* x, double diamete
   };
   int count = 0;
   for (int p = whole; p < to; p += kFloatLanes, i += kFloatLanes, j += kFloatLanes) {
-    const auto d = [&](int k) {
-      return load_lanes<Double4>(at + i[k]) + partner * load_lanes<Double4>(at + j[k]);
-    };
+    const auto d = [&](int k) { return load_lanes<Double4>(at + i[k]) + partner * load_lanes<Double4>(at + j[k]); };
     Double4 a[4] = {d(0), d(1), d(2), d(3)}, b[4] = {d(4), d(5), d(6), d(7)};
     transpose(a);
     transpose(b);

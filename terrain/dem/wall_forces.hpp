@@ -20,15 +20,13 @@ struct SolverCoefficients {
 /// radius: that the coefficients are for; without kSizes that of all grains, m. @pre radius > 0, dt > 0
 template <class Law, bool kRolling, bool kSizes>
 void wall_forces(const Grains& grains, Strip& strip, int from, int to, const Bin& bin, double radius,
-                 const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads,
-                 ContactTotals& sums) {
+                 const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads, ContactTotals& sums) {
   FURROW_ASSERT(radius > 0.0 && dt > 0.0, radius, dt);
   FURROW_ASSERT(0 <= from && from <= to && static_cast<std::size_t>(to) <= strip.walls.size(), from, to,
                 strip.walls.size());
   const auto coefficients = [&](const WallContact& contact) {
     ContactCoefficients c = contact.wall == kFloor ? all.floor : all.side;
-    if constexpr (kSizes)
-      c = scaled(c, surface_scale(grains.position[strip.first + contact.grain].w / radius, 0.0));
+    if constexpr (kSizes) c = scaled(c, surface_scale(grains.position[strip.first + contact.grain].w / radius, 0.0));
     return c;
   };
   const auto held = [&](const WallContact& contact, const ContactCoefficients& c) {

@@ -29,8 +29,7 @@ std::vector<double> Crowd::borders(int ranks) const {
   int cell = 0;
   for (int rank = 1; rank < ranks; ++rank) {
     const double wanted = static_cast<double>(all) * rank / ranks;
-    while (cell + 1 < kCells && static_cast<double>(before + counts_[cell]) < wanted)
-      before += counts_[cell++];
+    while (cell + 1 < kCells && static_cast<double>(before + counts_[cell]) < wanted) before += counts_[cell++];
     const double inside =
         counts_[cell] > 0 ? (wanted - static_cast<double>(before)) / static_cast<double>(counts_[cell]) : 0.5;
     places.push_back(length_ * (cell + std::clamp(inside, 0.0, 1.0)) / kCells);

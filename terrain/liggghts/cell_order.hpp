@@ -14,8 +14,7 @@ namespace furrow::terrain::liggghts {
 inline auto place_in_order(const double* x, int number, double largest) {
   FURROW_ASSERT(largest > 0.0, largest);
   const double per_cell = 0.5 / largest;
-  return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell),
-                    number);
+  return std::tuple(std::floor(x[0] * per_cell), std::floor(x[1] * per_cell), std::floor(x[2] * per_cell), number);
 }
 
 }  // namespace furrow::terrain::liggghts

@@ -35,8 +35,7 @@ std::uintmax_t size_of(const fs::path& file) {
 std::uintmax_t least_size(const fs::path& file) {
   Elf64_Ehdr head{};
   std::ifstream in(file, std::ios::binary);
-  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) ||
-      std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
+  if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
     return sizeof head;  // dlopen says what else may be wrong
   return head.e_shoff + std::uintmax_t{head.e_shnum} * head.e_shentsize;
 }

@@ -51,8 +51,7 @@ class LiggghtsTerrain final : public Terrain {
       : options_(options), contacts_(options), refinement_(options), dt_(options.step), part_(options.step) {
     refinement_.set_step(dt_);
     if (group() && group()->size() > 1 && !group()->communicator())
-      throw input_error(options.scenario, "terrain.ranks",
-                        "of engine 'liggghts' need MPI, expected 1 without it");
+      throw input_error(options.scenario, "terrain.ranks", "of engine 'liggghts' need MPI, expected 1 without it");
     require_engine_library();
   }
 
@@ -106,8 +105,8 @@ class LiggghtsTerrain final : public Terrain {
     contacts_.attach(mesh, material, start);
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                  std::span<NodalForces> forces, std::span<ContactSums> sums) override {
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> sums) override {
     FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
     if (const double dt = duration / substeps; dt != dt_) {
       dt_ = dt;
@@ -135,8 +134,7 @@ class LiggghtsTerrain final : public Terrain {
   TerrainState state() const override {
     StateReport all;
     if (engine_)
-      for (const StateReport& one : states_.empty() ? gather_states(group(), own_state()) : states_)
-        add(all, one);
+      for (const StateReport& one : states_.empty() ? gather_states(group(), own_state()) : states_) add(all, one);
     TerrainState s = terrain_state(all, contacts_.grain(), options_.gravity, surface_work_);
     s.substeps_added = refinement_.state().added;
     s.refined_time = refinement_.state().time;
@@ -147,9 +145,7 @@ class LiggghtsTerrain final : public Terrain {
   std::int64_t size() const override { return size_; }
   std::int64_t grains_here() const override { return engine_ ? engine_->own().count : 0; }
 
-  void frame(TerrainFrame& out) const override {
-    gather_frame(group(), engine_->own(), contacts_.params().bin, out);
-  }
+  void frame(TerrainFrame& out) const override { gather_frame(group(), engine_->own(), contacts_.params().bin, out); }
 
   void save(Archive& archive) const override {
     const Archive::Scope scope(archive, "terrain/");
@@ -230,9 +226,8 @@ class LiggghtsTerrain final : public Terrain {
       all = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
     }
     if (all != size_)
-      throw physics_error(
-          Outcome::failure("cannot begin", fmt::format("LIGGGHTS holds {} of {} grains", all, size_)),
-          "terrain");
+      throw physics_error(Outcome::failure("cannot begin", fmt::format("LIGGGHTS holds {} of {} grains", all, size_)),
+                          "terrain");
   }
 
   void run(int steps, double part) {
@@ -254,9 +249,8 @@ class LiggghtsTerrain final : public Terrain {
 
   /// Of an error on this rank alone the others do not hear: they are ended with it.
   [[noreturn]] void engine_failed(const EngineError& error) const {
-    throw Error(ExitCode::rank_lost,
-                fmt::format("terrain {}: LIGGGHTS failed{}: {}", group() ? group()->rank() : 0,
-                            error.on_all ? "" : " on this rank", error.what()));
+    throw Error(ExitCode::rank_lost, fmt::format("terrain {}: LIGGGHTS failed{}: {}", group() ? group()->rank() : 0,
+                                                 error.on_all ? "" : " on this rank", error.what()));
   }
 
   IntervalReport own_interval() const {
@@ -273,10 +267,9 @@ class LiggghtsTerrain final : public Terrain {
     dem::HardContacts hard;
     for (const IntervalReport& one : reports) {
       if (one.lost >= 0.0)
-        return Outcome::failure(
-            fmt::format("lost grain {:.0f}", one.lost),
-            fmt::format("it left the bin or is not finite, x = ({:.6g}, {:.6g}, {:.6g}) m", one.lost_at.x(),
-                        one.lost_at.y(), one.lost_at.z()));
+        return Outcome::failure(fmt::format("lost grain {:.0f}", one.lost),
+                                fmt::format("it left the bin or is not finite, x = ({:.6g}, {:.6g}, {:.6g}) m",
+                                            one.lost_at.x(), one.lost_at.y(), one.lost_at.z()));
       hard.overlap = std::max(hard.overlap, one.overlap);
       if (one.share <= hard.share) continue;
       hard.share = one.share, hard.deepest = one.overlap, hard.at = one.hardest_at;
@@ -316,17 +309,16 @@ class LiggghtsTerrain final : public Terrain {
   dem::DemOptions options_;
   RankContacts contacts_;
   dem::StepRefinement refinement_;
-  std::unique_ptr<Engine> engine_;  // uses contacts_
-  std::int64_t size_ = 0;           // grains of all ranks
-  std::vector<double> borders_;     // between the ranks' parts along x, m
-  int since_balance_ = 0;           // intervals since they were looked at
-  std::vector<StateReport>
-      states_;                 // of all ranks since the last interval, on the leader; empty: not asked yet
-  double top_ = 0.0;           // of the bed at the beginning, m
-  double dt_, part_;           // the step, and the part of it that contacts are evaluated for, s
-  double since_ = 0.0;         // forces were last taken, s; 0: not yet
-  double time_ = 0.0;          // advanced, s
-  double surface_work_ = 0.0;  // by tires on the grains, J
+  std::unique_ptr<Engine> engine_;   // uses contacts_
+  std::int64_t size_ = 0;            // grains of all ranks
+  std::vector<double> borders_;      // between the ranks' parts along x, m
+  int since_balance_ = 0;            // intervals since they were looked at
+  std::vector<StateReport> states_;  // of all ranks since the last interval, on the leader; empty: not asked yet
+  double top_ = 0.0;                 // of the bed at the beginning, m
+  double dt_, part_;                 // the step, and the part of it that contacts are evaluated for, s
+  double since_ = 0.0;               // forces were last taken, s; 0: not yet
+  double time_ = 0.0;                // advanced, s
+  double surface_work_ = 0.0;        // by tires on the grains, J
 };
 
 }  // namespace

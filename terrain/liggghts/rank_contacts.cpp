@@ -18,10 +18,9 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
-constexpr double kRoom =
-    10.0;                     // around a rank's grains for what they may move in one interval, largest radii
-constexpr double kFar = 1e6;  // farther than any wall, m; as in Bin::holds
-constexpr int kPart = 256;    // grains whose box is known
+constexpr double kRoom = 10.0;     // around a rank's grains for what they may move in one interval, largest radii
+constexpr double kFar = 1e6;       // farther than any wall, m; as in Bin::holds
+constexpr int kPart = 256;         // grains whose box is known
 constexpr double kTireRoom = 1.0;  // that a tire may move before grains near it are looked for again, skins
 
 using dem::ContactForce;
@@ -41,8 +40,8 @@ ContactHistory<double> history_of(const Carried& c) {
 
 /// What is not a number is not inside.
 bool inside(const SurfaceBox& box, const double* x) {
-  return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() &&
-         x[2] > box.lo.z() && x[2] < box.hi.z();
+  return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() && x[2] > box.lo.z() &&
+         x[2] < box.hi.z();
 }
 
 Carried carried_of(int partner, const Triple<double>& normal, const ContactHistory<double>& h) {
@@ -78,8 +77,7 @@ void RankContacts::set_step(double dt) {
   for (Tire& tire : tires_) tire.coefficients = dem::surface_coefficients(options_, tire.material, dt);
 }
 
-void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
-                          const SurfaceState& start) {
+void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
   Tire tire;
   tire.collider = std::make_unique<SurfaceCollider>(mesh, params_.largest_radius() + look_room());
   tire.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, options_.contact_tangents);
@@ -117,8 +115,7 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
 void RankContacts::lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) {
   order_ = order;
   looked_ = walls_listed_ = false;
-  box_ = {Vec3::Constant(-kFar),
-          Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
+  box_ = {Vec3::Constant(-kFar), Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
   parts_.clear();
   if (grains.count == 0) return;
   for (int first = 0; first < grains.count; first += kPart) {
@@ -173,8 +170,7 @@ void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool
 template <class Law, bool kRolling>
 void RankContacts::add_forces_of(const OwnGrains& grains, int last, bool losses) {
   WallContacts::Findings found;
-  walls_.add_forces<Law, kRolling>(grains, last, {coefficients_, times_.since, losses, params_.sizes()}, now_,
-                                   found);
+  walls_.add_forces<Law, kRolling>(grains, last, {coefficients_, times_.since, losses, params_.sizes()}, now_, found);
   if (found.lost >= 0) note_lost(grains, found.lost);
   if (found.hardest >= 0) note(found.overlap, found.share, grains.position[found.hardest]);
   const std::size_t touchable = touchable_.size();
@@ -247,9 +243,8 @@ void RankContacts::look(const OwnGrains& grains) {
   for (const Touchable& t : touchable_) {
     if (!t.carries || !numbered_) continue;
     carries_[t.grain] = 1;
-    all |= std::none_of(tires_.begin(), tires_.end(), [x = grains.position[t.grain]](const Tire& tire) {
-      return inside(tire.looked_for, x);
-    });
+    all |= std::none_of(tires_.begin(), tires_.end(),
+                        [x = grains.position[t.grain]](const Tire& tire) { return inside(tire.looked_for, x); });
   }
   touchable_.clear(), near_.clear(), near_begin_.clear();
   for (int first = 0; first < grains.count; first += kPart)
@@ -299,8 +294,7 @@ bool RankContacts::looked_far_enough() const {
 const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double radius,
                                                       dem::ContactCoefficients& scaled) const {
   if (radius == params_.grain.radius) return tire.coefficients;
-  return scaled = dem::scaled(tire.coefficients,
-                              dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
+  return scaled = dem::scaled(tire.coefficients, dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
 }
 
 void RankContacts::note(double overlap, double share, const double* at) {
@@ -311,8 +305,7 @@ void RankContacts::note(double overlap, double share, const double* at) {
 }
 
 template <class Law, bool kRolling>
-void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<const SurfaceHit> hits,
-                              bool losses) {
+void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<const SurfaceHit> hits, bool losses) {
   Tire& tire = tires_[k];
   const double r = grains.radius[g];
   const Vec3 centre(grains.position[g][0], grains.position[g][1], grains.position[g][2]);
@@ -339,8 +332,7 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
     add(grains.force[g], push + drag);
     add(grains.torque[g], cross(arm, push + drag) + hit.share * f.rolling);
     tire.forces.push_back({hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}});
-    if (options_.contact_tangents)
-      tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
+    if (options_.contact_tangents) tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
     on_grains_ += dem::vec(push + drag);
     now_.elastic += hit.share * f.energy;
     ++now_.contacts;
@@ -419,8 +411,8 @@ void RankContacts::save(Archive& archive) const {
 void RankContacts::restore(const Archive& archive) {
   const auto count = archive.get_int("tires/count");
   if (count < 0 || (!tires_.empty() && static_cast<std::size_t>(count) != tires_.size()))
-    throw Error(ExitCode::io, "saved state holds " + std::to_string(count) + " tires, expected " +
-                                  std::to_string(tires_.size()));
+    throw Error(ExitCode::io,
+                "saved state holds " + std::to_string(count) + " tires, expected " + std::to_string(tires_.size()));
   tires_.clear();
   for (std::int64_t k = 0; k < count; ++k) {
     const Archive::Scope scope(archive, "tire" + std::to_string(k) + "/");

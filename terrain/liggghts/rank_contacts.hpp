@@ -137,8 +137,7 @@ class RankContacts final : public StepWork {
   double look_room() const;
   void note_lost(const OwnGrains& grains, int g);
   /// Where the radius is not that of the reference, `scaled` takes the coefficients.
-  const dem::ContactCoefficients& of_tire(const Tire& tire, double radius,
-                                          dem::ContactCoefficients& scaled) const;
+  const dem::ContactCoefficients& of_tire(const Tire& tire, double radius, dem::ContactCoefficients& scaled) const;
   void note(double overlap, double share, const double* at);
 
   dem::DemOptions options_;

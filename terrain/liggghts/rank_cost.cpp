@@ -19,8 +19,6 @@ RankLoad rank_load(const dem::DemOptions& options, int ranks) {
   return load;
 }
 
-double rank_step(const RankLoad& load, double grain_step) {
-  return kGrainStep * grain_step * (load.own + load.ghosts);
-}
+double rank_step(const RankLoad& load, double grain_step) { return kGrainStep * grain_step * (load.own + load.ghosts); }
 
 }  // namespace furrow::terrain::liggghts

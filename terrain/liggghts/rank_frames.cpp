@@ -34,12 +34,9 @@ void gather_frame(RankGroup* group, const OwnGrains& own, const dem::Bin& bin, T
   for (int k = 0; k < own.count; ++k) {
     const dem::Quad at = place_of(own, bin, k);
     const double* const v = own.velocity[k];
-    rows[k] = {static_cast<double>(own.id[k]),
-               static_cast<float>(at.x),
-               static_cast<float>(at.y),
-               static_cast<float>(at.z),
-               static_cast<float>(at.w),
-               static_cast<float>(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]))};
+    rows[k] = {static_cast<double>(own.id[k]), static_cast<float>(at.x),
+               static_cast<float>(at.y),       static_cast<float>(at.z),
+               static_cast<float>(at.w),       static_cast<float>(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]))};
   }
   if (group) rows = gather_on_all<Row>(*group, rows);
   out.position.clear(), out.speed.clear(), out.radius.clear();

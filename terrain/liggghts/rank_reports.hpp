@@ -29,7 +29,7 @@ void visit_fields(Visit&& visit, FieldsOf<IntervalReport> auto& s) {
 /// What the ranks know of an interval once they have told each other.
 struct SharedReports {
   std::vector<IntervalReport> intervals;  // of all ranks, on each of them
-  std::vector<StateReport> states;  // of all ranks, in their order, on the leader; the own one elsewhere
+  std::vector<StateReport> states;        // of all ranks, in their order, on the leader; the own one elsewhere
 };
 
 /// After an interval, in one message of each rank to the leader and one back. Adds up what

@@ -71,8 +71,7 @@ void save_grains(Engine& engine, std::span<const CarriedBy> contacts, Archive& a
   for (const NewGrain& g : engine.own_state()) {
     id.push_back(g.id);
     state.push_back(g.radius);
-    for (const auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin})
-      put(state, *v);
+    for (const auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin}) put(state, *v);
   }
   for (const PairRecord& p : engine.own_pairs()) {
     partners.insert(partners.end(), {p.i, p.j});
@@ -97,8 +96,7 @@ void save_grains(Engine& engine, std::span<const CarriedBy> contacts, Archive& a
   archive.put("carried/history", carried);
 }
 
-StartingBed read_grains(const Archive& archive, std::int64_t size, int tires,
-                        const dem::DemOptions& options) {
+StartingBed read_grains(const Archive& archive, std::int64_t size, int tires, const dem::DemOptions& options) {
   if (size < 0 || size > kMostGrains) damaged(fmt::format("'grains/all' is {}", size));
   const auto& id = archive.get<std::int32_t>("grains/id");
   const auto& states = archive.get<double>("grains/state", kState * id.size());
@@ -122,11 +120,10 @@ StartingBed read_grains(const Archive& archive, std::int64_t size, int tires,
     NewGrain g;
     g.id = k;
     g.radius = state.one();
-    for (auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin})
-      *v = state.three();
+    for (auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin}) *v = state.three();
     if (!(g.radius >= smallest && g.radius <= largest))
-      damaged(fmt::format("'grains/state' holds a grain of radius {:g} m, expected {:g} to {:g} m", g.radius,
-                          smallest, largest));
+      damaged(fmt::format("'grains/state' holds a grain of radius {:g} m, expected {:g} to {:g} m", g.radius, smallest,
+                          largest));
     for (const auto* v : {&g.position, &g.list_position, &g.exchange_position})
       within(*v, dem::Bin::kHigh, "grains/state");
     bed.grains.push_back(g);
@@ -167,11 +164,9 @@ Archive as_solver_state(std::span<const Archive> parts, const dem::DemOptions& o
     all.pairs.insert(all.pairs.end(), bed.pairs.begin(), bed.pairs.end());
     all.walls.insert(all.walls.end(), bed.walls.begin(), bed.walls.end());
   }
-  std::sort(all.grains.begin(), all.grains.end(),
-            [](const NewGrain& a, const NewGrain& b) { return a.id < b.id; });
+  std::sort(all.grains.begin(), all.grains.end(), [](const NewGrain& a, const NewGrain& b) { return a.id < b.id; });
   for (std::int64_t k = 0; k < size; ++k)
-    if (all.size() != size || all.grains[k].id != k)
-      damaged("'grains' of all ranks are not those of the run");
+    if (all.size() != size || all.grains[k].id != k) damaged("'grains' of all ranks are not those of the run");
   dem::GrainSolver solver(dem::solver_params(options));
   begin_from(solver, all);
   Archive archive;

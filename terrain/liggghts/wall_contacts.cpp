@@ -42,12 +42,10 @@ Carried WallContacts::Listed::carried(int wall, std::size_t n) const {
 
 void WallContacts::Listed::take(std::size_t n, const Carried& c) {
   root[n] = c.root_overlap;
-  for (int axis = 0; axis < 3; ++axis)
-    tangential[axis][n] = c.tangential[axis], rolling[axis][n] = c.rolling[axis];
+  for (int axis = 0; axis < 3; ++axis) tangential[axis][n] = c.tangential[axis], rolling[axis][n] = c.rolling[axis];
 }
 
-std::optional<int> WallContacts::list(const OwnGrains& grains, std::span<const std::int32_t> order,
-                                      double room) {
+std::optional<int> WallContacts::list(const OwnGrains& grains, std::span<const std::int32_t> order, double room) {
   FURROW_ASSERT(room >= 0.0, room);
   FURROW_ASSERT(order.size() == static_cast<std::size_t>(grains.count), order.size(), grains.count);
   std::swap(walls_, before_);

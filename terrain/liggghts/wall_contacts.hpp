@@ -62,8 +62,7 @@ class WallContacts {
   /// Adds what walls do to the grains before place `last` of that order that were not asked for since begin().
   /// @pre radii of listed grains are `reference` unless step.sizes; step.dt > 0
   template <class Law, bool kRolling>
-  void add_forces(const OwnGrains& grains, int last, const Step& step, dem::ContactTotals& sums,
-                  Findings& found);
+  void add_forces(const OwnGrains& grains, int last, const Step& step, dem::ContactTotals& sums, Findings& found);
   void begin() { next_ = {}; }
 
  private:
@@ -149,8 +148,8 @@ void WallContacts::add_forces(const OwnGrains& grains, int last, const Step& ste
 
 /// The first `count` of four contacts from n on; the others are evaluated too, as grains that do not touch.
 template <class Law, bool kRolling>
-void WallContacts::evaluate_four(const Grains& grains, int wall, std::size_t n, std::size_t count,
-                                 const Step& step, dem::ContactTotals& sums, Findings& found) {
+void WallContacts::evaluate_four(const Grains& grains, int wall, std::size_t n, std::size_t count, const Step& step,
+                                 dem::ContactTotals& sums, Findings& found) {
   Listed& listed = walls_[wall];
   const int* const g = listed.grain.data() + n;
   const auto gather = [g](const double(*from)[3], int axis) {
@@ -169,9 +168,8 @@ void WallContacts::evaluate_four(const Grains& grains, int wall, std::size_t n, 
   const Vector arm = (-distance) * normal;
   motion.overlap = touches ? overlap : simd::spread(reference_);  // of the others any that can be evaluated
   motion.root_overlap = simd::root(motion.overlap);
-  motion.velocity =
-      Vector{gather(grains.velocity, 0), gather(grains.velocity, 1), gather(grains.velocity, 2)} +
-      cross(motion.roll, arm);
+  motion.velocity = Vector{gather(grains.velocity, 0), gather(grains.velocity, 1), gather(grains.velocity, 2)} +
+                    cross(motion.roll, arm);
   motion.spin = 0.5 * dot(motion.roll, normal);
   dem::ContactHistory<Four> history{listed.vector(listed.tangential, n), simd::load(&listed.root[n]), {}};
   if constexpr (kRolling) history.rolling = listed.vector(listed.rolling, n);
@@ -254,8 +252,7 @@ void WallContacts::evaluate_one(const Grains& grains, int wall, std::size_t n, c
   if (wall == dem::kFloor) sums.floor_force += force.z;
   ++sums.contacts;
   found.overlap = std::max(found.overlap, motion.overlap);
-  if (const double share = 0.5 * motion.overlap / r; share > found.share)
-    found.share = share, found.hardest = g;
+  if (const double share = 0.5 * motion.overlap / r; share > found.share) found.share = share, found.hardest = g;
 }
 
 }  // namespace furrow::terrain::liggghts

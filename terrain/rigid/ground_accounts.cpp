@@ -10,9 +10,8 @@ void add_normal_loss(const GroundLaw& law, const GroundPoint& at, double force, 
   losses.normal_damping -= (force - law.stiffness * at.depth * at.area) * velocity * dt;
 }
 
-void add_shear_losses(const GroundLaw& law, const GroundShear& before, const GroundShear& begin,
-                      const GroundShear& end, const Vec3& force, const Vec3& velocity, double dt,
-                      GroundLosses& losses) {
+void add_shear_losses(const GroundLaw& law, const GroundShear& before, const GroundShear& begin, const GroundShear& end,
+                      const Vec3& force, const Vec3& velocity, double dt, GroundLosses& losses) {
   FURROW_ASSERT(dt > 0.0, dt);
   losses.opening += before.energy(law) - begin.energy(law);
   if (force.isZero(0.0)) {  // nothing bears: the layer is let go

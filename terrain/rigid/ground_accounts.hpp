@@ -42,8 +42,7 @@ void add_normal_loss(const GroundLaw& law, const GroundPoint& at, double force, 
 
 /// One vertex on which `force` acts for dt while it moves with `velocity`. @param before as the substep before left it
 /// @param begin with the area of this substep @param end after it
-void add_shear_losses(const GroundLaw& law, const GroundShear& before, const GroundShear& begin,
-                      const GroundShear& end, const Vec3& force, const Vec3& velocity, double dt,
-                      GroundLosses& losses);
+void add_shear_losses(const GroundLaw& law, const GroundShear& before, const GroundShear& begin, const GroundShear& end,
+                      const Vec3& force, const Vec3& velocity, double dt, GroundLosses& losses);
 
 }  // namespace furrow::terrain

@@ -25,8 +25,7 @@ double sliding_speed(double drive, double g, double limit, double c) {
 
 }  // namespace
 
-Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear,
-           double* grip) {
+Vec3 slide(const GroundLaw& law, double load, double area, const Vec3& velocity, double dt, Vec3& shear, double* grip) {
   FURROW_ASSERT(load >= 0.0 && area >= 0.0, load, area);
   FURROW_ASSERT(dt > 0.0, dt);
   if (grip) *grip = 0.0;

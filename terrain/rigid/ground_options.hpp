@@ -14,15 +14,15 @@ struct GroundOptions : TerrainContext {
   std::string scenario = "scenario";     // what messages name: the scenario's file
   double friction = 0.9;                 // -, at most the tire's
   double friction_velocity_scale = 5.0;  // c in F_t = μ N tanh(c |v_t|), s/m
-  double ground_stiffness = 4e8;  // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
-  double ground_shear_stiffness = 1e8;  // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
-  double ground_damping = 2.5e4;        // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
-  ProfilePoints profile;                // z at x; empty: the plane z = 0
-  std::string profile_file;             // CSV or OpenCRG, in place of `profile`
-  double profile_v = 0.0;               // of the cut of an OpenCRG file, m
-  std::string road_class;               // of ISO 8608, A to H, in place of `profile`
-  double road_from = 5.0;               // x where it begins, m
-  double road_length = 100.0;           // m
+  double ground_stiffness = 4e8;         // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
+  double ground_shear_stiffness = 1e8;   // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
+  double ground_damping = 2.5e4;         // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
+  ProfilePoints profile;                 // z at x; empty: the plane z = 0
+  std::string profile_file;              // CSV or OpenCRG, in place of `profile`
+  double profile_v = 0.0;                // of the cut of an OpenCRG file, m
+  std::string road_class;                // of ISO 8608, A to H, in place of `profile`
+  double road_from = 5.0;                // x where it begins, m
+  double road_length = 100.0;            // m
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {

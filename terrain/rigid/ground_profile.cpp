@@ -12,10 +12,8 @@ namespace furrow::terrain {
 namespace {
 
 // Gauss and Legendre's rule of four points on (0, 1).
-constexpr std::array<double, 4> kAt{0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
-                                    0.9305681557970263};
-constexpr std::array<double, 4> kWeight{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
-                                        0.1739274225687269};
+constexpr std::array<double, 4> kAt{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+constexpr std::array<double, 4> kWeight{0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
 
 bool before(const std::array<double, 2>& point, double x) { return point[0] < x; }
 
@@ -36,13 +34,14 @@ void check_profile(const ProfilePoints& points, const std::string& file, const s
     const auto &a = points[k - 1], &b = points[k];
     const std::string here = fmt::format("{}.{}", key, k);
     switch (fault_of(points, k)) {
-      case ProfileFault::none: break;
+      case ProfileFault::none:
+        break;
       case ProfileFault::goes_back:
         throw input_error(file, here + ".0",
                           fmt::format("is {:g} m, expected {:g} m, as in the entry before, or more", b[0], a[0]));
       case ProfileFault::repeated:
-        throw input_error(file, here, fmt::format("is [{:g}, {:g}] m as the entry before, expected another point",
-                                                  b[0], b[1]));
+        throw input_error(file, here,
+                          fmt::format("is [{:g}, {:g}] m as the entry before, expected another point", b[0], b[1]));
       case ProfileFault::third_at_one_x:
         throw input_error(file, here + ".0",
                           fmt::format("is {:g} m a third time, expected two entries at most: the foot and the top "

@@ -32,7 +32,7 @@ class GroundSpec final : public TerrainSpec, public AllowsStatedContacts {
     e.text = !options_.road_class.empty() ? fmt::format("rigid road of class {} (ISO 8608), {:g} m long",
                                                         options_.road_class, options_.road_length)
              : options_.profile.empty()   ? "rigid plane z = 0"
-                                        : fmt::format("rigid profile of {} points", options_.profile.size());
+                                          : fmt::format("rigid profile of {} points", options_.profile.size());
     e.stable_reason = "no grains";
     return e;
   }
@@ -40,8 +40,7 @@ class GroundSpec final : public TerrainSpec, public AllowsStatedContacts {
     GroundOptions options = options_;
     static_cast<TerrainContext&>(options) = context;
     if (!options.road_class.empty())
-      options.profile =
-          iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
+      options.profile = iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
     return make_rigid_ground(options);
   }
   Refusal refuses_stated_contacts() const override {
@@ -81,8 +80,7 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
   check_heights(options, context);
   check_profile(options.profile, context.file, context.key("profile"));
   if (!options.profile_file.empty()) {
-    options.profile_file =
-        find_file(options.profile_file, context.key("profile_file"), context.file).string();
+    options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
     options.profile = read_road(options.profile_file, options.profile_v);
   }
   return make_ground_spec(options);

@@ -40,17 +40,15 @@ struct GroundSurface {
   std::vector<double> area_before;  // in the one before, m²
   std::vector<Vec3> push;           // of each vertex on a profile: its normal force in the running substep, N
   std::vector<SurfaceContactForce> contacts;
-  std::vector<std::pair<int, int>>
-      corner;  // of each vertex: one of its triangles, and which corner it is there
-  StatedContact stated;  // by the tire, of the running interval
+  std::vector<std::pair<int, int>> corner;  // of each vertex: one of its triangles, and which corner it is there
+  StatedContact stated;                     // by the tire, of the running interval
   NodalForceSum sum;
   std::int64_t contact_count = 0;
   double pressed = 0.0, sheared = 0.0;  // elastic energy of the layer, J
   double floor_force = 0.0;             // N
 };
 
-Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values,
-              const std::array<int, 3>& at) {
+Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& values, const std::array<int, 3>& at) {
   return weight[0] * values[at[0]] + weight[1] * values[at[1]] + weight[2] * values[at[2]];
 }
 
@@ -79,16 +77,14 @@ class RigidGround final : public Terrain, public TakesStatedContacts {
   }
 
   double prepare(const ProgressCall&) override { return 0.0; }
-  double top_height(double from, double to, double, double) const override {
-    return profile_.highest(from, to);
-  }
+  double top_height(double from, double to, double, double) const override { return profile_.highest(from, to); }
   double mean_height(double from, double to, double, double) const override { return profile_.mean(from, to); }
   double floor_height() const override { return 0.0; }
   HeightField height_field() const override;
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
   void state_contacts(std::span<const StatedContact> contacts) override;
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                  std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> contact) override;
   TerrainState state() const override;
   std::int64_t size() const override { return 0; }
   void frame(TerrainFrame& out) const override { out = TerrainFrame{}; }
@@ -135,8 +131,7 @@ HeightField RigidGround::height_field() const {
   return field;
 }
 
-void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material,
-                              std::vector<Vec3> last) {
+void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last) {
   FURROW_ASSERT(last.size() == static_cast<std::size_t>(mesh.vertex_count), last.size(), mesh.vertex_count);
   GroundSurface surface{.mesh = mesh,
                         .material = material,
@@ -160,12 +155,10 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
   measure(surfaces_.back());
 }
 
-void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
-                         const SurfaceState& start) {
+void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
   check_surface(mesh, start, static_cast<int>(surfaces_.size()));
   double deepest = 0.0;
-  for (const Vec3& x : start.position)
-    deepest = std::max(deepest, plane_ ? -x.z() : profile_.depth(x.x(), x.z()));
+  for (const Vec3& x : start.position) deepest = std::max(deepest, plane_ ? -x.z() : profile_.depth(x.x(), x.z()));
   if (deepest > kMaxStartDepth)
     throw input_error("surface " + std::to_string(surfaces_.size()), "",
                       "starts " + std::to_string(deepest) + " m below the ground, expected at most " +
@@ -234,8 +227,7 @@ void RigidGround::press_profile(GroundSurface& surface, const GroundLaw& law, do
       contact.weight = at.weight;
       contact.point = weighted(at.weight, x, v);
       contact.normal = -pressure * at.area * normal;
-      contact.tangent = {normal / length, law.stiffness * at.area * length, 0.0,
-                         law.damping * at.area * length, 0.0};
+      contact.tangent = {normal / length, law.stiffness * at.area * length, 0.0, law.damping * at.area * length, 0.0};
       surface.contacts.push_back(contact);
       for (int k = 0; k < 3; ++k) {
         surface.push[v[k]] += at.weight[k] * contact.normal;
@@ -265,8 +257,7 @@ void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
       along = Vec3(normal.z(), 0.0, -normal.x());
       velocity = Vec3(along.dot(velocity), velocity.y(), 0.0);
     }
-    Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], velocity, dt, surface.shear[vertex],
-                       &grip);
+    Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], velocity, dt, surface.shear[vertex], &grip);
     if (before > 0.0 || now > 0.0)
       add_shear_losses(law, left, begin, {surface.shear[vertex], now}, force, velocity, dt, losses_);
     if (!plane_) force = force.x() * along + Vec3(0.0, force.y(), 0.0);
@@ -318,8 +309,7 @@ void RigidGround::measure(GroundSurface& surface) const {
   surface.pressed = surface.sheared = 0.0;
   if (surface.stated.given) return;
   for (std::size_t v = 0; v < surface.shear.size(); ++v)
-    surface.sheared +=
-        0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
+    surface.sheared += 0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
   if (!plane_) {
     surface.pressed = measure_profile(surface);
     return;
@@ -381,8 +371,7 @@ Outcome RigidGround::advance(std::span<const SurfaceState> targets, double durat
         give_stated(surface, dt);
       else
         press(surface, dt);
-      surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity},
-                              dt);
+      surface.sum.add_substep(surface.contacts, {surface.mesh.triangles, surface.position, surface.velocity}, dt);
     }
     surface_impulse_ -= surface.sum.impulse();
     surface.sum.finish(duration, forces[k], contact[k]);

@@ -55,8 +55,7 @@ void PatchFinder::join_runs() {
   std::size_t before = 0;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const Run& run = runs_[r];
-    while (runs_[before].row < run.row - 1 ||
-           (runs_[before].row == run.row - 1 && runs_[before].end < run.begin))
+    while (runs_[before].row < run.row - 1 || (runs_[before].row == run.row - 1 && runs_[before].end < run.begin))
       ++before;
     for (std::size_t b = before; runs_[b].row == run.row - 1 && runs_[b].begin <= run.end; ++b) {
       const int one = root_of(static_cast<int>(b)), other = root_of(static_cast<int>(r));

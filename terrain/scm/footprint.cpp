@@ -33,8 +33,8 @@ Grid Grid::over(double length, double width, double spacing) {
 int Grid::first_x(double at) const { return first_at(at, spacing, nx); }
 int Grid::first_y(double at) const { return first_at(at + 0.5 * ny * spacing, spacing, ny); }
 
-void FootprintFinder::find(std::span<const std::array<int, 3>> triangles, std::span<const Vec3> position,
-                           double height, std::vector<NodeHit>& hits) {
+void FootprintFinder::find(std::span<const std::array<int, 3>> triangles, std::span<const Vec3> position, double height,
+                           std::vector<NodeHit>& hits) {
   found_.clear();
   low_ = {grid_.nx, grid_.ny}, high_ = {-1, -1};
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
@@ -62,8 +62,7 @@ void FootprintFinder::cover(int triangle, const std::array<Vec3, 3>& corner, dou
   for (int i = grid_.first_x(x_low - slack); i < i_end; ++i)
     for (int j = j_begin; j < j_end; ++j) {
       const double dx = grid_.x(i) - corner[0].x(), dy = grid_.y(j) - corner[0].y();
-      const double v = (dx * ac.y() - dy * ac.x()) / outward.z(),
-                   w = (ab.x() * dy - ab.y() * dx) / outward.z();
+      const double v = (dx * ac.y() - dy * ac.x()) / outward.z(), w = (ab.x() * dy - ab.y() * dx) / outward.z();
       if (!(v >= kEdge && w >= kEdge && v + w <= 1.0 - kEdge)) continue;
       const double z = corner[0].z() + v * ab.z() + w * ac.z();
       if (!(z < height)) continue;

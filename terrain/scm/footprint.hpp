@@ -33,7 +33,7 @@ struct NodeHit {
   int triangle = -1;
   std::array<double, 3> weight{};  // barycentric, of the point above the node
   double sinkage = 0.0;            // of the point below the undisturbed surface, m
-  Vec3 push = Vec3::Zero();  // n/|n_z|, n the normal into the surface: force per pressure and area of a cell
+  Vec3 push = Vec3::Zero();        // n/|n_z|, n the normal into the surface: force per pressure and area of a cell
 };
 
 /// Faces steeper than this do not press: the pressure of soil beside a surface is not modelled. |n_z| = cos 80°.

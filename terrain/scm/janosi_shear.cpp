@@ -12,9 +12,7 @@ double ShearLaw::limit(double pressure) const {
   return std::min(cohesion + pressure * tan_phi, friction * pressure);
 }
 
-double ShearLaw::stored(double limit, const Vec3& mobilized) const {
-  return 0.5 * K * limit * mobilized.squaredNorm();
-}
+double ShearLaw::stored(double limit, const Vec3& mobilized) const { return 0.5 * K * limit * mobilized.squaredNorm(); }
 
 ShearStep shear(const ShearLaw& law, const Vec3& velocity, double dt, Vec3& mobilized) {
   FURROW_ASSERT(dt > 0.0 && law.K > 0.0, dt, law.K);

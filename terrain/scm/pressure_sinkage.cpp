@@ -17,8 +17,7 @@ double PressureLaw::modulus(double b) const {
   return std::max(k_c / b + k_phi, kLeastModulus * k_phi);
 }
 
-PressureStep press(const PressureLaw& law, double modulus, double before, double now, double rate,
-                   SoilNode& node) {
+PressureStep press(const PressureLaw& law, double modulus, double before, double now, double rate, SoilNode& node) {
   FURROW_ASSERT(modulus > 0.0, modulus);
   PressureStep step;
   const SoilNode old = node;

@@ -54,7 +54,6 @@ struct PressureStep {
 /// Moves the node's surface from sinkage `before` to `now` (m, positive down), with ż = `rate` (m/s) at the end.
 /// @param modulus k_c/b + k_φ now. A sinkage above the node's surface presses nothing.
 /// @pre modulus > 0
-PressureStep press(const PressureLaw& law, double modulus, double before, double now, double rate,
-                   SoilNode& node);
+PressureStep press(const PressureLaw& law, double modulus, double before, double now, double rate, SoilNode& node);
 
 }  // namespace furrow::terrain::scm

@@ -38,8 +38,7 @@ void SoilField::find_moduli() {
   }
   patches_.find(cells_);
   of_patch_.clear();
-  for (int p = 0; p < patches_.count(); ++p)
-    of_patch_.push_back(law_.modulus(patches_.width(p, grid_.spacing)));
+  for (int p = 0; p < patches_.count(); ++p) of_patch_.push_back(law_.modulus(patches_.width(p, grid_.spacing)));
   for (std::size_t k = 0; k < modulus_.size(); ++k) modulus_[k] = of_patch_[patches_.patch()[k]];
 }
 
@@ -66,8 +65,8 @@ double SoilField::spring(const ContactNode& at) const {
   return 0.5 * node.stiffness * depth * depth * grid_.spacing * grid_.spacing;
 }
 
-ContactNode SoilField::bear(const NodeHit& hit, double modulus, const Vec3& velocity, const ShearLaw& shear,
-                            double dt, SurfaceContactForce& contact, SoilLosses& losses) {
+ContactNode SoilField::bear(const NodeHit& hit, double modulus, const Vec3& velocity, const ShearLaw& shear, double dt,
+                            SurfaceContactForce& contact, SoilLosses& losses) {
   SoilNode& node = node_[hit.node];
   const bool bore = mark_[hit.node] >= 0;
   const double before = bore ? before_[mark_[hit.node]].sinkage : node.plastic;
@@ -114,9 +113,8 @@ void SoilField::release(const ShearLaw& shear, SoilLosses& losses) {
   }
 }
 
-void SoilField::step(const SurfaceNow& now, const ShearLaw& shear, double dt,
-                     std::vector<ContactNode>& bearing, std::vector<SurfaceContactForce>& contacts,
-                     SoilLosses& losses) {
+void SoilField::step(const SurfaceNow& now, const ShearLaw& shear, double dt, std::vector<ContactNode>& bearing,
+                     std::vector<SurfaceContactForce>& contacts, SoilLosses& losses) {
   FURROW_ASSERT(dt > 0.0, dt);
   finder_.find(now.triangles, now.position, kCover * grid_.spacing, hits_);
   before_.swap(bearing);

@@ -20,8 +20,7 @@ namespace {
 // How deep a surface may be in the ground when it is attached, m: static contact, not a misplaced tire.
 constexpr double kMaxStartDepth = 5e-3;
 constexpr double kMostNodes = 1e8;
-constexpr double kLeastAcross =
-    4.0;  // nodes under the width of a surface: fewer give a fifth of error and more
+constexpr double kLeastAcross = 4.0;  // nodes under the width of a surface: fewer give a fifth of error and more
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 /// One attached surface and the buffers of its substeps.
@@ -58,8 +57,8 @@ class ScmGround final : public Terrain {
   double floor_height() const override { return -std::numeric_limits<double>::infinity(); }
   HeightField height_field() const override;
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                  std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> contact) override;
   TerrainState state() const override;
   std::int64_t size() const override { return 0; }
   void frame(TerrainFrame& out) const override;
@@ -77,8 +76,7 @@ class ScmGround final : public Terrain {
   template <class Use>
   void each_node(double x_min, double x_max, double y_min, double y_max, Use&& use) const;
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
-  Outcome set_motion(GroundSurface& surface, const SurfaceState& target, double duration,
-                     std::size_t k) const;
+  Outcome set_motion(GroundSurface& surface, const SurfaceState& target, double duration, std::size_t k) const;
 
   ScmOptions options_;
   SoilField soil_;
@@ -135,8 +133,7 @@ void ScmGround::frame(TerrainFrame& out) const {
   out.radius.assign(grid.count(), static_cast<float>(0.5 * grid.spacing));
 }
 
-void ScmGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material,
-                            std::vector<Vec3> last) {
+void ScmGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last) {
   FURROW_ASSERT(last.size() == static_cast<std::size_t>(mesh.vertex_count), last.size(), mesh.vertex_count);
   const ShearLaw shear{.cohesion = options_.mohr_cohesion,
                        .tan_phi = std::tan(kDegree * options_.mohr_friction_angle),
@@ -159,9 +156,8 @@ void ScmGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
   double lowest = 0.0;
   for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
   if (lowest < -kMaxStartDepth)
-    throw input_error(
-        fmt::format("surface {}", surfaces_.size()), "",
-        fmt::format("starts {:g} m below the ground, expected at most {:g} m", -lowest, kMaxStartDepth));
+    throw input_error(fmt::format("surface {}", surfaces_.size()), "",
+                      fmt::format("starts {:g} m below the ground, expected at most {:g} m", -lowest, kMaxStartDepth));
   add_surface(mesh, material, start.position);
 }
 
@@ -176,11 +172,10 @@ Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target
     if (!end.allFinite())
       return Outcome::failure("was given a surface that is not finite",
                               fmt::format("vertex {} of surface {}; try a smaller run.step", v, k));
-    if (end.z() < 0.0 &&
-        (end.x() < 0.0 || end.x() > options_.length || std::abs(end.y()) > 0.5 * options_.width))
-      return Outcome::failure("was left by a tire",
-                              fmt::format("surface {} stands beside it, x = ({:.6g}, {:.6g}, {:.6g}) m", k,
-                                          end.x(), end.y(), end.z()));
+    if (end.z() < 0.0 && (end.x() < 0.0 || end.x() > options_.length || std::abs(end.y()) > 0.5 * options_.width))
+      return Outcome::failure(
+          "was left by a tire",
+          fmt::format("surface {} stands beside it, x = ({:.6g}, {:.6g}, {:.6g}) m", k, end.x(), end.y(), end.z()));
     surface.velocity[v] = (end - surface.last[v]) / duration;
     surface.end[v] = end;
   }
@@ -335,14 +330,13 @@ void check_scm_options(const ScmOptions& o) {
   if (o.patch_width >= 0.0) {
     positive("patch_width", o.patch_width);
     const double modulus = o.bekker_k_c / o.patch_width + o.bekker_k_phi;
-    require(o, "bekker_k_c", o.bekker_k_c, modulus > 0.0,
-            "k_c/b + k_phi above 0 with b = terrain.patch_width");
+    require(o, "bekker_k_c", o.bekker_k_c, modulus > 0.0, "k_c/b + k_phi above 0 with b = terrain.patch_width");
   }
   const double nodes = std::ceil(o.length / o.grid_spacing) * std::ceil(o.width / o.grid_spacing);
   if (!(nodes <= kMostNodes))
     throw input_error(o.scenario, "terrain.grid_spacing",
-                      fmt::format("is {:g}: {:g} m x {:g} m have {:.3g} nodes, expected at most {:g}",
-                                  o.grid_spacing, o.length, o.width, nodes, kMostNodes));
+                      fmt::format("is {:g}: {:g} m x {:g} m have {:.3g} nodes, expected at most {:g}", o.grid_spacing,
+                                  o.length, o.width, nodes, kMostNodes));
 }
 
 std::int64_t scm_nodes(const ScmOptions& options) {

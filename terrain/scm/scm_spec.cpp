@@ -56,8 +56,6 @@ std::unique_ptr<TerrainSpec> read_scm_spec(const nlohmann::json& section, const 
   return make_scm_spec(options);
 }
 
-std::unique_ptr<TerrainSpec> make_scm_spec(const ScmOptions& options) {
-  return std::make_unique<ScmSpec>(options);
-}
+std::unique_ptr<TerrainSpec> make_scm_spec(const ScmOptions& options) { return std::make_unique<ScmSpec>(options); }
 
 }  // namespace furrow::terrain::scm

@@ -52,8 +52,8 @@ Integrals integrate(const SoilStrength& s, const RigidWheel& w, double slip, dou
 WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, double slip) {
   FURROW_ASSERT(soil.n > 0.0 && soil.K > 0.0, soil.n, soil.K);
   FURROW_ASSERT(wheel.radius > 0.0 && wheel.load > 0.0, wheel.radius, wheel.load);
-  FURROW_ASSERT(std::isfinite(slip) && std::isfinite(soil.cohesion) && std::isfinite(soil.phi), slip,
-                soil.cohesion, soil.phi);
+  FURROW_ASSERT(std::isfinite(slip) && std::isfinite(soil.cohesion) && std::isfinite(soil.phi), slip, soil.cohesion,
+                soil.phi);
   WheelEstimate e;
   double low = 0.0, high = kMaxEntry;
   if (!(integrate(soil, wheel, slip, high).lift >= wheel.load)) return e;  // nor one whose numbers overflow

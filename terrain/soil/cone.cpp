@@ -10,8 +10,7 @@
 namespace furrow::terrain::soil {
 
 ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work) {
-  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.diameter > 0.0, test.samples, test.speed,
-                test.diameter);
+  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.diameter > 0.0, test.samples, test.speed, test.diameter);
   const double r = specimen.options().radius, diameter = test.diameter * r;
   const double middle = 0.5 * specimen.length(), reach = 0.5 * diameter;
   double share = 0.0;
@@ -19,8 +18,7 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
   const double top = terrain->top_height(middle - reach, middle + reach, -reach, reach);
   const double cone = cone_height(diameter, kConeAngle), surface = specimen.height();
   const double path = top - surface + cone + test.depth * r;
-  Tool tool =
-      cone_on_shaft(Vec3(middle, 0.0, top), diameter, kConeAngle, kConeShaft, test.depth * r + 4.0 * r);
+  Tool tool = cone_on_shaft(Vec3(middle, 0.0, top), diameter, kConeAngle, kConeShaft, test.depth * r + 4.0 * r);
   terrain->attach(tool.mesh(), smooth_material(specimen.options()), tool.state());
   tool.set_velocity(Vec3(0.0, 0.0, -test.speed));
 

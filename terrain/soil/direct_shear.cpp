@@ -88,8 +88,8 @@ class ShearCell {
  private:
   Tool lower(const Specimen& s, const ShearTest& test, double r) {
     const double room = 3.0 * r;
-    Tool sheet = toothed_sheet(-room, s.length() + room, 0.5 * s.width() + room, 0.0, test.pitch * r,
-                               test.tooth * r, 1);
+    Tool sheet =
+        toothed_sheet(-room, s.length() + room, 0.5 * s.width() + room, 0.0, test.pitch * r, test.tooth * r, 1);
     std::vector<Vec3> flat = sheet.state().position;
     for (Vec3& x : flat) teeth_.push_back(x.z()), x.z() = 0.0;
     return {sheet.mesh(), std::move(flat)};
@@ -98,8 +98,8 @@ class ShearCell {
   Tool upper(const Specimen& s, const ShearTest& test, double r) {
     const double room = 3.0 * r;
     height_ = s.top() + (kLift + kClear + 2.0 * test.tooth) * r;
-    return toothed_sheet(-room - (test.travel + test.pitch) * r, s.length() + room, 0.5 * s.width() + room,
-                         height_, test.pitch * r, test.tooth * r, -1);
+    return toothed_sheet(-room - (test.travel + test.pitch) * r, s.length() + room, 0.5 * s.width() + room, height_,
+                         test.pitch * r, test.tooth * r, -1);
   }
 
   const Specimen& specimen_;
@@ -122,8 +122,7 @@ struct Sample {
 }  // namespace
 
 ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const WorkCall& work) {
-  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.travel > 0.0, test.samples, test.speed,
-                test.travel);
+  FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.travel > 0.0, test.samples, test.speed, test.travel);
   constexpr double kPreparation = 0.35;  // of the work
   const double r = specimen.options().radius, dt = specimen.step(), travel = test.travel * r;
   double share = 0.0;

@@ -44,13 +44,12 @@ Measured mean_of(std::span<const double> samples) {
 
 BekkerFit fit_bekker(std::span<const PlateCurve> plates) {
   FURROW_ASSERT(plates.size() >= 2, plates.size());
-  FURROW_ASSERT(std::any_of(plates.begin(), plates.end(),
-                            [&](const PlateCurve& c) { return c.width != plates[0].width; }),
-                plates[0].width);
+  FURROW_ASSERT(
+      std::any_of(plates.begin(), plates.end(), [&](const PlateCurve& c) { return c.width != plates[0].width; }),
+      plates[0].width);
   FURROW_ASSERT(std::all_of(plates.begin(), plates.end(),
                             [](const PlateCurve& c) {
-                              return c.width > 0.0 && c.sinkage.size() == c.pressure.size() &&
-                                     c.sinkage.size() >= 2;
+                              return c.width > 0.0 && c.sinkage.size() == c.pressure.size() && c.sinkage.size() >= 2;
                             }),
                 plates.size());
   // Normal equations of Σ_i Σ p² (ln p − ln k_i − n ln z)²: with the weighted means x̄_i of ln z and ȳ_i of ln p of
@@ -58,9 +57,7 @@ BekkerFit fit_bekker(std::span<const PlateCurve> plates) {
   struct Sums {
     double w = 0.0, x = 0.0, y = 0.0;
   };
-  const auto usable = [](const PlateCurve& c, std::size_t k) {
-    return c.sinkage[k] > 0.0 && c.pressure[k] > 0.0;
-  };
+  const auto usable = [](const PlateCurve& c, std::size_t k) { return c.sinkage[k] > 0.0 && c.pressure[k] > 0.0; };
   std::vector<Sums> sums(plates.size());
   double xx = 0.0, xy = 0.0;
   for (std::size_t i = 0; i < plates.size(); ++i) {
@@ -114,8 +111,7 @@ JanosiFit fit_janosi(std::span<const double> travel, std::span<const double> str
       tg += stress[k] * g, gg += g * g;
     }
     const double tau = gg > 0.0 ? tg / gg : 0.0;
-    for (std::size_t k = 0; k < travel.size(); ++k)
-      off += square(stress[k] + tau * std::expm1(-travel[k] / K));
+    for (std::size_t k = 0; k < travel.size(); ++k) off += square(stress[k] + tau * std::expm1(-travel[k] / K));
     return std::pair(off, tau);
   };
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
@@ -170,8 +166,7 @@ Measured fit_friction(std::span<const double> normal, std::span<const double> sh
 
 CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> shear) {
   FURROW_ASSERT(normal.size() == shear.size() && normal.size() >= 2, normal.size(), shear.size());
-  FURROW_ASSERT(std::adjacent_find(normal.begin(), normal.end(), std::not_equal_to<>()) != normal.end(),
-                normal.size());
+  FURROW_ASSERT(std::adjacent_find(normal.begin(), normal.end(), std::not_equal_to<>()) != normal.end(), normal.size());
   const Line line = fit_line(normal, shear);
   const auto count = static_cast<double>(normal.size());
   const double mx = mean(normal), my = mean(shear);

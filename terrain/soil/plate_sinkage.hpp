@@ -17,9 +17,8 @@ struct PlateTest {
 };
 
 struct PlateResult {
-  PlateCurve curve;  // means over each sample's interval
-  double balance_error =
-      0.0;  // |floor force − weight − plate force| / plate force, mean over the second half
+  PlateCurve curve;            // means over each sample's interval
+  double balance_error = 0.0;  // |floor force − weight − plate force| / plate force, mean over the second half
 };
 
 /// @throws Error(physics) when the grains fail

@@ -50,8 +50,7 @@ double flank_angle(const std::vector<double>& x, const std::vector<double>& heig
     if (height[k] >= high) first = k;
   std::size_t last = first;  // the first one after it that is low
   while (last + 1 < x.size() && height[last] > low) ++last;
-  if (last - first < 5)
-    return last > first ? std::atan((height[first] - height[last]) / (x[last] - x[first])) : 0.0;
+  if (last - first < 5) return last > first ? std::atan((height[first] - height[last]) / (x[last] - x[first])) : 0.0;
   const auto part = [&](const std::vector<double>& v) {
     return std::span<const double>(v).subspan(first + 1, last - first - 1);
   };

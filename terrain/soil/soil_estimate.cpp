@@ -103,8 +103,7 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
   wheel.load = number(of_run, "vertical_load_N", true);
   const double slip = number(of_run, "slip");
 
-  const std::filesystem::path file =
-      std::filesystem::is_directory(soil_file) ? soil_file / "soil.json" : soil_file;
+  const std::filesystem::path file = std::filesystem::is_directory(soil_file) ? soil_file / "soil.json" : soil_file;
   const json soil = load_json(file, "the soil.json that 'furrow soil' writes");
   JsonReader of_soil(soil, file.string());
   of_soil.check_version(kFormatVersion);
@@ -139,17 +138,14 @@ std::string write_soil_estimate(const std::filesystem::path& run, const std::fil
     text = fmt::format("soil theory (rigid wheel): drawbar pull {} N, sinkage {} mm",
                        std::isfinite(error) ? with_error(e.pull, error) : digits(e.pull), digits(1e3 * e.sinkage));
     if (quick) text += "; from a quick look at the soil, no result to quote";
-    const json sinkage = summary.value("sinkage_m", json()),
-               clearance = summary.value("bed_clearance_m", json());
+    const json sinkage = summary.value("sinkage_m", json()), clearance = summary.value("bed_clearance_m", json());
     if (sinkage.is_number() && clearance.is_number())
       if (const double depth = sinkage.get<double>() + clearance.get<double>(); e.sinkage > depth)
-        text +=
-            fmt::format("; deeper than the bed of {:.0f} mm, which the theory does not model", 1e3 * depth);
+        text += fmt::format("; deeper than the bed of {:.0f} mm, which the theory does not model", 1e3 * depth);
   }
   for (int k = 0; k <= 16; ++k) {
     const WheelEstimate at = soil::rigid_wheel(s, wheel, 0.05 * k);
-    if (at.found)
-      j["curve"].push_back({{"slip", 0.05 * k}, {"drawbar_pull_N", at.pull}, {"sinkage_m", at.sinkage}});
+    if (at.found) j["curve"].push_back({{"slip", 0.05 * k}, {"drawbar_pull_N", at.pull}, {"sinkage_m", at.sinkage}});
   }
   write_whole_file(run / "soil_estimate.json", j.dump(2) + "\n");
   return text;

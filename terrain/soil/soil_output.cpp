@@ -19,7 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-constexpr double kLeastFreedom = 2.0;  // of an interval: with one, it is wider than what is known without
+constexpr double kLeastFreedom = 2.0;            // of an interval: with one, it is wider than what is known without
 constexpr double kWidestAngle = 10.0 * kDegree;  // half an interval of an angle that says something, rad
 constexpr char kQuickWarning[] =
     "a quick look: one bed in small boxes, with a bias that is larger than its scatter; not to be quoted";
@@ -28,8 +28,7 @@ constexpr char kQuickWarning[] =
 std::string no_error_because(const Measured& m, bool quick) {
   if (m.samples == 0) return "not tested";
   if (quick) return kQuickWarning;
-  return std::isfinite(m.standard_error) ? ""
-                                         : "one bed alone: nothing to compare it with; take more --seeds";
+  return std::isfinite(m.standard_error) ? "" : "one bed alone: nothing to compare it with; take more --seeds";
 }
 std::string no_interval_because(const Measured& m, bool quick, bool angle) {
   if (const std::string why = no_error_because(m, quick); !why.empty()) return why;
@@ -156,12 +155,11 @@ json cone_json(const SoilRun& run) {
 
 json repose_json(const SoilRun& run) {
   const double r = run.options.material.radius;
-  json j = {
-      {"what", "half of a settled bed taken away at once; slope of the flank that remains, on a rough base"},
-      {"box", box_json(run.results.repose.front().specimen, run.plan.repose_box)},
-      {"beds_settled", all_settled(run.results.repose) && all_settled(run.results.dry)},
-      {"cut_m", run.plan.repose.cut * r},
-      {"base_m", run.plan.repose.base * r}};
+  json j = {{"what", "half of a settled bed taken away at once; slope of the flank that remains, on a rough base"},
+            {"box", box_json(run.results.repose.front().specimen, run.plan.repose_box)},
+            {"beds_settled", all_settled(run.results.repose) && all_settled(run.results.dry)},
+            {"cut_m", run.plan.repose.cut * r},
+            {"base_m", run.plan.repose.base * r}};
   const auto list = [&](const auto& tests, bool dry) {
     for (const auto& t : tests)
       j["tests"].push_back({{"seed", t.specimen.seed},
@@ -254,8 +252,8 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
     fmt::format_to(std::back_inserter(text), "seed,width_m,sinkage_m,pressure_Pa\n");
     for (const auto& t : run.results.plate)
       for (std::size_t k = 0; k < t.result.curve.sinkage.size(); ++k)
-        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed,
-                       t.result.curve.width, t.result.curve.sinkage[k], t.result.curve.pressure[k]);
+        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed, t.result.curve.width,
+                       t.result.curve.sinkage[k], t.result.curve.pressure[k]);
     write("plate.csv", text);
   }
   if (run.options.shear) {
@@ -284,8 +282,8 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
     const auto rows = [&](const auto& tests, double cohesion) {
       for (const auto& t : tests)
         for (std::size_t k = 0; k < t.result.x.size(); ++k)
-          fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed,
-                         cohesion, t.result.x[k], t.result.before[k], t.result.after[k]);
+          fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed, cohesion,
+                         t.result.x[k], t.result.before[k], t.result.after[k]);
     };
     rows(run.results.repose, run.options.material.cohesion);
     rows(run.results.dry, 0.0);
@@ -306,19 +304,18 @@ std::string soil_text(const json& soil) {
     return quick ? fmt::format("about {:.2g}", in(soil)) : fmt::format("{:.4g} (no error)", in(soil));
   };
   if (soil["k_phi"].is_number())
-    text += fmt::format("furrow: plate sinkage: n {}, k_c {} kN/m^(n+1), k_φ {} kN/m^(n+2)\n",
-                        value("n", 1.0), value("k_c", 1e-3), value("k_phi", 1e-3));
+    text += fmt::format("furrow: plate sinkage: n {}, k_c {} kN/m^(n+1), k_φ {} kN/m^(n+2)\n", value("n", 1.0),
+                        value("k_c", 1e-3), value("k_phi", 1e-3));
   if (soil["cohesion_Pa"].is_number())
     text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm; with c = 0: φ {}°\n",
-                        value("cohesion_Pa", 1e-3), value("friction_angle_deg", 1.0),
-                        value("janosi_K_m", 1e3), value("friction_angle_without_cohesion_deg", 1.0));
+                        value("cohesion_Pa", 1e-3), value("friction_angle_deg", 1.0), value("janosi_K_m", 1e3),
+                        value("friction_angle_without_cohesion_deg", 1.0));
   if (soil["cone_index_Pa"].is_number())
     text += fmt::format("furrow: cone index {} kPa\n", value("cone_index_Pa", 1e-3));
   if (soil["repose_angle_deg"].is_number()) {
     bool slumped = true;
     for (const json& test : soil["repose"]["tests"])
-      if (test["cohesion_Pa"] == soil["grains"]["cohesion_Pa"])
-        slumped = slumped && test["slumped"].get<bool>();
+      if (test["cohesion_Pa"] == soil["grains"]["cohesion_Pa"]) slumped = slumped && test["slumped"].get<bool>();
     text += fmt::format("furrow: angle of repose {}°{}", value("repose_angle_deg", 1.0),
                         slumped ? "" : " (a steep cut stands)");
     if (soil["repose_angle_without_cohesion_deg"].is_number())

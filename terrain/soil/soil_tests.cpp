@@ -146,8 +146,7 @@ class Planner {
       }
     }
     // The longest first, so that no thread is left with one at the end.
-    std::stable_sort(jobs.begin(), jobs.end(),
-                     [](const Job& a, const Job& b) { return a.work() > b.work(); });
+    std::stable_sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.work() > b.work(); });
   }
 
   std::vector<Job> jobs;
@@ -172,8 +171,7 @@ class Planner {
       const auto count = static_cast<double>(plan_.plates.size());
       for (std::size_t k = 0; k < plan_.plates.size(); ++k) {
         const WorkCall mine = job.test_call(call, static_cast<double>(k) / count, (k + 1.0) / count);
-        out_.plate[s * plan_.plates.size() + k] = {facts(specimen),
-                                                   plate_sinkage(specimen, plan_.plates[k], mine)};
+        out_.plate[s * plan_.plates.size() + k] = {facts(specimen), plate_sinkage(specimen, plan_.plates[k], mine)};
       }
     };
   }
@@ -185,17 +183,16 @@ class Planner {
       const auto count = static_cast<double>(plan_.shears.size());
       for (std::size_t k = 0; k < plan_.shears.size(); ++k) {
         const WorkCall mine = job.test_call(call, static_cast<double>(k) / count, (k + 1.0) / count);
-        out_.shear[s * plan_.shears.size() + k] = {facts(specimen),
-                                                   direct_shear(specimen, plan_.shears[k], mine)};
+        out_.shear[s * plan_.shears.size() + k] = {facts(specimen), direct_shear(specimen, plan_.shears[k], mine)};
       }
     };
   }
   void add_cone(int s) {
-    add(plan_.cone_box, steps_for(1.9 * plan_.cone.diameter + plan_.cone.depth + 2.0))
-        .run = [this, s](const Job& job, const WorkCall& call) {
-      const Specimen specimen(o_.material, plan_.cone_box, seed(s), job.settle_call(call));
-      out_.cone[s] = {facts(specimen), cone_penetration(specimen, plan_.cone, job.test_call(call, 0.0, 1.0))};
-    };
+    add(plan_.cone_box, steps_for(1.9 * plan_.cone.diameter + plan_.cone.depth + 2.0)).run =
+        [this, s](const Job& job, const WorkCall& call) {
+          const Specimen specimen(o_.material, plan_.cone_box, seed(s), job.settle_call(call));
+          out_.cone[s] = {facts(specimen), cone_penetration(specimen, plan_.cone, job.test_call(call, 0.0, 1.0))};
+        };
   }
   void add_repose(int s, const dem::DemOptions& material, std::vector<Tested<ReposeResult>>& to) {
     add(plan_.repose_box, kReposeSteps).run = [this, s, material, &to](const Job& job, const WorkCall& call) {
@@ -223,8 +220,7 @@ PlateCurve from_sinkage(const PlateCurve& curve, double least) {
 
 void plate_parameters(const SoilResults& results, const SoilPlan& plan, double radius, SoilParameters& p) {
   std::vector<PlateCurve> all;
-  for (const auto& tested : results.plate)
-    all.push_back(from_sinkage(tested.result.curve, plan.plate_from * radius));
+  for (const auto& tested : results.plate) all.push_back(from_sinkage(tested.result.curve, plan.plate_from * radius));
   if (all.empty()) return;
   std::vector<double> k_c, k_phi, n;
   const std::size_t each = plan.plates.size();

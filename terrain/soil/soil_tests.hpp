@@ -15,10 +15,10 @@ namespace furrow::terrain::soil {
 
 struct SoilOptions {
   dem::DemOptions material;
-  int seeds = 3;       // beds per test: material.seed, seed + 1, …
-  double speed = 0.1;  // of plate, shear and cone, m/s
-  bool quick = false;  // small boxes, short ways: a look, no result to quote
-  int threads = 1;     // tests that run at the same time
+  int seeds = 3;                 // beds per test: material.seed, seed + 1, …
+  double speed = 0.1;            // of plate, shear and cone, m/s
+  bool quick = false;            // small boxes, short ways: a look, no result to quote
+  int threads = 1;               // tests that run at the same time
   std::vector<double> stresses;  // of the shear tests, Pa; empty: soil_plan() chooses
   bool plate = true, shear = true, cone = true, repose = true;
 };

@@ -18,8 +18,7 @@ constexpr double kLayerHeight = 1.2;  // radii of settled bed per layer dropped
 }  // namespace
 
 double test_step(const dem::DemOptions& material) {
-  return material.allow_unstable_step ? material.step
-                                      : kStepShare * estimate_dem_terrain(material).stable_step;
+  return material.allow_unstable_step ? material.step : kStepShare * estimate_dem_terrain(material).stable_step;
 }
 
 Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work)
@@ -49,8 +48,7 @@ Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_
   });
   made->save(bed_);
   const auto& x = bed_.get<double>("terrain/position");
-  for (std::size_t k = 0; k + 3 < x.size(); k += 4)
-    positions_.push_back({x[k], x[k + 1], x[k + 2], x[k + 3]});
+  for (std::size_t k = 0; k + 3 < x.size(); k += 4) positions_.push_back({x[k], x[k + 1], x[k + 2], x[k + 3]});
   grains_ = made->size();
   const double half = 0.5 * options_.width;
   height_ = made->mean_height(0.0, options_.length, -half, half);

@@ -28,8 +28,7 @@ class Tool {
   /// The interval is over.
   void moved(double duration) {
     FURROW_ASSERT(duration > 0.0, duration);
-    for (std::size_t a = 0; a < state_.position.size(); ++a)
-      state_.position[a] += duration * state_.velocity[a];
+    for (std::size_t a = 0; a < state_.position.size(); ++a) state_.position[a] += duration * state_.velocity[a];
   }
 
  private:

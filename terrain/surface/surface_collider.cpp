@@ -94,8 +94,7 @@ struct SurfaceCollider::Data {
   bool behind(const Candidate& nearest, const Vec3& centre) const;
   bool behind_vertex(int vertex, const Vec3& offset) const;
   void consider(int t, const Vec3& centre, double radius, CandidateList& found) const;
-  int share_out(const CandidateList& found, const Vec3& centre, double radius,
-                std::span<SurfaceHit> out) const;
+  int share_out(const CandidateList& found, const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
 };
 
 void SurfaceCollider::Data::update_planes() {
@@ -158,8 +157,7 @@ bool SurfaceCollider::Data::behind_vertex(int vertex, const Vec3& offset) const 
   for (int t : topology.around(vertex)) {
     const auto& v = mesh.triangles[t];
     const int k = static_cast<int>(std::find(v.begin(), v.end(), vertex) - v.begin());
-    const Vec3 a = position[v[(k + 1) % 3]] - position[vertex],
-               b = position[v[(k + 2) % 3]] - position[vertex];
+    const Vec3 a = position[v[(k + 1) % 3]] - position[vertex], b = position[v[(k + 2) % 3]] - position[vertex];
     const Vec3 area = a.cross(b);
     const double length = area.norm();
     if (length > 1e-30) sum += std::atan2(length, a.dot(b)) * area.dot(offset) / length;
@@ -182,8 +180,7 @@ void SurfaceCollider::Data::consider(int t, const Vec3& centre, double radius, C
     if (squared >= radius * radius) return;
     candidate.distance = std::sqrt(squared);
     // A centre on the feature itself has no direction of its own.
-    candidate.normal =
-        candidate.distance > kSamePoint * radius ? Vec3(offset / candidate.distance) : plane[t].normal;
+    candidate.normal = candidate.distance > kSamePoint * radius ? Vec3(offset / candidate.distance) : plane[t].normal;
   }
   found.insert(candidate, kSamePoint * radius);
 }
@@ -224,8 +221,7 @@ int SurfaceCollider::Data::share_out(const CandidateList& found, const Vec3& cen
 
 SurfaceCollider::SurfaceCollider(const SurfaceMesh& mesh, double reach) : data_(std::make_unique<Data>()) {
   if (!(reach > 0.0) || !std::isfinite(reach))
-    throw input_error("contact surface", "",
-                      "reach " + std::to_string(reach) + " m, expected a positive length");
+    throw input_error("contact surface", "", "reach " + std::to_string(reach) + " m, expected a positive length");
   for (const auto& triangle : mesh.triangles)
     for (int v : triangle)
       if (v < 0 || v >= mesh.vertex_count)
@@ -267,8 +263,7 @@ void SurfaceCollider::move_to(double share) {
   if (share == 1.0)
     d.position = d.end;  // exactly, where the next interval begins
   else
-    for (std::size_t v = 0; v < d.start.size(); ++v)
-      d.position[v] = d.start[v] + share * (d.end[v] - d.start[v]);
+    for (std::size_t v = 0; v < d.start.size(); ++v) d.position[v] = d.start[v] + share * (d.end[v] - d.start[v]);
   if (d.grid_is_stale()) d.rebuild();
   d.update_planes();
 }
@@ -276,8 +271,7 @@ void SurfaceCollider::move_to(double share) {
 void SurfaceCollider::restrict_to(const SurfaceBox& box) {
   Data& d = *data_;
   const SurfaceBox& built = d.built_limit;
-  d.beyond_built_limit =
-      (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
+  d.beyond_built_limit = (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
   // Room for small changes, so that they do not cost a grid each.
   d.limit.lo = box.lo.array() - 2.0 * d.reach;
   d.limit.hi = box.hi.array() + 2.0 * d.reach;
@@ -342,8 +336,7 @@ void SurfaceCollider::near(const Vec3& centre, double radius, std::vector<int>& 
 }
 
 Vec3 SurfaceCollider::velocity_at(const SurfaceHit& hit) const {
-  FURROW_ASSERT(in_range(hit.triangle, data_->mesh.triangles.size()), hit.triangle,
-                data_->mesh.triangles.size());
+  FURROW_ASSERT(in_range(hit.triangle, data_->mesh.triangles.size()), hit.triangle, data_->mesh.triangles.size());
   const auto& v = data_->mesh.triangles[hit.triangle];
   return hit.weight[0] * data_->velocity[v[0]] + hit.weight[1] * data_->velocity[v[1]] +
          hit.weight[2] * data_->velocity[v[2]];

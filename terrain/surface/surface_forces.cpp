@@ -19,8 +19,7 @@ NodalForceSum::NodalForceSum(int vertex_count, bool tangents)
       substep_touched_(vertex_count, 0),
       tangent_(tangents ? vertex_count : 0) {}
 
-void NodalForceSum::add_tangents(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
-                                 double dt) {
+void NodalForceSum::add_tangents(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt) {
   FURROW_ASSERT(surface.position.size() == tangent_.size(), surface.position.size(), tangent_.size());
   FURROW_ASSERT(surface.velocity.size() == tangent_.size(), surface.velocity.size(), tangent_.size());
   for (std::size_t v = 0; v < tangent_.size(); ++v) {
@@ -48,8 +47,8 @@ void NodalForceSum::finish_tangents(double duration, NodalForces& forces) {
   std::fill(tangent_.begin(), tangent_.end(), ContactTangent());
 }
 
-void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface,
-                                double dt, double advance) {
+void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt,
+                                double advance) {
   FURROW_ASSERT(dt > 0.0 && advance > 0.0, dt, advance);
   FURROW_ASSERT(surface.position.size() == impulse_.size(), surface.position.size(), impulse_.size());
   FURROW_ASSERT(surface.velocity.size() == impulse_.size(), surface.velocity.size(), impulse_.size());
@@ -101,8 +100,7 @@ void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, c
   substep_list_.clear();
   sums_.moment += dt * (moment + mean.cross(force));
   if (force_scale > 0.0)
-    sums_.transfer_force_residual =
-        std::max(sums_.transfer_force_residual, (nodal_force - force).norm() / force_scale);
+    sums_.transfer_force_residual = std::max(sums_.transfer_force_residual, (nodal_force - force).norm() / force_scale);
   if (moment_scale > 0.0)
     sums_.transfer_moment_residual =
         std::max(sums_.transfer_moment_residual, (nodal_moment - moment).norm() / moment_scale);

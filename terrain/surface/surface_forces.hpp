@@ -53,8 +53,7 @@ class NodalForceSum {
   /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
   /// @param advance of the interval, of which tangents are means, s: where the forces act for another time
   /// @pre dt > 0, advance > 0; the surface has a position and a velocity for each vertex
-  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt,
-                   double advance);
+  void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt, double advance);
   void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt) {
     add_substep(contacts, surface, dt, dt);
   }

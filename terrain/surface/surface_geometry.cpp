@@ -51,9 +51,7 @@ struct ActiveSet {
   }
 };
 
-double coupling(std::span<const Vec3> normal, int i, int j) {
-  return std::max(0.0, normal[i].dot(normal[j]));
-}
+double coupling(std::span<const Vec3> normal, int i, int j) { return std::max(0.0, normal[i].dot(normal[j])); }
 
 /// Solves G_AA x = δ_A by elimination; G_AA is small and regularised.
 std::array<double, kMaxActive> solve_active(const ActiveSet& active, std::span<const Vec3> normal,
@@ -138,8 +136,8 @@ TrianglePoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }
 
 int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> lambda) {
-  FURROW_ASSERT(normal.size() == overlap.size() && lambda.size() == overlap.size(), normal.size(),
-                overlap.size(), lambda.size());
+  FURROW_ASSERT(normal.size() == overlap.size() && lambda.size() == overlap.size(), normal.size(), overlap.size(),
+                lambda.size());
   FURROW_ASSERT(overlap.size() <= static_cast<std::size_t>(kMaxCandidates), overlap.size());
   const int n = static_cast<int>(overlap.size());
   std::fill(lambda.begin(), lambda.end(), 0.0);
@@ -182,8 +180,8 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
 }
 
 void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared) {
-  FURROW_ASSERT(normal.size() == overlap.size() && shared.size() == overlap.size(), normal.size(),
-                overlap.size(), shared.size());
+  FURROW_ASSERT(normal.size() == overlap.size() && shared.size() == overlap.size(), normal.size(), overlap.size(),
+                shared.size());
   constexpr double kFull = 0.7, kNone = 0.3;  // cosines between which w goes from 1 to 0
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     shared[i] = overlap[i];

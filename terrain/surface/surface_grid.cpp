@@ -24,17 +24,14 @@ void SurfaceGrid::size_cells(const Vec3& extent, double margin) {
 
 /// Calls visit(cell) for every cell with a point within `margin` of the triangle; some beyond it may be included.
 template <class Visit>
-void SurfaceGrid::visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, double margin,
-                              Visit&& visit) const {
+void SurfaceGrid::visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, double margin, Visit&& visit) const {
   const Vec3 lo = a.cwiseMin(b).cwiseMin(c).array() - margin;
   const Vec3 hi = a.cwiseMax(b).cwiseMax(c).array() + margin;
   std::array<int, 3> from{}, to{};
   for (int axis = 0; axis < 3; ++axis) {
     const double last = cells_[axis] - 1;
-    from[axis] =
-        static_cast<int>(std::clamp(std::floor((lo[axis] - origin_[axis]) * inverse_cell_), 0.0, last));
-    to[axis] =
-        static_cast<int>(std::clamp(std::floor((hi[axis] - origin_[axis]) * inverse_cell_), 0.0, last));
+    from[axis] = static_cast<int>(std::clamp(std::floor((lo[axis] - origin_[axis]) * inverse_cell_), 0.0, last));
+    to[axis] = static_cast<int>(std::clamp(std::floor((hi[axis] - origin_[axis]) * inverse_cell_), 0.0, last));
   }
   const Vec3 cross = (b - a).cross(c - a);
   const double length = cross.norm();
@@ -53,9 +50,8 @@ void SurfaceGrid::visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, doubl
 void SurfaceGrid::build(std::span<const Vec3> vertex, std::span<const std::array<int, 3>> triangle,
                         std::span<const int> listed, double margin) {
   FURROW_ASSERT(margin > 0.0, margin);
-  FURROW_ASSERT(
-      std::all_of(listed.begin(), listed.end(), [&](int t) { return in_range(t, triangle.size()); }),
-      triangle.size());
+  FURROW_ASSERT(std::all_of(listed.begin(), listed.end(), [&](int t) { return in_range(t, triangle.size()); }),
+                triangle.size());
   cells_ = {0, 0, 0};
   first_.assign(1, 0);
   entry_.clear();

@@ -16,8 +16,8 @@ namespace furrow::terrain {
 class SurfaceGrid {
  public:
   /// @param margin  distance from a triangle up to which a point must find it, m (> 0)
-  void build(std::span<const Vec3> vertex, std::span<const std::array<int, 3>> triangle,
-             std::span<const int> listed, double margin);
+  void build(std::span<const Vec3> vertex, std::span<const std::array<int, 3>> triangle, std::span<const int> listed,
+             double margin);
 
   /// Candidates for a point; empty outside the grid.
   std::span<const int> candidates(const Vec3& point) const {
@@ -25,9 +25,8 @@ class SurfaceGrid {
     const double y = (point.y() - origin_.y()) * inverse_cell_;
     const double z = (point.z() - origin_.z()) * inverse_cell_;
     if (!(x >= 0.0 && y >= 0.0 && z >= 0.0 && x < cells_[0] && y < cells_[1] && z < cells_[2])) return {};
-    const std::size_t cell =
-        (static_cast<std::size_t>(x) * cells_[1] + static_cast<std::size_t>(y)) * cells_[2] +
-        static_cast<std::size_t>(z);
+    const std::size_t cell = (static_cast<std::size_t>(x) * cells_[1] + static_cast<std::size_t>(y)) * cells_[2] +
+                             static_cast<std::size_t>(z);
     return {entry_.data() + first_[cell], static_cast<std::size_t>(first_[cell + 1] - first_[cell])};
   }
 

@@ -12,8 +12,7 @@
 namespace furrow::terrain {
 
 struct SurfaceTopology {
-  std::vector<std::array<int, 3>>
-      neighbour;  // triangle across edge k (vertex k to k+1); −1 where there is not one
+  std::vector<std::array<int, 3>> neighbour;  // triangle across edge k (vertex k to k+1); −1 where there is not one
   std::vector<std::uint8_t> boundary_vertex;  // 1: on an edge that does not border exactly two triangles
   std::vector<int> first, incident;           // vertex → its triangles, as slices of `incident`
 

@@ -28,9 +28,12 @@ ACCOUNTS = re.compile(r"PairForces<.*>::sample\b|sample_of<|spring_losses<|Conta
 def record(words, folder):
     """{(process, function): samples} of one run."""
     data = folder / "perf.data"
-    subprocess.run(["perf", "record", "-e", "cpu-clock", "-F", "997", "-o", data, "--", provenance.program(), "run", *words, "--overwrite",
-                    "--no-plots", "--out", folder / "run"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    text = subprocess.run(["perf", "script", "-i", data, "-F", "pid,ip,sym"], check=True, capture_output=True, text=True).stdout
+    subprocess.run(["perf", "record", "-e", "cpu-clock", "-F", "997", "-o",
+                    data, "--", provenance.program(), "run", *words, "--overwrite",
+                    "--no-plots", "--out", folder / "run"], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    text = subprocess.run(["perf", "script", "-i", data, "-F", "pid,ip,sym"],
+                          check=True, capture_output=True, text=True).stdout
     found = re.findall(r"^\s*(\d+)\s+[0-9a-f]+\s+(.*)$", text, re.MULTILINE)
     return collections.Counter((int(process), function) for process, function in found)
 
@@ -62,12 +65,14 @@ def main():
     rows, sums = [], []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        subprocess.run([provenance.program(), "run", *words, "--set", "run.end=0.1", "--set", "run.average_from=0.05", "--no-plots",
+        subprocess.run([provenance.program(), "run", *words, "--set", "run.end=0.1",
+                        "--set", "run.average_from=0.05", "--no-plots",
                         "--out", folder / "settle"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for run in range(1, arguments.runs + 1):
             found, total = shares(record(words, folder))
             sums.append(total)
-            rows += [{"run": run, "function": function, "share": f"{share:.5f}"} for function, share in found if share >= 1e-5]
+            rows += [{"run": run, "function": function, "share": f"{share:.5f}"} for function,
+                     share in found if share >= 1e-5]
             rows.append({"run": run, "function": "all", "share": f"{total:.5f}"})
             print(f"run {run}: accounts take {100 * total:.2f} % of the ranks' processor time", flush=True)
     spread = f", from {100 * min(sums):.2f} to {100 * max(sums):.2f}" if len(sums) > 1 else ""

@@ -3,8 +3,8 @@
 
 usage: grains_and_peers.py BED.csv OUT.csv [--threads 2] [--steps 1000] [--rounds 3]
 
-BED.csv: positions x_m,y_m,z_m of spheres of radius 6 mm that came to rest without cohesion; floor z = 0, walls y = 0 and
-0.6 m, periodic along x over whole metres. Every engine first steps the bed with the law that is timed. LIGGGHTS and
+BED.csv: positions x_m,y_m,z_m of spheres of radius 6 mm that came to rest without cohesion; floor z = 0, walls y = 0
+and 0.6 m, periodic along x over whole metres. Every engine first steps the bed with the law that is timed. LIGGGHTS and
 LAMMPS are Debian's packages `liggghts` and `lammps`; MPI ranks are bound to the same cores that furrow's threads get.
 Nothing else may run meanwhile. One row per engine and law: the median over rounds, its range, and the ratios.
 """
@@ -92,7 +92,8 @@ def run_peer(program, tangential, data, ranks, steps, folder):
     deck, log = folder / "deck.in", folder / "deck.log"
     deck.write_text(text)
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-    subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "core", "-np", str(ranks), program, "-in", deck, "-log", log,
+    subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "core", "-np",
+                    str(ranks), program, "-in", deck, "-log", log,
                     "-screen", "none"], check=True, env=environment, stdout=subprocess.DEVNULL)
     text = log.read_text()
     seconds, done, atoms = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", text)[-1]
@@ -103,7 +104,8 @@ def run_peer(program, tangential, data, ranks, steps, folder):
 
 
 def run_furrow(law, cohesion, precision, bed, threads, steps, *more):
-    command = [provenance.program(), "bench", "grains", "--bed", bed, "--law", law, "--cohesion", str(cohesion), "--precision",
+    command = [provenance.program(), "bench", "grains", "--bed", bed, "--law",
+               law, "--cohesion", str(cohesion), "--precision",
                precision, "--threads", str(threads), "--steps", str(steps), "--warm", str(WARM), *more]
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
@@ -128,7 +130,8 @@ def main():
         run_furrow("mindlin", 0.0, "mixed", arguments.bed, n, 1, "--settle", "0.3", "--save-bed", mindlin)
         cases = {
             "furrow hertz_tanh, cohesion 80 kPa": lambda: run_furrow("hertz_tanh", 80e3, "mixed", hertz_tanh, n, steps),
-            "LIGGGHTS hertz/no_history": lambda: run_peer("liggghts", "no_history", folder / "bed.data", n, steps, folder),
+            "LIGGGHTS hertz/no_history": lambda: run_peer("liggghts", "no_history",
+                                                          folder / "bed.data", n, steps, folder),
             "furrow mindlin": lambda: run_furrow("mindlin", 0.0, "mixed", mindlin, n, steps),
             "LAMMPS gran/hertz/history": lambda: run_peer("lmp", "", folder / "bed.data", n, steps, folder),
             "furrow mindlin, double precision": lambda: run_furrow("mindlin", 0.0, "double", mindlin, n, steps),
@@ -142,11 +145,13 @@ def main():
     with open(arguments.out, "w", newline="") as file:
         provenance.write_header(file, provenance.made_here())
         out = csv.writer(file, lineterminator="\n")
-        out.writerow(["engine", "threads", "grains", "steps", "rounds", "grain_steps_per_s", "lowest", "highest", "coordination",
+        out.writerow(["engine", "threads", "grains", "steps", "rounds",
+                      "grain_steps_per_s", "lowest", "highest", "coordination",
                       "list_rebuilds", "bytes_per_grain", "over_LIGGGHTS_no_history", "over_LAMMPS_history"])
         for case, runs in results.items():
             speeds, last = [r["grain_steps_per_s"] for r in runs], runs[-1]
-            out.writerow([case, n, last["grains"], steps, len(runs)] + [f"{v:.4g}" for v in (median[case], min(speeds), max(speeds))] +
+            out.writerow([case, n, last["grains"], steps, len(runs)]
+                         + [f"{v:.4g}" for v in (median[case], min(speeds), max(speeds))] +
                          [f"{last['coordination']:.3f}", f"{last['list_rebuilds']:.2f}",
                           f"{last['bytes_per_grain']:.0f}" if "bytes_per_grain" in last else "",
                           f"{median[case] / median['LIGGGHTS hertz/no_history']:.2f}",

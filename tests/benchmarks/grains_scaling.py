@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Cost of a grain-step against the number of grains, and with one and two threads: `furrow bench grains` on beds of one shape.
+"""Cost of a grain-step against the number of grains, and with one and two threads: `furrow bench grains` on beds of one
+shape.
 
 usage: grains_scaling.py BED.csv OUT.csv [--steps 300] [--rounds 2]
 
-BED.csv: as for grains_and_peers.py, one whole metre long. Longer beds repeat it along x; the smallest is its lowest quarter.
-Each bed is stepped with the law that is timed before the clock starts. Nothing else may run meanwhile. One row per bed, law and
-number of threads: the median over rounds.
+BED.csv: as for grains_and_peers.py, one whole metre long. Longer beds repeat it along x; the smallest is its lowest
+quarter. Each bed is stepped with the law that is timed before the clock starts. Nothing else may run meanwhile. One row
+per bed, law and number of threads: the median over rounds.
 """
 import argparse
 import csv
@@ -64,7 +65,8 @@ def main():
                 one = statistics.median(r["grain_steps_per_s"] for r in results[law, 1])
                 rows.append({"law": law, "grains": found[0]["grains"], "threads": threads, "steps": steps,
                              "grain_steps_per_s": f"{speed:.4g}", "ns_per_grain_step": f"{1e9 / speed:.4g}",
-                             "against_one_thread": f"{speed / one:.3g}", "coordination": f"{found[0]['coordination']:.4g}",
+                             "against_one_thread": f"{speed / one:.3g}",
+                             "coordination": f"{found[0]['coordination']:.4g}",
                              "bytes_per_grain": f"{found[0]['bytes_per_grain']:.4g}"})
                 print(rows[-1], file=sys.stderr, flush=True)
     rows.sort(key=lambda r: (r["law"], r["threads"], r["grains"]))

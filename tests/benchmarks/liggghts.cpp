@@ -1,11 +1,13 @@
-// What a step of the engine liggghts costs, part by part, on the bed of a scenario: the pair style, motion and lists alone
-// (one `run N`); with walls and accounts; and with one `run 1` and the terrain's sums for each step, as a run of Furrow
-// does it, but without tires and messages. Under mpirun for several ranks.
+// What a step of the engine liggghts costs, part by part, on the bed of a scenario: the pair style, motion and lists
+// alone (one `run N`); with walls and accounts; and with one `run 1` and the terrain's sums for each step, as a run of
+// Furrow does it, but without tires and messages. Under mpirun for several ranks.
 //
-// The parts take turns, kBlock steps each. Wall time, and the processor time of the rank that took most of it: waiting for other ranks is part of both.
+// The parts take turns, kBlock steps each. Wall time, and the processor time of the rank that took most of it: waiting
+// for other ranks is part of both.
 //
 // usage: bench_liggghts SCENARIO STEPS ROUNDS [KEY=VALUE …]     prints a line of CSV for each part and round
-//        bench_liggghts RUN STEPS ROUNDS         the same from the last checkpoint of a run, without its tires, on as many ranks
+//        bench_liggghts RUN STEPS ROUNDS         the same from the last checkpoint of a run, without its tires, on as
+//        many ranks
 #include <mpi.h>
 
 #include <algorithm>
@@ -183,8 +185,7 @@ int run(int argc, char** argv) {
   if (of_a_run) {
     if (s.terrain_ranks != bench.ranks)
       throw Error(ExitCode::bad_input, "start as many ranks as the run's terrain has");
-    const auto file =
-        checkpoint::last_checkpoint(from).folder / checkpoint::part_name({Role::terrain, bench.rank});
+    const auto file = checkpoint::last_checkpoint(from).folder / checkpoint::part_name({Role::terrain, bench.rank});
     bench.take(read_archive(file));
   } else {
     if (bench.rank == 0) {
@@ -205,9 +206,8 @@ int run(int argc, char** argv) {
         "list_builds,contacts\n");
   const int steps = std::atoi(argv[2]), rounds = std::atoi(argv[3]);
   for (int round = 0; round < rounds; ++round) {
-    Part parts[] = {{bench, "pairs", false, false},
-                    {bench, "walls_accounts", true, false},
-                    {bench, "each_step", true, true}};
+    Part parts[] = {
+        {bench, "pairs", false, false}, {bench, "walls_accounts", true, false}, {bench, "each_step", true, true}};
     for (int done = 0; done < steps; done += kBlock)
       for (Part& part : parts) part.run(std::min(kBlock, steps - done));
     for (const Part& part : parts) part.print(round);

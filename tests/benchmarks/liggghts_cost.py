@@ -3,25 +3,26 @@
 
 usage: liggghts_cost.py     takes about ten minutes, prints a table and writes liggghts_cost.csv beside this script
 
-Nothing else may run meanwhile. For each number of ranks, in turn: stock LIGGGHTS (hertz, tangential history, walls), our pair
-style with motion and lists alone in one `run N`, the same with walls and accounts, the same with a `run 1` and the sums of a
-step for each step (tests/benchmarks/liggghts.cpp), and a whole run of Furrow with tire, protocol and accounts: with the tire
-of the rig, and with a rigid one, which leaves the cores to the terrain. Rows have the median over rounds and the range;
-`over_pairs` is the ratio to the pair style alone: of wall times, and for rows of processor time of processor times.
-On a machine that does other work too, only processor times mean something, and of several ranks not even those: they poll
-for each other. Of a whole run the rows are, each of the rank that has most of it:
+Nothing else may run meanwhile. For each number of ranks, in turn: stock LIGGGHTS (hertz, tangential history, walls),
+our pair style with motion and lists alone in one `run N`, the same with walls and accounts, the same with a `run 1` and
+the sums of a step for each step (tests/benchmarks/liggghts.cpp), and a whole run of Furrow with tire, protocol and
+accounts: with the tire of the rig, and with a rigid one, which leaves the cores to the terrain. Rows have the median
+over rounds and the range; `over_pairs` is the ratio to the pair style alone: of wall times, and for rows of processor
+time of processor times. On a machine that does other work too, only processor times mean something, and of several
+ranks not even those: they poll for each other. Of a whole run the rows are, each of the rank that has most of it:
 
     whole_run          wall time of computing and communicating over the steps, as the table of the nodes has it
     whole_run_cpu      processor time; what a rank spends in polling for others is part of it
     whole_run_waiting  wall time of waiting for tire, rig and, outside of LIGGGHTS, other ranks of the terrain
     whole_run: PART    processor time by part, from runs of their own under `perf record`, by the functions of PARTS
 
-rigid_tire, rigid_tire: PART and so on are those of the run with the rigid tire. Of the parts, `over_pairs` is the ratio to pairs,
-lists, motion and border grains of the same run together, that is to what `one run N` does, in the very steps of that run; a bed at
-rest has fewer contacts and lists than one on which a wheel rolls, and the speed of a shared machine drifts from run to run.
+rigid_tire, rigid_tire: PART and so on are those of the run with the rigid tire. Of the parts, `over_pairs` is the ratio
+to pairs, lists, motion and border grains of the same run together, that is to what `one run N` does, in the very steps
+of that run; a bed at rest has fewer contacts and lists than one on which a wheel rolls, and the speed of a shared
+machine drifts from run to run.
 
-Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given. ghosts and bytes are of
-the rank that has most: position, velocity and spin of each ghost cross in every step.
+Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given. ghosts and bytes
+are of the rank that has most: position, velocity and spin of each ghost cross in every step.
 """
 import argparse
 import csv
@@ -76,25 +77,31 @@ run {steps}
 """
 # The first pattern that a function (or else its library) matches says to which part it belongs.
 PARTS = [("pairs", r"PairFurrow::evaluate"),
-         ("lists", r"PairLists::|FixFurrow::(make_lists|lists_due|strayed|pre_exchange|pre_neighbor|note_exchange|copy|pack_e|unpack_e)|"
+         ("lists",
+          r"PairLists::|FixFurrow::(make_lists|lists_due|strayed|pre_exchange|pre_neighbor|note_exchange|copy|pack_e|unpack_e)|"
           r"Neighbor::|Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::|RankContacts::lists_made"),
          ("motion", r"FixFurrow::(move|final_integrate)|GrainMotion|force_clear|memset|Verlet::"),
          ("walls", r"WallContacts|RankContacts::add_forces|Carried"),
-         ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|NodalForceSum|SurfaceTopology|"
+         ("tire_contact",
+          r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|NodalForceSum|SurfaceTopology|"
           r"on_edge|spin_about|RankContacts::(begin_|look|any_near)"),
-         ("accounts", r"sample_of|SampleLanes|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|RankContacts::end_step|held"),
+         ("accounts",
+          r"sample_of|SampleLanes|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|RankContacts::end_step|held"),
          ("border_grains", r"Comm::forward_comm|pack_comm|unpack_comm"),
          ("frames_and_files", r"Row\b|hdf5|H5|archive|checkpoint|add_file|state_hash"),
-         ("messages_and_polling", r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"
+         ("messages_and_polling",
+          r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"
           r"share_reports|kernel|vdso|pthread_mutex")]
 ENGINE = ("pairs", "lists", "motion", "border_grains")  # what `one run N` does
-COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs",
+COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step",
+           "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs",
            "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds", "contacts"]
 
 
 def mpirun(ranks, *words):
     """The command line: one rank per core; more ranks than cores share them politely."""
-    bound = ["--bind-to", "core"] if ranks <= (os.cpu_count() or 1) else ["--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
+    bound = ["--bind-to", "core"] if ranks <= (os.cpu_count() or 1) else ["--bind-to",
+                                                                          "none", "--mca", "mpi_yield_when_idle", "1"]
     return ["mpirun", "--oversubscribe", *bound, "-np", str(ranks), *words]
 
 
@@ -118,19 +125,23 @@ def whole_run(ranks, out, rigid=False, before=()):
     if rigid:
         keys.append("tire.rigid=true")
     words = [word for key in keys for word in ("--set", key)]
-    subprocess.run([*before, provenance.program(), "run", RIG, *words, "--out", str(out), "--overwrite", "--no-plots"], check=True,
+    subprocess.run([*before, provenance.program(), "run", RIG, *words, "--out", str(out), "--overwrite", "--no-plots"],
+                   check=True,
                    env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     rows = [row for row in provenance.read_json(out / "summary.json")["ranks"] if row["node"].startswith("terrain")]
     each = 1e6 / (RUN / STEP)
-    return {"": each * max(row["compute_s"] + row["communicate_s"] for row in rows), "_cpu": each * max(row["cpu_s"] for row in rows),
+    return {"": each * max(row["compute_s"] + row["communicate_s"] for row in rows),
+            "_cpu": each * max(row["cpu_s"] for row in rows),
             "_waiting": each * max(row["wait_s"] for row in rows)}
 
 
 def profile(ranks, folder, rigid):
     """The processor time of the busiest rank of a whole run, by part."""
     data = folder / "perf.data"
-    most = whole_run(ranks, folder / "run", rigid, before=("perf", "record", "-q", "-F", "499", "-o", str(data)))["_cpu"]
-    text = subprocess.run(["perf", "report", "-i", str(data), "--stdio", "-g", "none", "--sort", "pid,dso,sym", "-F", "sample,pid,dso,sym", "-t", "|"],
+    most = whole_run(ranks, folder / "run", rigid,
+                     before=("perf", "record", "-q", "-F", "499", "-o", str(data)))["_cpu"]
+    text = subprocess.run(["perf", "report", "-i", str(data), "--stdio",
+                           "-g", "none", "--sort", "pid,dso,sym", "-F", "sample,pid,dso,sym", "-t", "|"],
                           capture_output=True, text=True, check=True).stdout
     found = {}
     for line in text.splitlines():
@@ -149,7 +160,8 @@ def profile(ranks, folder, rigid):
 def write_data(frame, file):
     with h5py.File(frame) as bed, open(file, "w", encoding="utf-8") as out:
         grains = list(zip(bed["position"][()], bed["radius"][()]))
-        out.write(f"bed\n\n{len(grains)} atoms\n1 atom types\n\n-0.1 3.1 xlo xhi\n-0.4 0.4 ylo yhi\n-0.1 1 zlo zhi\n\nAtoms\n\n")
+        out.write(f"bed\n\n{len(grains)} atoms\n1 atom types\n\n-0.1 3.1 xlo xhi\n-0.4 0.4 ylo yhi\n-0.1 1 zlo "
+                  f"zhi\n\nAtoms\n\n")
         for n, ((x, y, z), radius) in enumerate(grains, 1):
             out.write(f"{n} 1 {2 * radius:.9g} 2500 {x:.9g} {y:.9g} {z:.9g}\n")
 
@@ -158,7 +170,8 @@ def stock(ranks, steps, folder):
     deck, log = folder / "deck.in", folder / "deck.log"
     deck.write_text(STOCK.format(ranks=ranks, data=folder / "bed.data", step=STEP, steps=steps), encoding="utf-8")
     printed(mpirun(ranks, "liggghts", "-in", str(deck), "-log", str(log), "-screen", "none"))
-    seconds, done, _ = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", log.read_text())[-1]
+    seconds, done, _ = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms",
+                                  log.read_text())[-1]
     builds = re.findall(r"Neighbor list builds = (\d+)", log.read_text())[-1]
     return {"us_per_step": 1e6 * float(seconds) / int(done), "list_builds": builds}
 
@@ -166,7 +179,8 @@ def stock(ranks, steps, folder):
 def show(rows):
     print(f"\n{rows[0]['ranks']} ranks".ljust(40) + "us a step   processor   over pairs alone", flush=True)
     for row in rows:
-        over = f"{100 * (float(row['over_pairs']) - 1):+.0f} %" if row["part"].endswith(": all") or row["part"].startswith(("whole", "rigid")) and ": " not in row["part"] else ""
+        over = (f"{100 * (float(row['over_pairs']) - 1):+.0f} %" if row["part"].endswith(": all")
+                or row["part"].startswith(("whole", "rigid")) and ": " not in row["part"] else "")
         print(f"{row['part']:<38} {row['us_per_step']:>10} {row['cpu_us_per_step']:>11} {over:>18}", flush=True)
 
 
@@ -211,17 +225,20 @@ def main():
             grains = int(found["pairs"][0]["grains"])
             for part, measured in found.items():
                 times = [float(row["us_per_step"]) for row in measured]
-                row = {column: measured[0].get(column, "") for column in COLUMNS} | {"part": part, "ranks": ranks, "grains": grains,
+                row = {column: measured[0].get(column, "") for column in COLUMNS} | {"part": part,
+                                                                                     "ranks": ranks, "grains": grains,
                                                                                     "rounds": len(measured)}
                 row["steps"] = round(RUN / STEP) if part.startswith(("whole_run", "rigid_tire")) else arguments.steps
                 median = statistics.median(times)
-                compared = engines[part.split(": ")[0]] if ": " in part else alone_cpu if part.endswith("_cpu") else alone
+                compared = (engines[part.split(": ")[0]] if ": " in part
+                            else alone_cpu if part.endswith("_cpu") else alone)
                 if row["cpu_us_per_step"] != "":
-                    row["cpu_us_per_step"] = f"{statistics.median(float(one['cpu_us_per_step']) for one in measured):.0f}"
+                    row["cpu_us_per_step"] = (f"{statistics.median(float(one['cpu_us_per_step']) for one in measured):.0f}")
                 row |= {"us_per_step": f"{median:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
                         "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / compared:.3f}"}
                 if ranks not in arguments.timed:
-                    row |= dict.fromkeys(("us_per_step", "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs"), "")
+                    row |= dict.fromkeys(("us_per_step", "lowest", "highest",
+                                          "cpu_us_per_step", "ns_per_grain_step", "over_pairs"), "")
                 if row["ghosts_most"] != "":
                     row["bytes_per_step"] = GHOST_BYTES * int(row["ghosts_most"])
                 rows.append(row)

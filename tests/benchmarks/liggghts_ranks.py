@@ -3,12 +3,13 @@
 
 usage: liggghts_ranks.py [--grains 1e6 1e7 1e8 1e9] [--nodes 1 4 16 64]
 
-The bed is that of drawbar_pull_small, 3 × 0.6 m, of smaller and smaller grains; its step goes with their radius. What one
-rank computes in a step, its ghosts, memory and sizes of files are those of `furrow validate`, for the machine that this runs
-on (terrain/liggghts/rank_cost.hpp: measured on 1 and 2 ranks with 24,340 grains). Added here, and assumed, not measured:
-nodes of 32 cores that are as fast as this one's; two messages a step with 72 bytes for each ghost (that size is measured)
-over a network of 5 µs and 10 GB/s; sums over all ranks once a step, 5 µs for each doubling of their number. Engine dem has 32
-threads of one node without loss. A tire is not in these figures, nor is the making of the bed.
+The bed is that of drawbar_pull_small, 3 × 0.6 m, of smaller and smaller grains; its step goes with their radius. What
+one rank computes in a step, its ghosts, memory and sizes of files are those of `furrow validate`, for the machine that
+this runs on (terrain/liggghts/rank_cost.hpp: measured on 1 and 2 ranks with 24,340 grains). Added here, and assumed,
+not measured: nodes of 32 cores that are as fast as this one's; two messages a step with 72 bytes for each ghost (that
+size is measured) over a network of 5 µs and 10 GB/s; sums over all ranks once a step, 5 µs for each doubling of their
+number. Engine dem has 32 threads of one node without loss. A tire is not in these figures, nor is the making of the
+bed.
 """
 import argparse
 import json
@@ -27,7 +28,8 @@ GRAINS, RADIUS, STEP = 24330, 0.01, 6e-5  # of that rig: grains, m, s
 CORES = 32  # of a node
 LATENCY, BANDWIDTH, GHOST = 5e-6, 1e10, 72  # s, bytes/s, bytes
 LEAST_PART = 6.0  # radii: nodes/scenario/scenario_checks.cpp
-COLUMNS = ["engine", "nodes", "ranks", "grains", "radius_mm", "step_s", "own_per_rank", "ghosts_per_rank", "compute_ms", "messages_ms",
+COLUMNS = ["engine", "nodes", "ranks", "grains", "radius_mm", "step_s",
+           "own_per_rank", "ghosts_per_rank", "compute_ms", "messages_ms",
            "wall_h_per_simulated_s", "memory_per_rank_GB", "first_rank_at_start_GB", "checkpoint_GB", "frame_GB"]
 
 
@@ -56,11 +58,14 @@ def row(engine, nodes, grains):
     time, terrain = told["time"], told["terrain"]
     if engine == "liggghts":
         compute = time["terrain_s"]
-        messages = 0.0 if ranks == 1 else 2 * (LATENCY + GHOST * time["ghosts_per_rank"] / 2 / BANDWIDTH) + LATENCY * math.log2(ranks)
+        messages = 0.0 if ranks == 1 else 2 * (LATENCY + GHOST * time["ghosts_per_rank"]
+                                               / 2 / BANDWIDTH) + LATENCY * math.log2(ranks)
     else:
         compute, messages = time["terrain_s"] * min(CORES, time["cores"]) / CORES, 0.0
-    return {"engine": engine, "nodes": nodes, "ranks": ranks, "grains": told["grains"], "radius_mm": 1e3 * radius, "step_s": step,
-            "own_per_rank": told["grains"] / ranks, "ghosts_per_rank": time["ghosts_per_rank"], "compute_ms": 1e3 * compute,
+    return {"engine": engine, "nodes": nodes, "ranks": ranks, "grains": told["grains"],
+            "radius_mm": 1e3 * radius, "step_s": step,
+            "own_per_rank": told["grains"] / ranks, "ghosts_per_rank": time["ghosts_per_rank"],
+            "compute_ms": 1e3 * compute,
             "messages_ms": 1e3 * messages, "wall_h_per_simulated_s": (compute + messages) / step / 3600,
             "memory_per_rank_GB": 1e-9 * terrain["memory_per_rank_bytes"],
             "first_rank_at_start_GB": 1e-6 * told["grains"] if engine == "liggghts" else "",

@@ -3,12 +3,12 @@
 
 usage: oversubscribed.py PROGRAM [PROGRAM] [--busy N]... [--rounds N] [--scenario FILE] [--set KEY=VALUE]...
 
-Starts N busy processes per core (default: 0, then 4), runs a short scenario under each program in turn, `--rounds` times, and
-prints one line per run and the median of each. The bed settles in the first run and comes from the cache in the others. The
-busy processes do nothing but arithmetic. Needs a machine that has nothing else to do.
+Starts N busy processes per core (default: 0, then 4), runs a short scenario under each program in turn, `--rounds`
+times, and prints one line per run and the median of each. The bed settles in the first run and comes from the cache in
+the others. The busy processes do nothing but arithmetic. Needs a machine that has nothing else to do.
 
-A run among B busy processes per core has a fair share of 1 / (1 + B) of the cores, when its own ranks are as many as these; so
-the step may become about 1 + B times as long. What it becomes longer than that is lost in waiting for a core.
+A run among B busy processes per core has a fair share of 1 / (1 + B) of the cores, when its own ranks are as many as
+these; so the step may become about 1 + B times as long. What it becomes longer than that is lost in waiting for a core.
 """
 import argparse
 import json
@@ -35,7 +35,8 @@ def milliseconds_per_step(program, scenario, settings, folder):
     """Wall time of the run without settling over its steps, and processor time of all its processes, s."""
     flags = [word for setting in settings for word in ("--set", setting)]
     before = os.times().children_user + os.times().children_system
-    done = subprocess.run([program, "run", scenario, *flags, "--no-plots", "--out", folder], capture_output=True, text=True)
+    done = subprocess.run([program, "run", scenario, *flags, "--no-plots", "--out", folder],
+                          capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{program}: {done.stderr}")
     processor = os.times().children_user + os.times().children_system - before
@@ -48,9 +49,11 @@ def milliseconds_per_step(program, scenario, settings, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program", nargs="+", help="builds of furrow to compare")
-    parser.add_argument("--busy", type=int, action="append", help="busy processes per core; may be repeated (default: 0 and 4)")
+    parser.add_argument("--busy", type=int, action="append",
+                        help="busy processes per core; may be repeated (default: 0 and 4)")
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--scenario", type=pathlib.Path, help="default: a rigid wheel on a few large grains, 2000 steps")
+    parser.add_argument("--scenario", type=pathlib.Path,
+                        help="default: a rigid wheel on a few large grains, 2000 steps")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     arguments = parser.parse_args()
     cores = len(os.sched_getaffinity(0))

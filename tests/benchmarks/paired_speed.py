@@ -70,7 +70,8 @@ def main():
     if arguments.csv:
         sources = (arguments.a, arguments.b)
         made = {"commit": " and ".join(provenance.commit(source) for source in sources),
-                "compiler": " and ".join(sorted({provenance.compiler_of(source / "build" / "furrow") for source in sources})),
+                "compiler": " and ".join(sorted({provenance.compiler_of(source / "build" / "furrow")
+                                                 for source in sources})),
                 "processor": provenance.processor(), "command": provenance.command()}
         columns = ["bench", "pair", "a_ms", "b_ms"]
         provenance.write_table(arguments.csv, columns, [dict(zip(columns, row)) for row in rows], made)

@@ -16,8 +16,7 @@ void rolling(benchmark::State& state) {
             .around = static_cast<int>(state.range(0))};
   p.disc = {740.0, 1e8, 0.3, 0.0}, p.tire = {93.0, 3e5, 0.45, 100.0};
   p.options.averaged = state.range(1) != 0;
-  p.integrator =
-      state.range(2) != 0 ? PlanarIntegrator::runge_kutta_4 : PlanarIntegrator::semi_implicit_euler;
+  p.integrator = state.range(2) != 0 ? PlanarIntegrator::runge_kutta_4 : PlanarIntegrator::semi_implicit_euler;
   p.contact_stiffness = 1e6, p.friction = 0.8;
   PlanarWheel wheel(p, PlanarGround::plate(50.0), {0.0, 0.51}, {3.0, 0.0}, 3.0 / 0.52, 100.0, 9.81);
   for (auto _ : state)

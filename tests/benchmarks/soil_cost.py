@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""What the same rig costs on grains and on empirical soil: processor time for a simulated second, of the terrain's rank and of
+"""What the same rig costs on grains and on empirical soil: processor time for a simulated second, of the terrain's rank
+and of
 all ranks, in runs that take turns. Writes soil_cost.csv beside this script. Nothing else may run meanwhile.
 
 usage: soil_cost.py [--rigs small full] [--tires rigid ring lumped layered] [--rounds 1]
 
-The rig of drawbar_pull_small.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both engines have the
-tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is that of
-drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, that of that file.
-`ratio_terrain` and `ratio_all` are grains over empirical soil.
+The rig of drawbar_pull_small.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both engines have
+the tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is
+that of drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, that of
+that file. `ratio_terrain` and `ratio_all` are grains over empirical soil.
 """
 import argparse
 import copy
@@ -24,8 +25,10 @@ sys.path.insert(0, str(ROOT / "tests" / "studies"))
 import provenance  # noqa: E402
 
 RIGS = {"small": ("drawbar_pull_small.json", 0.7), "full": ("drawbar_pull.json", 0.5)}
-TIRES = {"rigid": {"rigid": True}, "ring": {"file": "hmmwv_ring.json"}, "lumped": {"file": "hmmwv_lumped.json"}, "layered": {}}
-COLUMNS = ("rig", "tire", "round", "grains_step_s", "soil_step_s", "grains", "grains_terrain_cpu_s_per_s", "soil_terrain_cpu_s_per_s", "ratio_terrain",
+TIRES = {"rigid": {"rigid": True}, "ring": {"file": "hmmwv_ring.json"},
+         "lumped": {"file": "hmmwv_lumped.json"}, "layered": {}}
+COLUMNS = ("rig", "tire", "round", "grains_step_s", "soil_step_s", "grains",
+           "grains_terrain_cpu_s_per_s", "soil_terrain_cpu_s_per_s", "ratio_terrain",
            "grains_all_cpu_s_per_s", "soil_all_cpu_s_per_s", "ratio_all", "grains_wall_s_per_s", "soil_wall_s_per_s")
 
 
@@ -49,7 +52,8 @@ def run(scenario, folder):
     """The summary of a run."""
     file = folder / "scenario.json"
     file.write_text(json.dumps(scenario), encoding="utf-8")
-    subprocess.run([provenance.program(), "run", file, "--out", folder / "run", "--overwrite", "--no-plots"], check=True,
+    subprocess.run([provenance.program(), "run", file, "--out", folder / "run", "--overwrite", "--no-plots"],
+                   check=True,
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "FURROW_HOME": str(ROOT)})
     return json.loads((folder / "run" / "summary.json").read_text())
 
@@ -68,7 +72,8 @@ def rows_of(rig, tire, number, folder):
     for scenario in on_soil:
         soil = costs(run(scenario, folder), end)
         values = (grains[0], soil[0], grains[0] / soil[0], grains[1], soil[1], grains[1] / soil[1], grains[2], soil[2])
-        line = {"rig": rig, "tire": tire, "round": number, "grains_step_s": on_grains["run"]["step"], "soil_step_s": scenario["run"]["step"],
+        line = {"rig": rig, "tire": tire, "round": number, "grains_step_s": on_grains["run"]["step"],
+                "soil_step_s": scenario["run"]["step"],
                 "grains": summary["grains"]}
         line |= dict(zip(COLUMNS[6:], (f"{value:.4g}" for value in values)))
         print(", ".join(f"{key} {value}" for key, value in line.items()), file=sys.stderr, flush=True)

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Time that the ranks of a run take to begin and to end, of two builds in turn, and the time of a step beside what is told.
+"""Time that the ranks of a run take to begin and to end, of two builds in turn, and the time of a step beside what is
+told.
 
 usage: start_of_ranks.py PROGRAM [PROGRAM] [--wheels N]... [--rounds N]
 
-Runs 300 steps of N rigid wheels in rows of four (default: 1, 4, 16, 64), which is N + 2 ranks. What the whole command takes
-less its steps and its bed is the beginning and the end. Prints lines of CSV. Needs a machine that has nothing else to do.
+Runs 300 steps of N rigid wheels in rows of four (default: 1, 4, 16, 64), which is N + 2 ranks. What the whole command
+takes less its steps and its bed is the beginning and the end. Prints lines of CSV. Needs a machine that has nothing
+else to do.
 """
 import argparse
 import json
@@ -22,9 +24,11 @@ def scenario(wheels):
     places = [{"start": 0.7 + 1.1 * (k // 4), "lateral": -0.75 + 0.5 * (k % 4)} for k in range(wheels)]
     return {
         "format_version": 1,
-        "rig": {"mode": "fixed_angular_speed", "angular_speed": 0.0, "slip": 0.0, "carrier_mass": 450, "wheels": places},
+        "rig": {"mode": "fixed_angular_speed", "angular_speed": 0.0, "slip": 0.0,
+                "carrier_mass": 450, "wheels": places},
         "tire": {"file": "hmmwv_layered.json", "rigid": True},
-        "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4 + 1.1 * ((wheels + 3) // 4), "width": 2.1},
+        "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4 + 1.1 * ((wheels + 3) // 4),
+                    "width": 2.1},
         "run": {"step": STEP, "end": STEP * STEPS, "average_from": 0.5 * STEP * STEPS},
         "output": {"series_interval": 1e-3, "frame_interval": 0},
         "checkpoint": {"at_end": False},
@@ -33,7 +37,8 @@ def scenario(wheels):
 
 def times(program, path, out):
     """(wall time of beginning and end in s, of a step in ms, both as told by `furrow validate`)"""
-    told = json.loads(subprocess.run([program, "validate", path, "--json"], capture_output=True, text=True, check=True).stdout)
+    told = json.loads(subprocess.run([program, "validate", path, "--json"],
+                                     capture_output=True, text=True, check=True).stdout)
     begin = time.monotonic()
     done = subprocess.run([program, "run", path, "--no-plots", "--out", out], capture_output=True, text=True)
     wall = time.monotonic() - begin

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Cost of a tire's step by `furrow bench tire`: by layers and by branches of relaxation, in turn, and by step and threads.
+"""Cost of a tire's step by `furrow bench tire`: by layers and by branches of relaxation, in turn, and by step and
+threads.
 Writes the tables beside this script. Nothing else may run meanwhile.
 
 usage: tire_variants.py layers|prony|step [--rounds 3]
@@ -32,12 +33,14 @@ def layered():
 def cut(tire, parts):
     """The tire with each layer cut into `parts` of the same material."""
     for section in tire["sections"].values():
-        section["layers"] = [{**layer, "thickness": layer["thickness"] / parts} for layer in section["layers"] for _ in range(parts)]
+        section["layers"] = [{**layer, "thickness": layer["thickness"] / parts}
+                             for layer in section["layers"] for _ in range(parts)]
     return tire
 
 
 def bench(*words):
-    done = subprocess.run([provenance.program(), "bench", "tire", *words], check=True, stdout=subprocess.PIPE, text=True,
+    done = subprocess.run([provenance.program(), "bench", "tire", *words],
+                          check=True, stdout=subprocess.PIPE, text=True,
                           env={**os.environ, "FURROW_HOME": str(ROOT)})
     return json.loads(done.stdout)
 
@@ -63,9 +66,11 @@ def figures(told, keys):
 def layers(rounds):
     whole = len(layered()["sections"]["tread"]["layers"])
     rows = []
-    for parts, number, told in in_turn({1: cut(layered(), 1), 3: cut(layered(), 3)}, rounds, "--elements-circumference", "60",
+    for parts, number, told in in_turn({1: cut(layered(), 1), 3: cut(layered(), 3)},
+                                       rounds, "--elements-circumference", "60",
                                        "--elements-width", "12", "--warm", "0.05", "--steps", "1500"):
-        rows.append({"layers": whole * parts, "round": number, "processor_ms_per_step": f"{told['processor_ms_per_step']:.4g}",
+        rows.append({"layers": whole * parts, "round": number,
+                     "processor_ms_per_step": f"{told['processor_ms_per_step']:.4g}",
                      "median_ms": f"{told['median_ms']:.4g}", **figures(told, ("factorizations", "deflection_m"))})
     provenance.write_table(HERE / "tire_layers.csv", list(rows[0]), rows, provenance.made_here())
 

@@ -3,8 +3,8 @@
 
 usage: writing_time.py [PROGRAM] [--wheels N]... [--rounds N]
 
-Runs 600 steps of N rigid wheels in rows of four (default: 1, 16, 64), without frames and checkpoints, with 60 frames, and
-with 60 checkpoints. Prints lines of CSV. Needs a machine that has nothing else to do.
+Runs 600 steps of N rigid wheels in rows of four (default: 1, 16, 64), without frames and checkpoints, with 60 frames,
+and with 60 checkpoints. Prints lines of CSV. Needs a machine that has nothing else to do.
 """
 import argparse
 import json
@@ -21,14 +21,16 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 def scenario(wheels, frames, checkpoints):
     step = start_of_ranks.STEP
-    return {**start_of_ranks.scenario(wheels), "run": {"step": step, "end": step * STEPS, "average_from": 0.5 * step * STEPS},
+    return {**start_of_ranks.scenario(wheels),
+            "run": {"step": step, "end": step * STEPS, "average_from": 0.5 * step * STEPS},
             "output": {"series_interval": 1e-3, "frame_interval": EVERY * step if frames else 0},
             "checkpoint": {"interval": EVERY * step if checkpoints else 0, "wall_interval": 0, "at_end": False}}
 
 
 def times(program, path, out):
     """(wall time of the steps in s, what `furrow validate` tells of writing in s)"""
-    told = json.loads(subprocess.run([program, "validate", path, "--json"], capture_output=True, text=True, check=True).stdout)
+    told = json.loads(subprocess.run([program, "validate", path, "--json"],
+                                     capture_output=True, text=True, check=True).stdout)
     subprocess.run([program, "run", path, "--no-plots", "--quiet", "--out", out], stdout=subprocess.DEVNULL, check=True)
     return json.loads((out / "summary.json").read_text())["wall_s"], told["time"]["writing_s"]
 

@@ -91,7 +91,8 @@ def other_signal(case):
     """One that is not asked for: a terminal that is closed, a pipe that ends, a stray one."""
     started, alive = begin(case)
     if alive:
-        number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGPIPE, signal.SIGALRM, signal.SIGUSR1,
+        number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT,
+                                  signal.SIGPIPE, signal.SIGALRM, signal.SIGUSR1,
                                   signal.SIGUSR2, signal.SIGXCPU])
         case.notes["signal"] = number.name
         strike(case, started, number)
@@ -154,7 +155,8 @@ def fill_disk(ballast):
 
 @action
 def disk_full(case):
-    """A small disk that is filled at the moment; without root, or where nothing can be mounted, a limit of file sizes."""
+    """A small disk that is filled at the moment; without root, or where nothing can be mounted, a limit of file
+    sizes."""
     if not small_disk(case):
         return file_limit(case)
     started, _ = begin(case)
@@ -167,7 +169,8 @@ def disk_full(case):
 
 @action
 def disk_full_for_moments(case):
-    """As before, but others make room again after moments, several times: what was refused must be told or written anew."""
+    """As before, but others make room again after moments, several times: what was refused must be told or written
+    anew."""
     if not small_disk(case):
         return file_limit(case)
     case.checkpoints_may_be_lost = True

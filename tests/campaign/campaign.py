@@ -111,8 +111,10 @@ class Campaign:
             outcome, why = "DEVIATION", str(deviation)
         except Exception:  # a mistake of the campaign's own is told like any other, and stops no other case
             outcome, why = "ERROR", traceback.format_exc()
-        record = {"seed": self.seed, "case": index, "scenario": scenario, "action": action, **case.notes, "outcome": outcome,
-                  "why": why, "seconds": round(time.monotonic() - begin, 2), "build": self.build, "commands": case.steps}
+        record = {"seed": self.seed, "case": index, "scenario": scenario,
+                  "action": action, **case.notes, "outcome": outcome,
+                  "why": why, "seconds": round(time.monotonic() - begin, 2),
+                  "build": self.build, "commands": case.steps}
         case.end(keep=self.folder / "failed" / f"{self.seed}-{index}" if why else None)
         with open(self.records, "a") as records:
             records.write(json.dumps(record) + "\n")

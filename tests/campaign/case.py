@@ -18,7 +18,8 @@ START_TIMEOUT = "60"  # s after which a launcher that hangs is noticed; a sweep 
 DOCUMENTED = {0, 2, 3, 4, 5, 6, 75}
 BUSY_PATIENCE = 30.0  # s that a folder may stay taken by processes that are ending
 # What a message must hold: an error, a stop, or the failure of a run of a study, with words that follow.
-MESSAGE = re.compile(r"furrow: (error: \S.{5,}|.*stopped by a signal|stopping|.*FAILED with exit code \d+: [^;\s].{4,})")
+MESSAGE = re.compile(r"furrow: (error: \S.{5,}|.*stopped by a signal|stopping|.*FAILED with exit code \d+: "
+                     r"[^;\s].{4,})")
 
 NEWEST_DIFFERS = re.compile(r"checkpoints: the newest is \d+ and (\d+|none)$")
 LOST_CHECKPOINT = re.compile(r"the checkpoint at t = \S+ s could not be written: \S")
@@ -67,8 +68,10 @@ class Case:
                 os.close(stream)
         with open(log, "wb") as sink:
             process = subprocess.Popen([*prefix, self.program, *words], cwd=self.inputs, stdin=subprocess.DEVNULL,
-                                       stdout=subprocess.DEVNULL, stderr=sink, preexec_fn=prepare, start_new_session=True,
-                                       env={**os.environ, "XDG_CACHE_HOME": str(self.cache), "FURROW_START_TIMEOUT": START_TIMEOUT, **(env or {})})
+                                       stdout=subprocess.DEVNULL, stderr=sink,
+                                       preexec_fn=prepare, start_new_session=True,
+                                       env={**os.environ, "XDG_CACHE_HOME": str(self.cache),
+                                            "FURROW_START_TIMEOUT": START_TIMEOUT, **(env or {})})
         return Started(process, log, words, silent=2 in closed)
 
     def finish(self, started, expected=DOCUMENTED):
@@ -135,7 +138,8 @@ class Case:
         return found
 
     def until_done(self, expected=frozenset({0}), repeats=False, **options):
-        """Continues as the program says until it ends with 0; a folder that is still taken is waited for, a run without a
+        """Continues as the program says until it ends with 0; a folder that is still taken is waited for, a run without
+        a
         checkpoint starts again.
         @param repeats work after a saved step may be done again"""
         begin = time.monotonic()
@@ -179,7 +183,8 @@ class Case:
 
     def told_as_lost(self, difference):
         """Whether it is of the newest checkpoint of a run, and the program has said that it could not write one."""
-        said = [step["said"] for step in self.steps] + [log.read_text(errors="replace") for log in self.out.rglob("*.log")]
+        said = [step["said"] for step in self.steps] + [log.read_text(errors="replace")
+                                                        for log in self.out.rglob("*.log")]
         return NEWEST_DIFFERS.search(difference) and any(LOST_CHECKPOINT.search(text) for text in said)
 
     def end(self, keep=None):

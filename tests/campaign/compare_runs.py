@@ -19,7 +19,8 @@ try:
     import h5py
     import numpy as np
 except ImportError as missing:
-    sys.stderr.write(f"compare_runs.py: the Python module {missing.name} is missing, expected python3-h5py and python3-numpy of the "
+    sys.stderr.write(f"compare_runs.py: the Python module {missing.name} is missing, expected python3-h5py and "
+                     f"python3-numpy of the "
                      "system: run it with /usr/bin/python3\n")
     sys.exit(2)
 
@@ -38,7 +39,8 @@ STUDY = "sweep.csv"  # beside the page of a study
 # the newest must be of the same step.
 CHECKPOINT = "checkpoints/*"
 SUMMARY_WALL = {"wall_s", "settle_wall_s", "wall_s_per_simulated_s", "ranks", "segments", "cpu"}
-MANIFEST_WALL = {"write_s", "segments", "checksum", "parts", "bytes", "cpu"}  # the parts' contents are compared themselves
+# the parts' contents are compared themselves
+MANIFEST_WALL = {"write_s", "segments", "checksum", "parts", "bytes", "cpu"}
 STATE_WALL = ("state/run:cost:", "state/setup:settle_wall_s")  # of a checkpoint's parts; their checksums say the same
 TABLE_WALL = {"wall_s"}  # columns of sweep.csv
 
@@ -92,7 +94,8 @@ def json_file(leave_out):
 
 def sweep_table(a, b):
     rows = [list(csv.DictReader(io.StringIO(path.read_text()))) for path in (a, b)]
-    return list(json_differences(*[[{k: v for k, v in row.items() if k not in TABLE_WALL} for row in table] for table in rows]))
+    return list(json_differences(*[[{k: v for k, v in row.items() if k not in TABLE_WALL} for row in table]
+                                   for table in rows]))
 
 
 def same_values(x, y):
@@ -129,13 +132,15 @@ def attribute_of(thing, name):
 def links_of(file):
     """{path: whether the link stays in the file}"""
     found = {}
-    file.id.links.visit(lambda name, info: found.update({name.decode(errors="surrogateescape"): info.type == h5py.h5l.TYPE_HARD}), info=True)
+    file.id.links.visit(lambda name, info: found.update({name.decode(errors="surrogateescape"): info.type
+                                                         == h5py.h5l.TYPE_HARD}), info=True)
     return found
 
 
 def h5_contents(file):
     """{path: the object}, groups too; a link that leads out of the file is no result."""
-    return {"/": file} | {path: file[path] if inside else file.get(path, getlink=True) for path, inside in links_of(file).items()}
+    return {"/": file} | {path: file[path] if inside else file.get(path, getlink=True) for path,
+                          inside in links_of(file).items()}
 
 
 def same_bytes(a, b):
@@ -215,7 +220,8 @@ def checkpoint_differences(a_files, b_files):
         if (max(first, default=None)) != (max(second, default=None)):
             problems.append(f"{folder}: the newest is {max(first, default='none')} and {max(second, default='none')}")
         alone = first ^ second
-        single |= {path for path in a_files | b_files if (at := checkpoint_of(path)) and at[0] == folder and at[1] in alone}
+        single |= {path for path in a_files | b_files if (at := checkpoint_of(path))
+                   and at[0] == folder and at[1] in alone}
     return problems, single
 
 
@@ -229,7 +235,8 @@ def differences(a, b, leave_out=()):
     a_files, b_files = files_of(a), files_of(b)
     found, single = checkpoint_differences(a_files, b_files)
     for path in sorted(a_files | b_files):
-        if may_differ(path, a_files | b_files) or path in single or any(tail_matches(path, pattern) for pattern in leave_out):
+        if may_differ(path, a_files | b_files) or path in single or any(tail_matches(path, pattern)
+                                                                        for pattern in leave_out):
             continue
         if path not in a_files or path not in b_files:
             found.append(f"{path}: only in {a if path in a_files else b}")

@@ -106,15 +106,20 @@ class CompareRuns(unittest.TestCase):
         self.found(words)
 
     def test_summary(self):
-        for keys, words in (({"state_hash": "b"}, "summary.json: state_hash: a and b"), ({"sinkage_m": -0.0}, "sinkage_m"),
-                            ({"wheels": [{"slip": 0.1}]}, "wheels.0.slip: None and 0.1"), ({"more": 1}, "more: only in the second")):
-            self.found_after(lambda run, keys=keys: (run / "summary.json").write_text(json.dumps({**SUMMARY, **keys})), words)
+        for keys, words in (({"state_hash": "b"}, "summary.json: state_hash: a and b"),
+                            ({"sinkage_m": -0.0}, "sinkage_m"),
+                            ({"wheels": [{"slip": 0.1}]}, "wheels.0.slip: None and 0.1"),
+                            ({"more": 1}, "more: only in the second")):
+            self.found_after(lambda run, keys=keys: (run / "summary.json").write_text(json.dumps({**SUMMARY, **keys})),
+                             words)
 
     def test_hdf5(self):
         frame = "frames/tire0_000001.h5"
         self.found_after(lambda run: write_h5(run / frame, force=np.float32([-0.0, np.nan])), "dataset force: ")
-        self.found_after(lambda run: write_h5(run / frame, force=[0.0, np.nan]), "dataset force: float32[2] and float64[2]")
-        self.found_after(lambda run: write_h5(run / frame, force=np.float32([0.0, np.nan]), more=[1]), "more: only in the second")
+        self.found_after(lambda run: write_h5(run / frame, force=[0.0, np.nan]),
+                         "dataset force: float32[2] and float64[2]")
+        self.found_after(lambda run: write_h5(run / frame, force=np.float32([0.0, np.nan]), more=[1]),
+                         "more: only in the second")
 
         def attribute(run):
             with h5py.File(run / frame, "a") as file:
@@ -122,7 +127,8 @@ class CompareRuns(unittest.TestCase):
         self.found_after(attribute, "attribute /@time_s")
 
     def test_checkpoints(self):
-        self.found_after(lambda run: shutil.rmtree(run / "checkpoints" / f"{200:012}"), "checkpoints: the newest is 000000000200")
+        self.found_after(lambda run: shutil.rmtree(run / "checkpoints" / f"{200:012}"),
+                         "checkpoints: the newest is 000000000200")
 
         def other_state(run):
             with h5py.File(run / "checkpoints" / f"{200:012}" / "tire0.h5", "a") as file:
@@ -150,7 +156,8 @@ class CompareRuns(unittest.TestCase):
         self.found("report.html: differs from byte 0")
 
     def compared(self, *folders, **environment):
-        return subprocess.run([sys.executable, pathlib.Path(__file__).with_name("compare_runs.py"), *folders], capture_output=True, text=True,
+        return subprocess.run([sys.executable, pathlib.Path(__file__).with_name("compare_runs.py"), *folders],
+                              capture_output=True, text=True,
                               env={**os.environ, **environment})
 
     def test_a_missing_module_is_told_in_one_line(self):
@@ -161,7 +168,9 @@ class CompareRuns(unittest.TestCase):
             (place / f"{module}.py").write_text(f"raise ImportError('No module named {module}', name='{module}')")
             done = self.compared(self.a, self.b, PYTHONPATH=str(place))
             self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertRegex(done.stderr, rf"^compare_runs.py: the Python module {module} is missing, expected [^\n]*/usr/bin/python3\n$")
+            self.assertRegex(done.stderr,
+                             rf"^compare_runs.py: the Python module {module} is missing, expected "
+                             rf"[^\n]*/usr/bin/python3\n$")
 
 
 if __name__ == "__main__":

@@ -54,7 +54,8 @@ def wait_until_gone(mark, seconds):
 
 
 def end_all(mark):
-    """Ends what a case has left behind: all of it was started by the campaign, with the case's folder on its command line."""
+    """Ends what a case has left behind: all of it was started by the campaign, with the case's folder on its command
+    line."""
     while left := living(mark):
         for pid in left:
             send(pid, signal.SIGKILL)

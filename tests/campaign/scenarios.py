@@ -14,7 +14,8 @@ SMALL_BED = {"layers": 3, "length": 1.2}
 
 def run_of(end, **sections):
     """Keys that are None belong to another engine."""
-    scenario = changed(**{**OFTEN, "run": {"step": 2e-4, "end": end, "average_from": 0.02, "peer_timeout": 20}, **sections})
+    scenario = changed(**{**OFTEN, "run": {"step": 2e-4, "end": end, "average_from": 0.02, "peer_timeout": 20},
+                          **sections})
     return {name: {k: v for k, v in part.items() if v is not None} if isinstance(part, dict) else part
             for name, part in scenario.items()}
 
@@ -22,10 +23,12 @@ def run_of(end, **sections):
 SINGLE = {
     "rigid": run_of(0.1, rig={"touchdown_damping": 0}),
     "shell": run_of(0.06, tire={**SHELL, "pressure": [[0, 200e3], [0.05, 120e3]]},
-                    terrain={"engine": "rigid", "radius": None, "cohesion": None, "layers": None, "length": None, "width": None}),
+                    terrain={"engine": "rigid", "radius": None, "cohesion": None,
+                             "layers": None, "length": None, "width": None}),
     "tangents": run_of(0.08, rig={"touchdown_damping": 0, "carrier_mass": 100}, tire={**SHELL, "contact_tangent": True},
                        terrain=SMALL_BED),
-    "wheels": run_of(0.08, rig={"touchdown_damping": 0, "wheels": [{"lateral": -0.23, "carrier_mass": 300}, {"lateral": 0.23}]},
+    "wheels": run_of(0.08, rig={"touchdown_damping": 0,
+                                "wheels": [{"lateral": -0.23, "carrier_mass": 300}, {"lateral": 0.23}]},
                      terrain={**SMALL_BED, "width": 0.95}),
 }
 SHORT = {"run.end": 0.06}

@@ -32,12 +32,11 @@ constexpr double kStep = 1e-3;  // communication step, s
 // The lines that would be in tire/tires.cpp, terrain/terrains.cpp and rigs/rigs.cpp.
 constexpr tire::TireModel kTire{"spring_wheel", tire::read_spring_wheel};
 constexpr rigs::RigKind kRig{"held_hub", key_list<rigs::HeldHubOptions>(), rigs::read_held_hub};
-constexpr terrain::TerrainEntry kTerrain{"spring_mat", key_list<terrain::SpringMatOptions>(),
-                                         terrain::read_spring_mat};
+constexpr terrain::TerrainEntry kTerrain{"spring_mat", key_list<terrain::SpringMatOptions>(), terrain::read_spring_mat};
 
 /// The tire file "spring_wheel.json".
 json wheel_file() {
-  return {{"format_version", 1}, {"model", "spring_wheel"}, {"radius", 0.4},   {"width", 0.2},
+  return {{"format_version", 1}, {"model", "spring_wheel"}, {"radius", 0.4},    {"width", 0.2},
           {"spokes", 36},        {"stiffness", 2e4},        {"damping", 200.0}, {"mass", 30.0}};
 }
 
@@ -125,8 +124,7 @@ TEST(Dummies, wheel_pressed_on_a_mat_gives_the_force_of_two_springs_in_series) {
   bench.place();
   for (int n = 0; n < 200; ++n) bench.step();
   // At the bottom a pair of vertices: A = w · chord / 2 each, k of the wheel in series with κ A of the mat.
-  const double chord = 2.0 * 0.4 * std::sin(std::numbers::pi / 36), mat = 1e7 * 0.2 * chord / 2.0,
-               wheel = 2e4;
+  const double chord = 2.0 * 0.4 * std::sin(std::numbers::pi / 36), mat = 1e7 * 0.2 * chord / 2.0, wheel = 2e4;
   const double expected = 2.0 * depth * wheel * mat / (wheel + mat);
   EXPECT_NEAR(bench.contact[0].force.z(), expected, 1e-9 * expected);
   EXPECT_NEAR(bench.terrain->state().wall_impulse.z(), -bench.terrain->state().surface_impulse.z(), 1e-12);
@@ -196,8 +194,7 @@ TEST(Dummies, tire_file_is_refused_by_file_key_and_value) {
   EXPECT_EQ(complaint("width", nullptr), file + "'width': is missing, expected a number");
   EXPECT_EQ(complaint("stifness", 1.0), file + "'stifness': is unknown, expected 'stiffness'?");
   EXPECT_TRUE(complaint("spokes", 35.5).starts_with(file + "'spokes': is 35.5, expected a whole number"));
-  EXPECT_TRUE(
-      complaint("format_version", 99).starts_with(file + "'format_version': is 99: the file is newer"));
+  EXPECT_TRUE(complaint("format_version", 99).starts_with(file + "'format_version': is 99: the file is newer"));
   EXPECT_EQ(complaint("name", "a wheel of springs"), "accepted");
 }
 
@@ -209,8 +206,7 @@ TEST(Dummies, what_a_tire_does_not_take_from_the_scenario_is_told) {
   options.friction = 0.5;
   options.pressure.knots = {{0.0, 2e5}};
   s.tires = {kTire.read(wheel_file(), options)};
-  EXPECT_EQ(checked(s),
-            "scenario.json: key 'tire.pressure': is ignored: a spring wheel tire does not use it\n");
+  EXPECT_EQ(checked(s), "scenario.json: key 'tire.pressure': is ignored: a spring wheel tire does not use it\n");
 }
 
 TEST(Dummies, a_terrain_without_contact_tangents_refuses_tires_that_ask_for_them) {
@@ -236,8 +232,7 @@ class HalfDescribed final : public rigs::RigSpec {
     return d;
   }
   std::unique_ptr<rigs::Rig> make() const override { return nullptr; }
-  void fill_starts(std::span<const rigs::WheelSize>, double, std::optional<double>,
-                   std::span<const double>) override {}
+  void fill_starts(std::span<const rigs::WheelSize>, double, std::optional<double>, std::span<const double>) override {}
   void complete(json&) const override {}
 };
 
@@ -249,8 +244,9 @@ TEST(Dummies, a_rig_that_describes_fewer_wheels_than_it_has_is_refused_by_name) 
     scenario::describe_rig(s);
     FAIL() << "not refused";
   } catch (const Error& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with(
-        "scenario.json: key 'rig.type': the rig 'half' describes 1 of its 2 wheels, expected all"))
+    EXPECT_TRUE(
+        std::string(error.what())
+            .starts_with("scenario.json: key 'rig.type': the rig 'half' describes 1 of its 2 wheels, expected all"))
         << error.what();
   }
 }
@@ -280,8 +276,7 @@ TEST(Dummies, key_is_a_field_and_an_entry_of_the_schema) {
   EXPECT_TRUE(schema.problems(document).empty());
   terrain::SpringMatOptions options;
   read_fields(document["terrain"], options);
-  EXPECT_EQ(options.mat_stiffness, terrain::SpringMatOptions().mat_stiffness)
-      << "the schema's default is the struct's";
+  EXPECT_EQ(options.mat_stiffness, terrain::SpringMatOptions().mat_stiffness) << "the schema's default is the struct's";
   EXPECT_EQ(schema.problems({{"terrain", {{"mat_stiffness", 0}}}}).size(), 1U);
   const std::vector<scenario::Problem> misspelt = schema.problems({{"terrain", {{"mat_stifness", 1e7}}}});
   ASSERT_EQ(misspelt.size(), 1U);

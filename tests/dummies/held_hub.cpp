@@ -131,8 +131,7 @@ class HeldHubSpec final : public RigSpec {
     return d;
   }
   std::unique_ptr<Rig> make() const override { return std::make_unique<HeldHub>(options_); }
-  void fill_starts(std::span<const WheelSize>, double, std::optional<double>,
-                   std::span<const double>) override {}
+  void fill_starts(std::span<const WheelSize>, double, std::optional<double>, std::span<const double>) override {}
   void complete(nlohmann::json&) const override {}
 
  private:

@@ -49,8 +49,8 @@ class SpringMat final : public Terrain {
     guests_.push_back(std::move(guest));
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                  std::span<NodalForces> forces, std::span<ContactSums> contact) override {
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> contact) override {
     FURROW_ASSERT(targets.size() == guests_.size(), targets.size(), guests_.size());
     FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
     contacts_ = 0;
@@ -161,9 +161,7 @@ class SpringMatSpec final : public TerrainSpec {
     e.stable_reason = "no grains";
     return e;
   }
-  std::unique_ptr<Terrain> make(const TerrainContext&) const override {
-    return std::make_unique<SpringMat>(options_);
-  }
+  std::unique_ptr<Terrain> make(const TerrainContext&) const override { return std::make_unique<SpringMat>(options_); }
 
  private:
   SpringMatOptions options_;

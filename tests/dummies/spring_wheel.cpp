@@ -35,14 +35,12 @@ TireShape wheel_shape(const SpringWheelOptions& o) {
     for (const double side : {0.5, -0.5})
       shape.vertex.push_back(o.radius * direction(k, o.spokes) + Vec3(0.0, side * o.width, 0.0));
   for (int k = 0; k < o.spokes; ++k) {
-    const int left = 2 * k, right = left + 1, next_left = 2 * ((k + 1) % o.spokes),
-              next_right = next_left + 1;
+    const int left = 2 * k, right = left + 1, next_left = 2 * ((k + 1) % o.spokes), next_right = next_left + 1;
     shape.mesh.triangles.push_back({right, next_right, left});
     shape.mesh.triangles.push_back({next_right, next_left, left});
   }
   shape.mesh.vertex_count = 2 * o.spokes;
-  const double spin = 0.5 * o.mass * o.radius * o.radius,
-               other = 0.5 * spin + o.mass * o.width * o.width / 12.0;
+  const double spin = 0.5 * o.mass * o.radius * o.radius, other = 0.5 * spin + o.mass * o.width * o.width / 12.0;
   shape.mass = {o.mass, Vec3(other, spin, other).asDiagonal()};
   shape.radius = o.radius;
   shape.tread_width = o.width;
@@ -64,10 +62,7 @@ ContactMaterial rubber() {
 class SpringWheel final : public Tire {
  public:
   SpringWheel(const SpringWheelOptions& options, TireShape shape)
-      : options_(options),
-        shape_(std::move(shape)),
-        deflection_(shape_.vertex.size()),
-        rate_(shape_.vertex.size()) {}
+      : options_(options), shape_(std::move(shape)), deflection_(shape_.vertex.size()), rate_(shape_.vertex.size()) {}
 
   const SurfaceMesh& mesh() const override { return shape_.mesh; }
   ContactMaterial material() const override { return shape_.material; }
@@ -119,8 +114,7 @@ class SpringWheel final : public Tire {
     rim_ = end;
     for (std::size_t v = 0; v < deflection_.size(); ++v)
       if (!(deflection_[v] < kMostDeflection * options_.radius))
-        return Outcome::failure("reached its rim",
-                                fmt::format("vertex {} is {:g} m deep", v, deflection_[v]));
+        return Outcome::failure("reached its rim", fmt::format("vertex {} is {:g} m deep", v, deflection_[v]));
     return {};
   }
 
@@ -129,8 +123,7 @@ class SpringWheel final : public Tire {
   TireDiagnostics diagnostics() const override {
     TireDiagnostics d;
     d.momentum = shape_.mass.mass * rim_.velocity;
-    d.kinetic_energy =
-        0.5 * (d.momentum.dot(rim_.velocity) + rim_.angular_velocity.dot(angular_momentum(rim_)));
+    d.kinetic_energy = 0.5 * (d.momentum.dot(rim_.velocity) + rim_.angular_velocity.dot(angular_momentum(rim_)));
     d.elastic_energy = d.pressure_energy = d.solver_loss = 0.0;
     for (const double u : deflection_) d.elastic_energy += 0.5 * options_.stiffness * u * u;
     d.potential_energy = -shape_.mass.mass * kGravity.dot(rim_.position);
@@ -160,9 +153,7 @@ class SpringWheel final : public Tire {
   }
 
  private:
-  Vec3 direction_of(std::size_t vertex) const {
-    return direction(static_cast<int>(vertex) / 2, options_.spokes);
-  }
+  Vec3 direction_of(std::size_t vertex) const { return direction(static_cast<int>(vertex) / 2, options_.spokes); }
 
   Vec3 angular_momentum(const RimState& rim) const {
     const Mat3 turn = rim.orientation.toRotationMatrix();
@@ -185,8 +176,7 @@ class SpringWheel final : public Tire {
     const Vec3 way = (to.position - from.position) / duration - 0.5 * (from.velocity + to.velocity),
                turn = mean_turn(from.orientation, to.orientation) / duration -
                       0.5 * (from.angular_velocity + to.angular_velocity);
-    numerical_loss_ += shape_.mass.mass * (to.velocity - from.velocity).dot(way) +
-                       (after - before).dot(turn) +
+    numerical_loss_ += shape_.mass.mass * (to.velocity - from.velocity).dot(way) + (after - before).dot(turn) +
                        0.5 * (from.angular_velocity.dot(after) - to.angular_velocity.dot(before));
   }
 

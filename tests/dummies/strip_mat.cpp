@@ -62,8 +62,7 @@ class StripMat final : public Terrain {
     field.ny = std::max(1, static_cast<int>(options_.width / kColumn));
     field.x0 = 0.5 * kColumn;
     field.y0 = -0.5 * kColumn * (field.ny - 1);
-    for (const double h : height_)
-      field.height.insert(field.height.end(), static_cast<std::size_t>(field.ny), h);
+    for (const double h : height_) field.height.insert(field.height.end(), static_cast<std::size_t>(field.ny), h);
     return field;
   }
 
@@ -77,8 +76,8 @@ class StripMat final : public Terrain {
     guests_.push_back(std::move(guest));
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                  std::span<NodalForces> forces, std::span<ContactSums> contact) override {
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> contact) override {
     FURROW_ASSERT(targets.size() == guests_.size(), targets.size(), guests_.size());
     FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
     std::vector<Push> own = own_vertices(targets, duration);
@@ -89,9 +88,8 @@ class StripMat final : public Terrain {
     }
     std::erase_if(own, [](const Push& push) { return push.force == 0.0; });
     std::vector<Push> all = group_ ? gather_on_all<Push>(*group_, own) : own;
-    std::sort(all.begin(), all.end(), [](const Push& a, const Push& b) {
-      return std::pair(a.tire, a.vertex) < std::pair(b.tire, b.vertex);
-    });
+    std::sort(all.begin(), all.end(),
+              [](const Push& a, const Push& b) { return std::pair(a.tire, a.vertex) < std::pair(b.tire, b.vertex); });
     for (std::size_t k = 0; k < guests_.size(); ++k) {
       forces[k].clear();
       contact[k] = {};
@@ -120,8 +118,7 @@ class StripMat final : public Terrain {
   void frame(TerrainFrame& out) const override {
     out = {};
     for (int i = first_; i < end_; ++i) {
-      for (const double x : {(i + 0.5) * kColumn, 0.0, height_[i]})
-        out.position.push_back(static_cast<float>(x));
+      for (const double x : {(i + 0.5) * kColumn, 0.0, height_[i]}) out.position.push_back(static_cast<float>(x));
       out.speed.push_back(0.0F);
       out.radius.push_back(kFrameRadius);
     }
@@ -133,8 +130,7 @@ class StripMat final : public Terrain {
       save_value(archive, name(k) + "area", guests_[k].area);
     }
     save_value(archive, "strip_mat/guests", static_cast<std::int64_t>(guests_.size()));
-    save_value(archive, "strip_mat/height",
-               std::vector<double>(height_.begin() + first_, height_.begin() + end_));
+    save_value(archive, "strip_mat/height", std::vector<double>(height_.begin() + first_, height_.begin() + end_));
     save_value(archive, "strip_mat/contacts", contacts_);
     save_value(archive, "strip_mat/work", work_);
     save_value(archive, "strip_mat/impulse", impulse_);
@@ -175,8 +171,7 @@ class StripMat final : public Terrain {
     for (std::size_t k = 0; k < guests_.size(); ++k)
       for (std::size_t v = 0; v < guests_[k].position.size(); ++v) {
         const int i = column(target(targets[k], v, duration).x());
-        if (i >= first_ && i < end_)
-          own.push_back({static_cast<std::int32_t>(k), static_cast<std::int32_t>(v)});
+        if (i >= first_ && i < end_) own.push_back({static_cast<std::int32_t>(k), static_cast<std::int32_t>(v)});
       }
     return own;
   }
@@ -185,8 +180,7 @@ class StripMat final : public Terrain {
   void press(Push& push, std::span<const SurfaceState> targets, double duration, int s, int substeps) {
     const Guest& guest = guests_[push.tire];
     const Vec3 start = guest.position[push.vertex], end = target(targets[push.tire], push.vertex, duration);
-    const double rate = (end.z() - start.z()) / duration,
-                 z = start.z() + (end.z() - start.z()) * (s + 0.5) / substeps;
+    const double rate = (end.z() - start.z()) / duration, z = start.z() + (end.z() - start.z()) * (s + 0.5) / substeps;
     double& height = height_[column(end.x())];
     if (!(z < height)) return;
     const double area = guest.area[push.vertex];
@@ -208,8 +202,8 @@ class StripMat final : public Terrain {
       height_[i] += kEvening * (before[i - 1] - 2.0 * before[i] + before[i + 1]);
   }
 
-  void add(const Push& push, std::span<const SurfaceState> targets, double duration,
-           std::span<NodalForces> forces, std::span<ContactSums> contact) {
+  void add(const Push& push, std::span<const SurfaceState> targets, double duration, std::span<NodalForces> forces,
+           std::span<ContactSums> contact) {
     const Vec3 force(0.0, 0.0, push.force);
     const Vec3 middle =
         0.5 * (guests_[push.tire].position[push.vertex] + target(targets[push.tire], push.vertex, duration));

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""The whole command line with random arguments: an exit code that the program documents, and either a result or an error
+"""The whole command line with random arguments: an exit code that the program documents, and either a result or an
+error
 message; never a crash, never silence.
 
 usage: command_line.py [--cases N] [--seed S] [--state FILE] [--only CASE] [--patience S]
 
-Case k of a seed is always the same. With --state a series goes on where it left off, and what was found stays in that file.
-The program is $FURROW. No ranks are started: the launcher is one that does not exist. Cases share a cache, which is empty
-before every fiftieth: a user has one too, and measuring the machine anew takes seconds of each `validate`.
+Case k of a seed is always the same. With --state a series goes on where it left off, and what was found stays in that
+file. The program is $FURROW. No ranks are started: the launcher is one that does not exist. Cases share a cache, which
+is empty before every fiftieth: a user has one too, and measuring the machine anew takes seconds of each `validate`.
 """
 import argparse
 import collections
@@ -26,7 +27,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 CODES = {0, 2, 3, 4, 5, 6, 75}
 PATIENCE = 10.0  # s of the processor until a case is asked to stop: the same on a busy machine
-HANGS = 600.0    # s by the clock, without those in which it waits for a processor, until a case is asked to stop, and as long
+# s by the clock, without those in which it waits for a processor, until a case is asked to stop, and as long
+HANGS = 600.0
 #                  again until it is a finding
 LOOKED_AT = 0.2  # s by the clock between two looks at the processor time
 FRESH_CACHE = 50  # cases
@@ -37,20 +39,31 @@ SMALL = {
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
     "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
 }
-COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil", "press", "modes", "kc", "sweep", "calibrate", "report", "events", "list", "new", "bench",
+COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil",
+            "press", "modes", "kc", "sweep", "calibrate", "report", "events", "list", "new", "bench",
             "bench grains", "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
 # Those that compute get rarely what they need to begin.
 WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 2, 3, 3, 4, 2, 1, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
-FLAGS = ["--set", "--threads", "--out", "--overwrite", "--orders", "--count", "--elements-circumference", "--profile", "--no-plots", "--json", "--until", "--seeds", "--speed", "--only",
-         "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",
-         "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle", "--save-bed", "--step", "--tire", "--pressure",
-         "--tolerance", "--renewal", "--elements-width", "--quiet", "--vtk", "--cleat-position", "--camber", "--slurm", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
-FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json", "empty.json", "list.json", "binary.json", "folder", "run",
-         "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json", "hmmwv_layered.json", "rover.json", "car.json", "curb.json", "cleat_press.json", "aligator_planar.json", "hmmwv_ring.json", "/dev/null", "/proc/self/mem", "/",
+FLAGS = ["--set", "--threads", "--out", "--overwrite", "--orders", "--count",
+         "--elements-circumference", "--profile", "--no-plots", "--json", "--until", "--seeds", "--speed", "--only",
+         "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height",
+         "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",
+         "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle",
+         "--save-bed", "--step", "--tire", "--pressure",
+         "--tolerance", "--renewal", "--elements-width", "--quiet", "--vtk",
+         "--cleat-position", "--camber", "--slurm", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
+FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json",
+         "empty.json", "list.json", "binary.json", "folder", "run",
+         "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json",
+         "hmmwv_layered.json", "rover.json", "car.json", "curb.json", "cleat_press.json",
+         "aligator_planar.json", "hmmwv_ring.json", "/dev/null", "/proc/self/mem", "/",
          ".", "..", "", " ", "a" * 300, "a" * 5000, "folder/", "run/summary.json", "-", "--", "$(touch pwn)", "~"]
-ODD = ["0", "1", "-1", "1e400", "-1e400", "nan", "inf", "1e-320", "0x10", "1e9", "4e-5", "0.3", "true", "null", "[]", "{}", "[[0, 1]]",
-       "[1, 2, 3]", "\"\"", "'x'", "x", "", " ", "[" * 70, "{\"a\": {\"a\": 1}}", "9" * 400, "1,5", "ü", "🚙", "plate", "cleat", "auto", "mindlin",
-       "2147483648", "9223372036854775808", "18446744073709551616", "-0", "+1", "1.", ".5", "1e", "%s%n", "\\", "\n", "\x1b[31m", "\udcff", "a=b"]
+ODD = ["0", "1", "-1", "1e400", "-1e400", "nan", "inf", "1e-320", "0x10",
+       "1e9", "4e-5", "0.3", "true", "null", "[]", "{}", "[[0, 1]]",
+       "[1, 2, 3]", "\"\"", "'x'", "x", "", " ", "[" * 70, "{\"a\": {\"a\": 1}}",
+       "9" * 400, "1,5", "ü", "🚙", "plate", "cleat", "auto", "mindlin",
+       "2147483648", "9223372036854775808", "18446744073709551616", "-0",
+       "+1", "1.", ".5", "1e", "%s%n", "\\", "\n", "\x1b[31m", "\udcff", "a=b"]
 
 
 def leaves(schema, node, path=""):
@@ -85,7 +98,8 @@ def make_files(folder):
 def arguments_of(chance, keys):
     """A command line that is neither always wrong nor often right."""
     def value():
-        return chance.choice(ODD) if chance.random() < 0.7 else repr(chance.uniform(-10, 10) * 10.0 ** chance.randint(-12, 12))
+        return chance.choice(ODD) if chance.random() < 0.7 else repr(chance.uniform(-10, 10)
+                                                                     * 10.0 ** chance.randint(-12, 12))
 
     def setting():
         key = chance.choice(keys)
@@ -115,7 +129,8 @@ def finding(arguments, code, out, err):
     """What is wrong with an answer; None when nothing is."""
     if code not in CODES:
         return f"exit code {code}" if code >= 0 else f"killed by {signal.Signals(-code).name}"
-    for word in ("unexpected:", "Traceback", "terminate called", "Sanitizer", "runtime error", "nlohmann", "bad_alloc", "basic_string"):
+    for word in ("unexpected:", "Traceback", "terminate called", "Sanitizer",
+                 "runtime error", "nlohmann", "bad_alloc", "basic_string"):
         if word in err or word in out:
             return f"says '{word}'"
     if re.search(r"[\x00-\x08\x0b-\x1f\x7f]", err):
@@ -172,7 +187,8 @@ def run_case(arguments, folder, cache, patience):
     environment = {**os.environ, "FURROW_MPIRUN": "/no/mpirun", "FURROW_HOME": str(ROOT), "XDG_CACHE_HOME": str(cache),
                    "OMP_NUM_THREADS": "2"}
     raw = [argument.encode("utf-8", "surrogateescape") for argument in arguments]
-    with subprocess.Popen([PROGRAM.encode(), *raw], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    with subprocess.Popen([PROGRAM.encode(), *raw], cwd=folder, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           env=environment, start_new_session=True) as process:
         answer = answer_within(process, patience, HANGS)
         asked = answer is None
@@ -194,7 +210,8 @@ def main():
     parser.add_argument("--state", type=pathlib.Path, help="JSON file of what is done; made, or gone on from")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after this time")
     parser.add_argument("--only", type=int, help="this case, with its output")
-    parser.add_argument("--patience", type=float, default=PATIENCE, help="s of the processor until a case is asked to stop")
+    parser.add_argument("--patience", type=float, default=PATIENCE,
+                        help="s of the processor until a case is asked to stop")
     options = parser.parse_args()
     schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
     keys = sorted(set(leaves(schema, schema)))

@@ -3,8 +3,9 @@
 
 usage: coverage.py --out DIR [--build DIR] [--table FILE]
 
-DIR is what run_targets.py filled. Every target reads its corpus once more, from a build of the preset fuzz; the table says
-how many lines of each file are code, and how many of them were run by any target. Files that no target has are named beside it.
+DIR is what run_targets.py filled. Every target reads its corpus once more, from a build of the preset fuzz; the table
+says how many lines of each file are code, and how many of them were run by any target. Files that no target has are
+named beside it.
 """
 import argparse
 import json
@@ -42,8 +43,10 @@ def replay(target, options, folder):
     profile = folder / f"{target}.profraw"
     corpus = options.out / target / "corpus"
     corpus.mkdir(parents=True, exist_ok=True)
-    with subprocess.Popen([str(options.build / f"fuzz_{target}"), "-runs=0", "-timeout=60", str(corpus)], cwd=folder, stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL, env={**environment(folder), "LLVM_PROFILE_FILE": str(profile)}) as process:
+    with subprocess.Popen([str(options.build / f"fuzz_{target}"), "-runs=0", "-timeout=60", str(corpus)],
+                          cwd=folder, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL,
+                          env={**environment(folder), "LLVM_PROFILE_FILE": str(profile)}) as process:
         process.wait()
     shutil.rmtree(f"/dev/shm/furrow_fuzz_{process.pid}", ignore_errors=True)
     if process.returncode != 0 or not profile.exists():
@@ -62,7 +65,8 @@ def main():
         raise SystemExit(f"coverage.py: READERS names what does not exist: {', '.join(gone)}")
     targets = [target for target in TARGETS if (options.build / f"fuzz_{target}").exists()]
     if not targets:
-        raise SystemExit(f"coverage.py: {options.build} holds no target, expected cmake --preset fuzz && ninja -C build-fuzz fuzz")
+        raise SystemExit(f"coverage.py: {options.build} holds no target, expected cmake --preset fuzz && ninja -C "
+                         f"build-fuzz fuzz")
     if len(targets) < len(TARGETS):
         print(f"coverage.py: not built: {', '.join(sorted(set(TARGETS) - set(targets)))}", file=sys.stderr)
     with tempfile.TemporaryDirectory() as name:
@@ -72,15 +76,19 @@ def main():
         subprocess.run(["llvm-profdata", "merge", *map(str, profiles), "-o", str(merged)], check=True)
         programs = [str(options.build / f"fuzz_{target}") for target in targets]
         objects = [argument for program in programs[1:] for argument in ("-object", program)]
-        shown = subprocess.run(["llvm-cov", "export", "-summary-only", f"-instr-profile={merged}", programs[0], *objects,
-                                *(str(ROOT / reader) for reader in READERS)], check=True, capture_output=True, text=True).stdout
+        shown = subprocess.run(["llvm-cov", "export", "-summary-only",
+                                f"-instr-profile={merged}", programs[0], *objects,
+                                *(str(ROOT / reader) for reader in READERS)],
+                               check=True, capture_output=True, text=True).stdout
     lines = []
-    files = {os.path.relpath(file["filename"], ROOT): file["summary"]["lines"] for file in json.loads(shown)["data"][0]["files"]}
+    files = {os.path.relpath(file["filename"], ROOT): file["summary"]["lines"]
+             for file in json.loads(shown)["data"][0]["files"]}
     for name, of in sorted(files.items()):
         lines.append(f"{name},{of['count']},{of['covered']},{of['percent']:.0f}")
     if absent := sorted(set(READERS) - set(files)):
         print(f"coverage.py: in no target: {', '.join(absent)}", file=sys.stderr)
-    made = {"commit": provenance.commit(), "compiler": provenance.compiler_of(programs[0]), "processor": provenance.processor(),
+    made = {"commit": provenance.commit(), "compiler": provenance.compiler_of(programs[0]),
+            "processor": provenance.processor(),
             "command": provenance.command(), "note": f"of the corpora of {', '.join(targets)}"}
     with open(options.table, "w", newline="", encoding="utf-8") as table:
         provenance.write_header(table, made)

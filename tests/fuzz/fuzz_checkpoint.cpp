@@ -47,8 +47,7 @@ std::string signed_manifest(const fuzz::Json& document) {
   if (!manifest.is_object()) return manifest.dump();
   if (!manifest.contains("scenario")) {
     manifest["scenario"] = completed(document.value("scenario", fuzz::Json()).dump());
-    if (const auto patch = document.find("before"); patch != document.end())
-      manifest["scenario"].merge_patch(*patch);
+    if (const auto patch = document.find("before"); patch != document.end()) manifest["scenario"].merge_patch(*patch);
   }
   if (!manifest.contains("parts")) {
     fuzz::Json part{{"file", "rig.h5"}};
@@ -84,8 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   written("run/checkpoints/000000000010/rig.h5", "a part");
   try {
     const auto manifest = written("run/checkpoints/000000000010/manifest.json", signed_manifest(document));
-    const auto run =
-        written("run/scenario.json", document.value("scenario", fuzz::Json()).dump()).parent_path();
+    const auto run = written("run/scenario.json", document.value("scenario", fuzz::Json()).dump()).parent_path();
     written("run/summary_failed.json", document.value("failed", fuzz::Json()).dump());
     const fuzz::Json lines = document.value("lines", fuzz::Json());
     const checkpoint::CheckpointManifest read = checkpoint::read_checkpoint(manifest.parent_path());

@@ -1,5 +1,5 @@
-// Scenarios with valid keys and odd values, through all that `furrow validate` does. Most values are of the type and the
-// range that the schema asks for, or just beyond: what it refuses at once tells little about what comes after it.
+// Scenarios with valid keys and odd values, through all that `furrow validate` does. Most values are of the type and
+// the range that the schema asks for, or just beyond: what it refuses at once tells little about what comes after it.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <algorithm>
@@ -128,12 +128,10 @@ json start(FuzzedDataProvider& in) {
     case 0:
       return {{"tire", tire}, {"terrain", {{"engine", "rigid"}}}};
     case 1:
-      return {{"tires", {tire, tire}},
-              {"terrain", bed},
-              {"rig", {{"wheels", {{{"lateral", -0.5}}, {{"lateral", 0.5}}}}}}};
+      return {
+          {"tires", {tire, tire}}, {"terrain", bed}, {"rig", {{"wheels", {{{"lateral", -0.5}}, {{"lateral", 0.5}}}}}}};
     case 2:
-      return {{"tire", tire},
-              {"terrain", {{"radius", 0.03}, {"length", 8.0}, {"material", "loose_sand.json"}}}};
+      return {{"tire", tire}, {"terrain", {{"radius", 0.03}, {"length", 8.0}, {"material", "loose_sand.json"}}}};
     default:
       return {{"tire", {{"file", "toroidal.json"}}}, {"terrain", bed}};
   }

@@ -18,7 +18,8 @@ void read_tire(const std::string& text) {
 }
 
 void read_table(const std::uint8_t* data, std::size_t size) {
-  for (const tire::handling::SweepPoint& point : tire::handling::read_sweep_table(fuzz::input_file("sweep.csv", data, size)))
+  for (const tire::handling::SweepPoint& point :
+       tire::handling::read_sweep_table(fuzz::input_file("sweep.csv", data, size)))
     if (!std::isfinite(point.state.slip) || !std::isfinite(point.loaded_radius)) __builtin_trap();
 }
 

@@ -1,5 +1,5 @@
-// HDF5 files as a stranger could make them, with every feature of the library that matters to a reader, some of them cut
-// short; for the reader of datasets, of archives and of positions. Half of the files are frames of grains whose
+// HDF5 files as a stranger could make them, with every feature of the library that matters to a reader, some of them
+// cut short; for the reader of datasets, of archives and of positions. Half of the files are frames of grains whose
 // numbers, types and shapes differ a little from what they should be, as a bed that a user brings.
 #include <algorithm>
 
@@ -40,9 +40,8 @@ void add_dataset(FuzzedDataProvider& in, hid_t file) {
     chunk.push_back(in.ConsumeIntegralInRange<hsize_t>(1, in.ConsumeBool() ? 20 : 1u << 30));
   }
   const Handle space(in.ConsumeIntegralInRange(0, 20) == 0 ? H5Screate(H5S_NULL)
-                     : shape.empty()
-                         ? H5Screate(H5S_SCALAR)
-                         : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                     : shape.empty()                       ? H5Screate(H5S_SCALAR)
+                                     : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                      H5Sclose);
   const Handle made(H5Pcreate(H5P_DATASET_CREATE), H5Pclose), link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(link, 1);
@@ -67,8 +66,7 @@ void add_dataset(FuzzedDataProvider& in, hid_t file) {
   }
   const hid_t type = type_of(in);
   const Handle set(H5Dcreate2(file, name_of(in).c_str(), type, space, link, made, H5P_DEFAULT), H5Dclose);
-  if (!set.ok() || count <= 0 || count > 8000 || H5Pget_external_count(made) > 0 ||
-      H5Tget_class(type) == H5T_REFERENCE)
+  if (!set.ok() || count <= 0 || count > 8000 || H5Pget_external_count(made) > 0 || H5Tget_class(type) == H5T_REFERENCE)
     return;
   if (!chunk.empty() && H5Pget_layout(made) == H5D_CHUNKED) {
     hsize_t bytes = 16;
@@ -111,8 +109,7 @@ void fill(FuzzedDataProvider& in, hid_t file) {
         H5Lcreate_hard(file, name_of(in).c_str(), file, name_of(in).c_str(), H5P_DEFAULT, H5P_DEFAULT);
         break;
       case 3: {
-        const Handle group(H5Gcreate2(file, name_of(in).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Gclose);
+        const Handle group(H5Gcreate2(file, name_of(in).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
         break;
       }
       case 4:
@@ -150,8 +147,7 @@ void add_table(FuzzedDataProvider& in, hid_t file, const char* name, hsize_t row
 void fill_frame(FuzzedDataProvider& in, hid_t file) {
   const auto grains = in.ConsumeIntegralInRange<hsize_t>(0, 12);
   add_table(in, file, "position", grains, in.ConsumeIntegralInRange(0, 9) == 0 ? 4 : 3);
-  if (in.ConsumeBool())
-    add_table(in, file, "radius", in.ConsumeIntegralInRange(0, 4) == 0 ? grains + 1 : grains, 1);
+  if (in.ConsumeBool()) add_table(in, file, "radius", in.ConsumeIntegralInRange(0, 4) == 0 ? grains + 1 : grains, 1);
   if (in.ConsumeIntegralInRange(0, 4) == 0) add_table(in, file, "triangle", 1, 3);
   if (in.ConsumeBool()) add_attribute(in, file);
 }
@@ -178,8 +174,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fill(in, out);
   }
   if (in.ConsumeIntegralInRange(0, 9) == 0)
-    std::filesystem::resize_file(
-        file, in.ConsumeIntegralInRange<std::uintmax_t>(0, std::filesystem::file_size(file)));
+    std::filesystem::resize_file(file, in.ConsumeIntegralInRange<std::uintmax_t>(0, std::filesystem::file_size(file)));
   attempt([&] {
     const Hdf5Reader reader(file);
     for (const char* name : {"x", "position", "radius", "group/x"}) {

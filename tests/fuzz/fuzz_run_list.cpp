@@ -1,5 +1,5 @@
-// A folder's list of what furrow wrote there, which says what --overwrite may remove: whatever it holds, nothing outside
-// the folder is found by it, and nothing behind a link.
+// A folder's list of what furrow wrote there, which says what --overwrite may remove: whatever it holds, nothing
+// outside the folder is found by it, and nothing behind a link.
 #include "nodes/launch/run_list.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/fuzz/input_file.hpp"
@@ -37,8 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const launch::RunList::Found found = list.find(run(), inside);
       for (const auto& names : {found.files, found.folders})
         for (const std::string& name : names)
-          if (name.starts_with("link/") || fs::path(name).is_absolute() ||
-              name.find("..") != std::string::npos)
+          if (name.starts_with("link/") || fs::path(name).is_absolute() || name.find("..") != std::string::npos)
             __builtin_trap();
     }
     for (const std::string& form : list.forms()) {

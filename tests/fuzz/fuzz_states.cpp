@@ -1,6 +1,6 @@
 // Saved states with numbers changed, arrays cut, renamed and exchanged, and a checksum that fits: what a bed file, of
-// this format or an earlier one, or the part of a checkpoint may hold that somebody forged. Read back from disk, restored
-// and stepped; of engine liggghts, read and made into the state of engine dem.
+// this format or an earlier one, or the part of a checkpoint may hold that somebody forged. Read back from disk,
+// restored and stepped; of engine liggghts, read and made into the state of engine dem.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <cmath>
@@ -145,9 +145,7 @@ Archive changed(FuzzedDataProvider& in, Archive archive) {
         break;
       case 1:
         std::visit(
-            [&](auto& values) {
-              values.resize(in.ConsumeIntegralInRange<std::size_t>(0, 2 * values.size() + 2));
-            },
+            [&](auto& values) { values.resize(in.ConsumeIntegralInRange<std::size_t>(0, 2 * values.size() + 2)); },
             array);
         break;
       default:
@@ -164,12 +162,12 @@ Archive changed(FuzzedDataProvider& in, Archive archive) {
                                            1e6,
                                            std::numeric_limits<double>::infinity(),
                                            std::numeric_limits<double>::quiet_NaN()};
-                value = in.ConsumeBool() ? in.PickValueInArray(kOdd)
-                                         : value * in.ConsumeFloatingPointInRange(-4.0, 4.0);
+                value =
+                    in.ConsumeBool() ? in.PickValueInArray(kOdd) : value * in.ConsumeFloatingPointInRange(-4.0, 4.0);
               } else {
-                value = in.ConsumeBool() ? in.ConsumeIntegral<T>()
-                                         : static_cast<T>(static_cast<std::uint64_t>(value) +
-                                                          in.ConsumeIntegralInRange(0, 8) - 4);
+                value = in.ConsumeBool()
+                            ? in.ConsumeIntegral<T>()
+                            : static_cast<T>(static_cast<std::uint64_t>(value) + in.ConsumeIntegralInRange(0, 8) - 4);
               }
             },
             array);

@@ -58,8 +58,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (document.is_object() && document.contains("file")) text = document["file"].dump();
   if (!document.is_object()) document = fuzz::Json::object();
   try {
-    const auto file =
-        fuzz::input_file("tire.json", reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    const auto file = fuzz::input_file("tire.json", reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
     read(section_of(document, file.string()));
   } catch (const Error& error) {
     if (std::string(error.what()).empty()) __builtin_trap();

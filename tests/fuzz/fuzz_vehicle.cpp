@@ -1,4 +1,5 @@
-// Vehicles' files and drivers' files with their tables of points. The document: {"vehicle": …, "driver": …, "csv": a text}
+// Vehicles' files and drivers' files with their tables of points. The document: {"vehicle": …, "driver": …, "csv": a
+// text}
 #include "protocol/core/error.hpp"
 #include "tests/fuzz/input_file.hpp"
 #include "tests/fuzz/json_mutator.hpp"
@@ -32,7 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto part = [&](const char* key) {
     if (!document.contains(key)) return text;
     const fuzz::Json& found = document[key];
-    return found.is_string() ? found.get<std::string>() : found.dump(-1, ' ', false, fuzz::Json::error_handler_t::replace);
+    return found.is_string() ? found.get<std::string>()
+                             : found.dump(-1, ' ', false, fuzz::Json::error_handler_t::replace);
   };
   one_message([&] {
     const vehicle::VehicleSpec spec = vehicle::read_vehicle(written("vehicle.json", part("vehicle")));

@@ -1,4 +1,5 @@
-"""What every target has done so far: a table of processor time, executions, coverage and findings, a row for each target and
+"""What every target has done so far: a table of processor time, executions, coverage and findings, a row for each
+target and
 commit. Several processes may add to it at a time."""
 import csv
 import fcntl
@@ -15,22 +16,27 @@ TABLE = ROOT / "tests" / "fuzz" / "hours.csv"
 COLUMNS = ("target", "commit", "processor_s", "executions", "edges", "features", "findings", "corpus_inputs")
 SUMMED = ("processor_s", "executions", "findings")
 OWED = 3600  # s of the processor, of each target
-NOTE = ("edges, features: the most that libFuzzer counted, those of the inputs that it began with included; corpus_inputs: the most "
+NOTE = ("edges, features: the most that libFuzzer counted, those of the inputs that it began with included; "
+        "corpus_inputs: the most "
         "that were kept; findings: inputs that ended in a crash, in silence, in too much time or memory")
 
 
 def build(program, table):
-    """Builds `program` of the present sources. @returns their commit; the committed table names none that is not what ran."""
+    """Builds `program` of the present sources. @returns their commit; the committed table names none that is not what
+    ran."""
     done = subprocess.run(["ninja", "-C", str(program.parent), program.name], stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(f"{program}: could not be built, expected cmake --preset fuzz before:\n{done.stdout[-2000:]}")
     pages = [f":!{TABLE.relative_to(ROOT)}", ":!*.md"]
-    changed = subprocess.run(["git", "status", "--porcelain", "--untracked-files=no", "--", ".", *pages], cwd=ROOT, capture_output=True,
+    changed = subprocess.run(["git", "status", "--porcelain", "--untracked-files=no", "--", ".", *pages],
+                             cwd=ROOT, capture_output=True,
                              text=True, check=True).stdout.splitlines()
-    name = subprocess.run(["git", "describe", "--always", "--abbrev=8", "--exclude=*"], cwd=ROOT, capture_output=True, text=True,
+    name = subprocess.run(["git", "describe", "--always", "--abbrev=8", "--exclude=*"],
+                          cwd=ROOT, capture_output=True, text=True,
                           check=True).stdout.strip()
     if changed and table == TABLE:
-        sys.exit(f"{changed[0][3:]} differs from its commit, expected none that does: {TABLE.relative_to(ROOT)} names the commit that ran "
+        sys.exit(f"{changed[0][3:]} differs from its commit, expected none that does: {TABLE.relative_to(ROOT)} names "
+                 f"the commit that ran "
                  "(--hours FILE writes another table)")
     return f"{name}-dirty" if changed else name
 
@@ -43,7 +49,8 @@ def number(text):
 def rows_of(table):
     if not table.exists():
         return []
-    return [{key: value if key in ("target", "commit") else number(value) for key, value in row.items()} for row in provenance.read_table(table)]
+    return [{key: value if key in ("target", "commit") else number(value) for key, value in row.items()}
+            for row in provenance.read_table(table)]
 
 
 def merge(row, more):
@@ -62,7 +69,8 @@ def add(table, program, more):
             merge(same[0], more)
         else:
             rows.append(dict(more))
-        origin = {"commit": "of each row", "compiler": provenance.compiler_of(program), "processor": provenance.processor(),
+        origin = {"commit": "of each row", "compiler": provenance.compiler_of(program),
+                  "processor": provenance.processor(),
                   "command": "run_targets.py --out DIR --seconds S", "note": NOTE}
         new = table.with_name(f".{table.name}.new")
         provenance.write_table(new, COLUMNS, sorted(rows, key=lambda row: row["target"]), origin)
@@ -85,9 +93,11 @@ def totals(table):
 def told(table, targets):
     """The totals as a table in Markdown."""
     have = totals(table)
-    lines = ["| target | processor time (s) | of the hour | executions | edges | features | findings | corpus |", "|---|--:|--:|--:|--:|--:|--:|--:|"]
+    lines = ["| target | processor time (s) | of the hour | executions | edges | features | findings | corpus |",
+             "|---|--:|--:|--:|--:|--:|--:|--:|"]
     for target in targets:
         row = have.get(target, dict.fromkeys(COLUMNS[2:], 0))
-        lines.append(f"| `{target}` | {row['processor_s']:.0f} | {100 * row['processor_s'] / OWED:.0f} % | {row['executions']:,} | {row['edges']:,} "
+        lines.append(f"| `{target}` | {row['processor_s']:.0f} | {100 * row['processor_s'] / OWED:.0f} % | "
+                     f"{row['executions']:,} | {row['edges']:,} "
                      f"| {row['features']:,} | {row['findings']} | {row['corpus_inputs']:,} |")
     return "\n".join(lines)

@@ -23,8 +23,7 @@ inline std::filesystem::path folder() {
 inline std::filesystem::path input_file(const std::string& name, const std::uint8_t* data, std::size_t size) {
   const std::filesystem::path file = folder() / name;
   std::filesystem::create_directories(file.parent_path());
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   return file;
 }
 

@@ -34,9 +34,7 @@ class JsonMutator {
     }
   }
 
-  std::size_t below(std::size_t count) {
-    return std::uniform_int_distribution<std::size_t>(0, count - 1)(chance_);
-  }
+  std::size_t below(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(chance_); }
 
  private:
   static void collect(Json& value, std::vector<Json*>& places) {
@@ -93,8 +91,8 @@ class JsonMutator {
         at = x * std::uniform_real_distribution<double>(0.0, 2.0)(chance_);
         break;
       case 3:
-        at = std::abs(x) < 1e15 ? Json(static_cast<std::int64_t>(x) + static_cast<std::int64_t>(below(5)) - 2)
-                                : Json(0);
+        at =
+            std::abs(x) < 1e15 ? Json(static_cast<std::int64_t>(x) + static_cast<std::int64_t>(below(5)) - 2) : Json(0);
         break;
       default:
         at = odd();
@@ -196,8 +194,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std::size_t first_size,
-                                                 const std::uint8_t* second, std::size_t second_size,
-                                                 std::uint8_t* out, std::size_t max_size, unsigned seed) {
+                                                 const std::uint8_t* second, std::size_t second_size, std::uint8_t* out,
+                                                 std::size_t max_size, unsigned seed) {
   using namespace furrow::fuzz;
   Json document = parsed(first, first_size);
   const Json other = parsed(second, second_size);

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Results of any content before the plots: summaries, scenarios, series, frames and height fields whose values are of other
+"""Results of any content before the plots: summaries, scenarios, series, frames and height fields whose values are of
+other
 types and shapes than a run's. Each ends in plots or in words, never in a traceback.
 
 usage: report.py [--cases N] [--seed S] [--seconds T] [--only CASE]
@@ -28,41 +29,58 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import events  # noqa: E402
 import report  # noqa: E402
 
-ODD = [None, True, False, 0, -1, 3, 1e308, -1e-320, 10 ** 400, float("nan"), float("inf"), "", "x", "\x1b[31m", "ü" * 50, [], [1], [[]], {},
+ODD = [None, True, False, 0, -1, 3, 1e308, -1e-320, 10 ** 400, float("nan"),
+       float("inf"), "", "x", "\x1b[31m", "ü" * 50, [], [1], [[]], {},
        {"a": 1}, ["x"], [None], [{}]]
 SUMMARY = {
-    "format_version": 1, "scenario": "small", "terrain_engine": "dem", "law": "mindlin", "slip": 0.3, "vertical_load_N": 4600.0,
-    "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05, "steady": False, "unsteady_because": ["short"]},
-    "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1, "rut_depth_m": 0.01, "rut_width_m": 0.2, "tread_width_m": 0.2,
+    "format_version": 1, "scenario": "small", "terrain_engine": "dem",
+    "law": "mindlin", "slip": 0.3, "vertical_load_N": 4600.0,
+    "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05,
+                       "steady": False, "unsteady_because": ["short"]},
+    "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1,
+    "rut_depth_m": 0.01, "rut_width_m": 0.2, "tread_width_m": 0.2,
     "sinkage_m": 0.01, "grains": 100, "drawbar_coefficient": 0.02,
     "accounts": {"energy": {"work": {"drive_work": 100.0, "pull_work": -50.0}, "stored": {"tire_elastic": 5.0},
-                            "lost": {"sliding_loss": 44.0}, "residual": 1.0, "residual_share": 0.01, "turnover": 99.0, "closes": True},
+                            "lost": {"sliding_loss": 44.0}, "residual": 1.0,
+                            "residual_share": 0.01, "turnover": 99.0, "closes": True},
                  "momentum": {"grains": [0.0, 0.0, 1.0], "gravity": [0.0, 0.0, -5.0], "walls": [0.0, 0.0, 6.0],
                               "residual": [0.0, 0.0, 0.0], "residual_share": 0.0, "largest": 6.0, "closes": True}},
-    "ranks": [{"node": "rig", "busy_share": 0.1, "busy_s": 1.0, "wait_s": 2.0, "wall_s": 3.0}], "wheels": [{"slip": 0.3}],
+    "ranks": [{"node": "rig", "busy_share": 0.1, "busy_s": 1.0, "wait_s": 2.0, "wall_s": 3.0}],
+    "wheels": [{"slip": 0.3}],
 }
-SCENARIO = {"rig": {"travel_sign": 1, "wheels": [{"lateral": 0.0}]}, "tire": {"file": "x.json"}, "terrain": {}, "run": {}}
-COLUMNS = ["time_s", "drawbar_pull_N", "drawbar_pull_raw_N", "slip", "sinkage_m", "force_z_N", "force_x_N", "force_y_N", "position_m",
+SCENARIO = {"rig": {"travel_sign": 1, "wheels": [{"lateral": 0.0}]}, "tire": {"file": "x.json"},
+            "terrain": {}, "run": {}}
+COLUMNS = ["time_s", "drawbar_pull_N", "drawbar_pull_raw_N", "slip", "sinkage_m",
+           "force_z_N", "force_x_N", "force_y_N", "position_m",
            "drive_torque_Nm", "spindle_work_J", "pull_work_J"]
-SOIL = {"format_version": 1, "scenario": "small", "quick": True, "grains": {"radius_m": 0.006, "cohesion_Pa": 0.0}, "n": 1.0, "k_c": 1.0,
+SOIL = {"format_version": 1, "scenario": "small", "quick": True, "grains": {"radius_m": 0.006, "cohesion_Pa": 0.0},
+        "n": 1.0, "k_c": 1.0,
         "k_phi": 1.0, "cohesion_Pa": 1.0, "friction_angle_deg": 30.0, "janosi_K_m": 0.01, "standard_error": {"n": 0.1}}
-PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01, "load_N": 1e3, "secant_stiffness_N_per_m": 1e5,
+PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01,
+         "load_N": 1e3, "secant_stiffness_N_per_m": 1e5,
          "sticking_stiffness": {"lateral_N_per_m": 1e5},
          "footprint": {"force_N": 1e3, "length_m": 0.1, "width_m": 0.1, "mean_pressure_Pa": 1e5}}
 MODES = {"tire": "x", "details": "y", "pressure_Pa": 1e5, "mass_kg": 10.0, "stable": True}
 KINEMATICS = {"vehicle": "car", "at_rest": {"wheels": [{"name": "front left", "travel_m": 0.01}]}}
 
 
-VEHICLE_SCENARIO = {"rig": {"type": "vehicle", "vehicle": "hmmwv.json", "lateral": 0.0, "driver": {"path": {"steering": {"law": "stanley"}}}},
+VEHICLE_SCENARIO = {"rig": {"type": "vehicle", "vehicle": "hmmwv.json",
+                            "lateral": 0.0, "driver": {"path": {"steering": {"law": "stanley"}}}},
                     "run": {"end": 0.2, "average_from": 0.02}, "terrain": {"engine": "dem"}}
 VEHICLE_SUMMARY = {"scenario": "car", "terrain_engine": "dem", "law": "mindlin", "grains": 100,
-                   "wheels": [{"vertical_load_N": 1.0, "lateral_m": 0.5 - k % 2, "tire_coordinates": 10} for k in range(4)],
-                   "ranks": [{"rank": 1, "node": "tire 0", "kind": "ancf", "threads": 1, "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 0.1}]}
-VEHICLE = ["time_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "distance_m", "speed_m_s", "throttle", "brake", "steering",
-           "gear", "shifting", "engine_speed_rpm", "turbine_speed_rpm", "power_W", "wheel_power_W", "soil_power_W", "target_speed_m_per_s",
+                   "wheels": [{"vertical_load_N": 1.0, "lateral_m": 0.5 - k % 2, "tire_coordinates": 10}
+                              for k in range(4)],
+                   "ranks": [{"rank": 1, "node": "tire 0", "kind": "ancf",
+                              "threads": 1, "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 0.1}]}
+VEHICLE = ["time_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad",
+           "distance_m", "speed_m_s", "throttle", "brake", "steering",
+           "gear", "shifting", "engine_speed_rpm", "turbine_speed_rpm",
+           "power_W", "wheel_power_W", "soil_power_W", "target_speed_m_per_s",
            "path_distance_m", "cross_track_error_m", "heading_error_rad", "drive_work_J"]
-VEHICLE_WHEEL = ["time_s", "slip", "sinkage_m", "sinkage_in_rut_m", "force_z_N", "iso_force_x_N", "iso_force_y_N", "iso_force_z_N",
-                 "tractive_effort_N", "terrain_resistance_N", "spindle_torque_Nm", "speed_m_per_s", "spin_rad_per_s", "position_m",
+VEHICLE_WHEEL = ["time_s", "slip", "sinkage_m", "sinkage_in_rut_m", "force_z_N",
+                 "iso_force_x_N", "iso_force_y_N", "iso_force_z_N",
+                 "tractive_effort_N", "terrain_resistance_N", "spindle_torque_Nm",
+                 "speed_m_per_s", "spin_rad_per_s", "position_m",
                  "axle_height_m", "lowest_point_m", "sinkage_kinematic_m", "suspension_travel_m"]
 
 
@@ -123,7 +141,8 @@ def csv(chance, columns, rows=40):
     for k in range(rows):
         lines.append(",".join(f"{0.002 * k if c == 0 else chance.uniform(-1, 1):g}" for c in range(len(columns))))
     if chance.random() < 0.3:
-        lines[chance.randrange(len(lines))] = chance.choice(["", ",", "x", "nan,nan", lines[0], "1" * 500, lines[-1][:-3]])
+        lines[chance.randrange(len(lines))] = chance.choice(["", ",", "x",
+                                                             "nan,nan", lines[0], "1" * 500, lines[-1][:-3]])
     return "\n".join(lines[:chance.choice([len(lines), len(lines), 0, 1, 2])]) + "\n"
 
 
@@ -131,7 +150,8 @@ def make_grounds(chance, folder, tires):
     with h5py.File(folder / "results.h5", "w") as file:
         for when in ("before", "after"):
             put(chance, file, f"terrain/height_{when}", array(chance, (20, 8)))
-            put(chance, file, f"terrain/height_{when}_grid", np.array([0.0, -0.2, 0.05]) if chance.random() < 0.8 else array(chance, (3,)))
+            put(chance, file, f"terrain/height_{when}_grid", np.array([0.0, -0.2, 0.05])
+                if chance.random() < 0.8 else array(chance, (3,)))
     (folder / "frames").mkdir()
     for k in range(tires):
         with h5py.File(folder / "frames" / f"tire{k}_000000.h5", "w") as file:
@@ -158,13 +178,15 @@ def make_vehicle(chance, folder):
     for subject, names in [("vehicle", VEHICLE)] + [(f"wheel{k}", VEHICLE_WHEEL) for k in range(4)]:
         columns = names if chance.random() < 0.9 else [name for name in names if chance.random() < 0.95]
         text = csv(chance, columns, 100)
-        (folder / f"timeseries_{subject}.csv").write_text(text if chance.random() < 0.5 else csv(random.Random(1), columns, 100))
+        (folder / f"timeseries_{subject}.csv").write_text(text if chance.random() < 0.5
+                                                          else csv(random.Random(1), columns, 100))
     make_grounds(chance, folder, 4)
 
 
 def make_soil(chance, folder):
     (folder / "soil.json").write_text(json.dumps(changed(chance, SOIL)))
-    for name, columns in (("plate.csv", ["seed", "width_m", "sinkage_m", "pressure_Pa"]), ("cone.csv", ["seed", "depth_m", "force_N"])):
+    for name, columns in (("plate.csv", ["seed", "width_m", "sinkage_m", "pressure_Pa"]),
+                          ("cone.csv", ["seed", "depth_m", "force_N"])):
         (folder / name).write_text(csv(chance, columns))
 
 
@@ -186,7 +208,8 @@ def make_kinematics(chance, folder):
     (folder / "summary.json").write_text(json.dumps(changed(chance, KINEMATICS)))
     columns = ["steering", "travel_m", "camber_rad", "toe_rad", "steer_rad", "roll_center_m", "wheel_rate_N_per_m"]
     lines = csv(chance, columns).splitlines()
-    names = ["motion,wheel"] + [f"{chance.choice(['parallel', 'opposite', 'steering'])},front {chance.choice(['left', 'right'])}"
+    names = ["motion,wheel"] + [f"{chance.choice(['parallel', 'opposite', 'steering'])},front "
+                                f"{chance.choice(['left', 'right'])}"
                                 for _ in lines[1:]]
     (folder / "kinematics.csv").write_text("".join(f"{name},{line}\n" for name, line in zip(names, lines)))
 
@@ -196,7 +219,8 @@ def run_case(seed, k):
     chance = random.Random(f"{seed}:{k}")
     with tempfile.TemporaryDirectory(prefix="furrow report ") as name:
         folder = pathlib.Path(name)
-        make = chance.choices([make_run, make_vehicle, make_soil, make_press, make_kinematics, make_modes], [8, 3, 1, 1, 1, 1])[0]
+        make = chance.choices([make_run, make_vehicle, make_soil, make_press, make_kinematics, make_modes],
+                              [8, 3, 1, 1, 1, 1])[0]
         make(chance, folder)
         if chance.random() < 0.05:
             victim = chance.choice([path for path in folder.rglob("*") if path.is_file()])

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """Runs the fuzzing targets one after another, on one core, and counts what they did.
 
-usage: run_targets.py --out DIR [--seconds S] [--total S] [--only TARGET ...] [--patience S] [--build DIR] [--hours FILE]
+usage: run_targets.py --out DIR [--seconds S] [--total S] [--only TARGET ...] [--patience S] [--build DIR] [--hours
+FILE]
        run_targets.py --table [--hours FILE]
 
 Each target is built, and runs for S seconds more by the clock, unless it has had its total of processor time; on a busy
-machine that takes longer. DIR/<target>/ keeps corpus/, findings/ (inputs that ended in a crash, in silence, in too much time
-or memory) and log. What ran is added to FILE, tests/fuzz/hours.csv, every half hour; --table prints the totals of it. Interrupted, the same
-command goes on where it was. Several calls may run at a time, of different targets.
+machine that takes longer. DIR/<target>/ keeps corpus/, findings/ (inputs that ended in a crash, in silence, in too much
+time or memory) and log. What ran is added to FILE, tests/fuzz/hours.csv, every half hour; --table prints the totals of
+it. Interrupted, the same command goes on where it was. Several calls may run at a time, of different targets.
 """
 import argparse
 import os
@@ -24,7 +25,8 @@ import hours
 import seeds
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TARGETS = ["scenario", "grammar", "tire", "handling", "bed", "road", "hdf5", "states", "checkpoint", "run_list", "study", "soil", "summary",
+TARGETS = ["scenario", "grammar", "tire", "handling", "bed", "road", "hdf5",
+           "states", "checkpoint", "run_list", "study", "soil", "summary",
            "vehicle"]
 LONGEST = 20  # s by the clock that an input may take; more on a busy machine
 MEMORY = 3000  # MB that a target may have
@@ -46,10 +48,13 @@ def cpu_of_children():
 def run_once(program, folder, seconds, patience):
     """(seconds of the clock, exit code, what is to be counted)"""
     found = len(list((folder / "findings").iterdir()))
-    command = [str(program), f"-max_total_time={int(seconds)}", f"-timeout={int(patience)}", f"-report_slow_units={int(patience)}",
-               f"-rss_limit_mb={MEMORY}", "-print_final_stats=1", f"-artifact_prefix={folder}/findings/", "-reload=0", str(folder / "corpus")]
+    command = [str(program), f"-max_total_time={int(seconds)}", f"-timeout={int(patience)}",
+               f"-report_slow_units={int(patience)}",
+               f"-rss_limit_mb={MEMORY}", "-print_final_stats=1", f"-artifact_prefix={folder}/findings/",
+               "-reload=0", str(folder / "corpus")]
     begin, used = time.monotonic(), cpu_of_children()
-    with open(folder / "log", "ab") as log, subprocess.Popen(command, stdout=log, stderr=log, cwd=folder, env=environment(folder)) as process:
+    with open(folder / "log", "ab") as log, subprocess.Popen(command, stdout=log, stderr=log,
+                                                             cwd=folder, env=environment(folder)) as process:
         at = (folder / "log").stat().st_size
         process.wait()
     shutil.rmtree(f"/dev/shm/furrow_fuzz_{process.pid}", ignore_errors=True)
@@ -61,8 +66,10 @@ def run_once(program, folder, seconds, patience):
     executions = int(units[-1]) if units else int(last[-1][0]) if last else 0
     edges, features = (int(last[-1][1]), int(last[-1][2])) if last else (0, 0)
     return time.monotonic() - begin, process.returncode, {
-        "processor_s": round(cpu_of_children() - used, 1), "executions": executions, "edges": edges, "features": features,
-        "findings": len(list((folder / "findings").iterdir())) - found, "corpus_inputs": len(list((folder / "corpus").iterdir()))}
+        "processor_s": round(cpu_of_children() - used, 1), "executions": executions,
+        "edges": edges, "features": features,
+        "findings": len(list((folder / "findings").iterdir())) - found,
+        "corpus_inputs": len(list((folder / "corpus").iterdir()))}
 
 
 def run_target(target, options):
@@ -71,7 +78,8 @@ def run_target(target, options):
     seeds.make(target, ROOT, folder / "corpus")
     commit = hours.build(program, options.hours)
     left, failed = options.seconds, 0
-    while left >= 1 and failed < TRIES and hours.totals(options.hours).get(target, {}).get("processor_s", 0) < options.total:
+    while left >= 1 and failed < TRIES and hours.totals(options.hours).get(target,
+                                                                           {}).get("processor_s", 0) < options.total:
         seconds, code, counted = run_once(program, folder, min(left, PART), options.patience)
         hours.add(options.hours, program, {"target": target, "commit": commit, **counted})
         left -= seconds
@@ -88,7 +96,8 @@ def main():
     parser.add_argument("--total", type=float, default=hours.OWED, help="of the processor, of each target, in all")
     parser.add_argument("--only", nargs="*", default=TARGETS, choices=TARGETS)
     parser.add_argument("--patience", type=float, default=LONGEST, help="s by the clock that an input may take")
-    parser.add_argument("--hours", type=lambda name: pathlib.Path(name).resolve(), default=hours.TABLE, help="the table that is added to")
+    parser.add_argument("--hours", type=lambda name: pathlib.Path(name).resolve(),
+                        default=hours.TABLE, help="the table that is added to")
     parser.add_argument("--table", action="store_true", help="print the totals and end")
     options = parser.parse_args()
     if not options.table and options.out is None:

@@ -11,22 +11,29 @@ SMALL = {
 }
 GROUND = {"tire": {"file": "toroidal.json"}, "terrain": {"engine": "rigid"}, "run": {"end": 0.1}}
 SUMMARY = {
-    "format_version": 1, "scenario": "small", "scenario_digest": "0123456789abcdef", "tire_radius_m": 0.47, "tread_width_m": 0.25,
-    "vertical_load_N": 4600.0, "slip": 0.3, "sinkage_m": 0.02, "bed_clearance_m": 0.1, "drawbar_pull_N": {"mean": 100.0, "sem": 5.0},
+    "format_version": 1, "scenario": "small", "scenario_digest": "0123456789abcdef",
+    "tire_radius_m": 0.47, "tread_width_m": 0.25,
+    "vertical_load_N": 4600.0, "slip": 0.3, "sinkage_m": 0.02, "bed_clearance_m": 0.1,
+    "drawbar_pull_N": {"mean": 100.0, "sem": 5.0},
     "segments": [{"from_step": 0, "to_step": 100, "wall_s": 1.0, "threads": 1, "finer_than": "0123"}],
     "failed": {"exit_code": 3, "time_s": 0.01, "error": "a contact that no step can hold"},
 }
-SOIL = {"format_version": 1, "quick": False, "k_c": 1e3, "k_phi": 1e6, "n": 1.0, "cohesion_Pa": 100.0, "friction_angle_deg": 30.0,
+SOIL = {"format_version": 1, "quick": False, "k_c": 1e3, "k_phi": 1e6,
+        "n": 1.0, "cohesion_Pa": 100.0, "friction_angle_deg": 30.0,
         "janosi_K_m": 0.01, "standard_error": {"k_phi": 1e4, "n": 0.05, "cohesion_Pa": None}}
 MANIFEST = {
-    "format_version": 2, "kind": "checkpoint", "version": "0.1.0", "build": "b", "cpu": "c", "name": "small", "scenario_digest": "d",
+    "format_version": 2, "kind": "checkpoint", "version": "0.1.0", "build": "b",
+    "cpu": "c", "name": "small", "scenario_digest": "d",
     "step": 10, "time_s": 1e-3, "bytes": 6, "write_s": 0.01, "frames": {"every": 5, "first_step": 0, "first_index": 0},
-    "segments": [{"from_step": 0, "to_step": 10, "wall_s": 1.0, "threads": 2, "changed": {"run.threads": 1}}], "file_hashes": [],
+    "segments": [{"from_step": 0, "to_step": 10, "wall_s": 1.0, "threads": 2, "changed": {"run.threads": 1}}],
+    "file_hashes": [],
 }
-ROAD = ("$ROAD_CRG\nREFERENCE_LINE_START_U = 2.0\nREFERENCE_LINE_END_U = 4.0 ! m\nREFERENCE_LINE_INCREMENT = 1\nLONG_SECTION_V_RIGHT = -0.5\n"
+ROAD = ("$ROAD_CRG\nREFERENCE_LINE_START_U = 2.0\nREFERENCE_LINE_END_U = 4.0 ! m\nREFERENCE_LINE_INCREMENT = "
+        "1\nLONG_SECTION_V_RIGHT = -0.5\n"
         "LONG_SECTION_V_INCREMENT = 0.5\n$!***\n$KD_DEFINITION\n")
 CUTS = "".join(f"D:long section {k},m\n" for k in (1, 2, 3)) + "D:reference line slope,m/m\n$\n$$$$\n"
-ROWS = {"LRFI": 3 * " 0.0000000 0.0100000 0.0200000 0.0300000\n", "LDFI": 3 * (4 * "                0.01" + "\n"), "KRBI": 48 * "\0",
+ROWS = {"LRFI": 3 * " 0.0000000 0.0100000 0.0200000 0.0300000\n", "LDFI": 3 * (4 * "                0.01" + "\n"),
+        "KRBI": 48 * "\0",
         "KDBI": 96 * "\0"}
 
 
@@ -40,7 +47,8 @@ def public_layout(tire):
     contact = tire["contact"]
 
     def material(given):
-        values = {theirs: given[ours] for theirs, ours in (("E", "young_modulus"), ("nu", "poisson_ratio"), ("G", "shear_modulus")) if ours in given}
+        values = {theirs: given[ours] for theirs,
+                  ours in (("E", "young_modulus"), ("nu", "poisson_ratio"), ("G", "shear_modulus")) if ours in given}
         if any(isinstance(value, list) for value in values.values()):
             return {"Type": "Orthotropic", "Density": given["density"],
                     **{key: value if isinstance(value, list) else [value] * 3 for key, value in values.items()}}
@@ -48,13 +56,19 @@ def public_layout(tire):
 
     def section(given):
         layers = given["layers"]
-        return {"Number Elements": given["elements_per_side"], "Layer Thickness": [layer["thickness"] for layer in layers],
-                "Ply Angle": [layer["angle_deg"] for layer in layers], "Material ID": [names.index(layer["material"]) for layer in layers]}
-    return {"Name": tire["name"], "Type": "Tire", "Template": "ANCFTire", "Tire Radius": tire["radius"], "Rim Radius": tire["rim_radius"],
+        return {"Number Elements": given["elements_per_side"],
+                "Layer Thickness": [layer["thickness"] for layer in layers],
+                "Ply Angle": [layer["angle_deg"] for layer in layers],
+                "Material ID": [names.index(layer["material"]) for layer in layers]}
+    return {"Name": tire["name"], "Type": "Tire", "Template": "ANCFTire",
+            "Tire Radius": tire["radius"], "Rim Radius": tire["rim_radius"],
             "Rim Width": tire["rim_width"], "8-Node Elements": False, "rim": tire["rim"],
-            "Contact Material": {"Coefficient of Friction": contact["friction"], "Coefficient of Restitution": contact["restitution"],
-                                 "Properties": {"Young Modulus": contact["young_modulus"], "Poisson Ratio": contact["poisson_ratio"]},
-                                 "Coefficients": {"Normal Stiffness": contact["normal_stiffness"], "Normal Damping": contact["normal_damping"],
+            "Contact Material": {"Coefficient of Friction": contact["friction"],
+                                 "Coefficient of Restitution": contact["restitution"],
+                                 "Properties": {"Young Modulus": contact["young_modulus"],
+                                                "Poisson Ratio": contact["poisson_ratio"]},
+                                 "Coefficients": {"Normal Stiffness": contact["normal_stiffness"],
+                                                  "Normal Damping": contact["normal_damping"],
                                                   "Tangential Stiffness": 1e6, "Tangential Damping": 0}},
             "Materials": [material(tire["materials"][name]) for name in names],
             "Structural Damping Coefficient": tire["structural_damping"], "Default Pressure": tire["pressure"],
@@ -76,16 +90,20 @@ def checkpoints(root):
     mark = {"subject": "wheel0", "bytes": len(",".join(names)) + 1 + len(lines), "lines": 2, "checksum": ""}
     manifest = {**MANIFEST, "series": [mark]}
     return [{"scenario": SMALL, "settings": {"run.end": 0.03}, "manifest": manifest, "lines": lines},
-            {"scenario": SMALL, "settings": {"run.step": 5e-5, "terrain.substeps": 2}, "manifest": manifest, "lines": lines,
+            {"scenario": SMALL, "settings": {"run.step": 5e-5, "terrain.substeps": 2},
+             "manifest": manifest, "lines": lines,
              "before": {"run": {"threads": 2}}, "failed": SUMMARY}]
 
 
 def vehicles(root):
     drivers = [document["rig"]["driver"] for document in documents(root, "rigs/hmmwv_*.json", "rigs/rover_small.json")
                if isinstance(document.get("rig", {}).get("driver"), dict)]
-    tables = ["time_s,throttle,brake,steering,gear\n0,0,1,0,1\n1,0.5,0,-0.2,2\n", "x_m,y_m\n0,0\n5,0\n10,1\n", "time_s,speed_m_s\n0,1\n2,3\n"]
-    drivers += [{"speed": {"target": "points.csv"}}, {"inputs": "points.csv"}, {"speed": {"target": 2.0}, "path": {"kind": "waypoints", "points": "points.csv"}}]
-    return [{"vehicle": vehicle, "driver": {"format_version": 1, **drivers[k % len(drivers)]}, "csv": tables[k % len(tables)]}
+    tables = ["time_s,throttle,brake,steering,gear\n0,0,1,0,1\n1,0.5,0,-0.2,2\n",
+              "x_m,y_m\n0,0\n5,0\n10,1\n", "time_s,speed_m_s\n0,1\n2,3\n"]
+    drivers += [{"speed": {"target": "points.csv"}}, {"inputs": "points.csv"},
+                {"speed": {"target": 2.0}, "path": {"kind": "waypoints", "points": "points.csv"}}]
+    return [{"vehicle": vehicle, "driver": {"format_version": 1, **drivers[k % len(drivers)]},
+             "csv": tables[k % len(tables)]}
             for k, vehicle in enumerate(3 * documents(root, "vehicle/data/[bhr]*.json"))]
 
 
@@ -98,14 +116,16 @@ def texts(target, root):
     if target == "handling":
         return [(root / "tire" / "data" / name).read_text() for name in ("handling_start.tir", "sweep_lumped.csv")]
     if target == "run_list":
-        return ["furrow-run 1\nsummary.json\nframes/\nframes/tire0_%06d.h5\ncheckpoints/\ncheckpoints/%012d/\ncheckpoints/%012d/rig.h5\n"]
+        return (["furrow-run 1\nsummary.json\nframes/\nframes/tire0_%06d.h5\ncheckpoints/\ncheckpoints/%012d/\ncheckpoints/%012d/rig.h5\n"])
     found = {
-        "scenario": lambda: [d for d in documents(root, "rigs/*.json") if "properties" not in d and "scenario" not in d] + [SMALL, GROUND],
+        "scenario": lambda: [d for d in documents(root, "rigs/*.json") if "properties" not in d and "scenario" not in d]
+        + [SMALL, GROUND],
         "tire": lambda: tires(root),
         "study": lambda: [d for d in documents(root, "rigs/*.json") if "scenario" in d],
         "soil": lambda: documents(root, "terrain/data/*.json"),
         "summary": lambda: [{"summary": SUMMARY, "scenario": SMALL, "soil": SOIL, "path": "segments.0.to_step"},
-                            {"summary": {"wheels": [SUMMARY], "format_version": 1}, "scenario": {}, "soil": {**SOIL, "quick": True}}],
+                            {"summary": {"wheels": [SUMMARY], "format_version": 1},
+                             "scenario": {}, "soil": {**SOIL, "quick": True}}],
         "checkpoint": lambda: checkpoints(root),
         "vehicle": lambda: vehicles(root),
     }

@@ -66,8 +66,8 @@ Accounts rolled(OneWheel scenario, double step, double time) {
 void expect_momentum_closes(const Accounts& accounts) {
   const MomentumAccount m = accounts.momentum();
   EXPECT_TRUE(m.closes()) << "residual " << m.residual().transpose() << ", surface "
-                          << m.surface_difference().transpose() << ", spindle "
-                          << m.spindle_difference().transpose() << " N s of " << m.largest();
+                          << m.surface_difference().transpose() << ", spindle " << m.spindle_difference().transpose()
+                          << " N s of " << m.largest();
   EXPECT_GT(m.surface_of_tires.norm(), 1.0) << "the wheel never touched the ground";
   EXPECT_GT(m.under_way.norm(), 1e-5 * m.largest()) << "what is under way must matter";
 }
@@ -88,8 +88,7 @@ TEST(Accounts, energy_closes_with_the_step_on_hard_ground) {
   EXPECT_GT(fine.lost.tire_viscous, 1.0);
   for (const EnergyAccount* a : {&coarse, &fine}) {
     EXPECT_TRUE(a->closes()) << a->residual() << " J of " << a->turnover();
-    EXPECT_NEAR(a->residual(), a->terrain_residual + a->tire_residual + a->rig_residual,
-                1e-9 * a->turnover());
+    EXPECT_NEAR(a->residual(), a->terrain_residual + a->tire_residual + a->rig_residual, 1e-9 * a->turnover());
   }
   EXPECT_LT(std::abs(fine.tire_residual), 0.6 * std::abs(coarse.tire_residual) + 1e-9 * fine.turnover());
   EXPECT_LT(std::abs(fine.rig_residual), 0.6 * std::abs(coarse.rig_residual) + 1e-9 * fine.turnover());
@@ -102,30 +101,28 @@ TEST(Accounts, energy_closes_with_the_step_on_hard_ground) {
 /// Energy of the HMMWV on rigid wheels that steers into a turn at 11 m/s on hard ground.
 EnergyAccount turned(double step, double time) {
   using nlohmann::json;
-  const json turn = {
-      {"rig",
-       {{"type", "vehicle"},
-        {"vehicle", "hmmwv.json"},
-        {"start_speed", 11},
-        {"driver", {{"speed", {{"target", 11}}}, {"inputs", {{"steering", {{0, 0}, {0.4, 0.3}}}}}}}}},
-      {"tire", {{"rigid", true}, {"elements_circumference", 60}, {"elements_width", 8}}},
-      {"terrain",
-       {{"engine", "rigid"},
-        {"friction", 0.9},
-        {"friction_velocity_scale", 50},
-        {"ground_stiffness", 6.4e7},
-        {"ground_shear_stiffness", 1.6e7},
-        {"ground_damping", 1e4}}},
-      {"run", {{"step", step}, {"end", time}, {"average_from", 0.0}}},
-      {"output", {{"frame_interval", 0}}}};
+  const json turn = {{"rig",
+                      {{"type", "vehicle"},
+                       {"vehicle", "hmmwv.json"},
+                       {"start_speed", 11},
+                       {"driver", {{"speed", {{"target", 11}}}, {"inputs", {{"steering", {{0, 0}, {0.4, 0.3}}}}}}}}},
+                     {"tire", {{"rigid", true}, {"elements_circumference", 60}, {"elements_width", 8}}},
+                     {"terrain",
+                      {{"engine", "rigid"},
+                       {"friction", 0.9},
+                       {"friction_velocity_scale", 50},
+                       {"ground_stiffness", 6.4e7},
+                       {"ground_shear_stiffness", 1.6e7},
+                       {"ground_damping", 1e4}}},
+                     {"run", {{"step", step}, {"end", time}, {"average_from", 0.0}}},
+                     {"output", {{"frame_interval", 0}}}};
   return accounts_after(testing::ScenarioFile(turn.dump()).load(), std::llround(time / step)).energy();
 }
 
 /// The shear of the ground under tires that slip sideways is stepped implicitly. What such a step loses is booked.
 TEST(Accounts, energy_closes_in_a_turn_on_rigid_wheels) {
   const EnergyAccount coarse = turned(2e-4, 0.7), fine = turned(1e-4, 0.7);
-  EXPECT_GT(coarse.lost.sliding + coarse.lost.tangential_damping + coarse.lost.opening,
-            0.1 * coarse.turnover());
+  EXPECT_GT(coarse.lost.sliding + coarse.lost.tangential_damping + coarse.lost.opening, 0.1 * coarse.turnover());
   EXPECT_LT(std::abs(coarse.residual()), 1e-4 * coarse.turnover());
   EXPECT_LT(std::abs(fine.residual()), 0.35 * std::abs(coarse.residual()));
   for (const EnergyAccount* a : {&coarse, &fine})
@@ -135,8 +132,8 @@ TEST(Accounts, energy_closes_in_a_turn_on_rigid_wheels) {
 
 TEST(Accounts, energy_closes_on_grains) {
   const EnergyAccount a = rolled(testing::rigid_wheel_on_grains(), 1e-4, 0.2).energy();
-  EXPECT_TRUE(a.closes()) << a.residual() << " J of " << a.turnover() << ", terrain " << a.terrain_residual
-                          << ", tire " << a.tire_residual << ", rig " << a.rig_residual;
+  EXPECT_TRUE(a.closes()) << a.residual() << " J of " << a.turnover() << ", terrain " << a.terrain_residual << ", tire "
+                          << a.tire_residual << ", rig " << a.rig_residual;
 }
 
 /// A single entry that is 10 % wrong is noticed if it is a third of what is turned over, or more.
@@ -150,8 +147,7 @@ TEST(Accounts, an_entry_that_is_wrong_is_noticed) {
   EXPECT_FALSE(energy_account(start, wrong).closes());
   wrong = now;
   wrong.tires[0].rim_work *= 1.1;  // shows up as a lag of the rim as well, so only in the tire's own residual
-  EXPECT_GT(std::abs(energy_account(start, wrong).tire_residual),
-            10.0 * std::abs(accounts.energy().tire_residual));
+  EXPECT_GT(std::abs(energy_account(start, wrong).tire_residual), 10.0 * std::abs(accounts.energy().tire_residual));
   wrong = now;
   wrong.rig.guide_impulse *= 1.0 + 1e-4;
   EXPECT_FALSE(momentum_account(start, wrong).closes());

@@ -54,8 +54,8 @@ inline const CalibrationKind& curve_kind() {
 }
 
 /// A study of such a model; the digest is of its data.
-inline Calibration study_of(Curve curve, std::vector<double> x, std::vector<double> y, std::vector<Parameter> parameters,
-                            int starts = 1, double sigma = 1.0) {
+inline Calibration study_of(Curve curve, std::vector<double> x, std::vector<double> y,
+                            std::vector<Parameter> parameters, int starts = 1, double sigma = 1.0) {
   Calibration c;
   c.file = "study.json", c.start = "start.json", c.name = "study";
   c.kind = &curve_kind();

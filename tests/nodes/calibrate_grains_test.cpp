@@ -1,5 +1,5 @@
-// Grains fitted to the strength of a soil: what is wrong with such studies, and that a prediction is what the soil tests
-// give.
+// Grains fitted to the strength of a soil: what is wrong with such studies, and that a prediction is what the soil
+// tests give.
 #include "nodes/study/calibrate_grains.hpp"
 
 #include <gtest/gtest.h>
@@ -28,9 +28,11 @@ class CalibrateGrains : public ::testing::Test {
             {"set", {{"terrain.material", "loose_sand.json"}}},
             {"tests", {{"seeds", 1}, {"stresses", {20e3, 60e3}}, {"speed", 1.0}}},
             {"evaluations", 20},
-            {"parameters", {{"rolling_friction", {{"lower", 0}, {"upper", 0.6}}}, {"cohesion", {{"lower", 0}, {"upper", 60e3}}}}},
-            {"targets", {{{"quantity", "friction_angle_deg"}, {"data", "lete_sand.json"}, {"sigma", 1.0}},
-                         {{"quantity", "cohesion_Pa"}, {"value", 1300.0}, {"sigma", 300.0}}}}};
+            {"parameters",
+             {{"rolling_friction", {{"lower", 0}, {"upper", 0.6}}}, {"cohesion", {{"lower", 0}, {"upper", 60e3}}}}},
+            {"targets",
+             {{{"quantity", "friction_angle_deg"}, {"data", "lete_sand.json"}, {"sigma", 1.0}},
+              {{"quantity", "cohesion_Pa"}, {"value", 1300.0}, {"sigma", 300.0}}}}};
   }
   Calibration load(const json& study) {
     std::ofstream(folder_.path() / "study.json") << study.dump();
@@ -80,23 +82,30 @@ TEST_F(CalibrateGrains, wrong_studies_are_refused_with_file_and_key) {
       {"/tests/stresses", {1e3, 1e3}, "key 'tests.stresses': expected two to 10 different normal stresses"},
       {"/tests/stresses", {-1e3, 1e3}, "key 'tests.stresses': has -1000 Pa, expected each above 0 up to 1e7 Pa"},
       {"/tests/stress", 5, "key 'tests.stress': is unknown, expected 'stresses'?"},
-      {"/parameters/rolling", json::object(), "key 'parameters.rolling': is unknown, expected one of: friction, rolling_friction"},
+      {"/parameters/rolling", json::object(),
+       "key 'parameters.rolling': is unknown, expected one of: friction, rolling_friction"},
       {"/parameters/settling_friction", json::object(), "key 'parameters.settling_friction': has no 'start'"},
-      {"/parameters/friction", json::object(), "key 'targets': has 2 points, expected as many as there are parameters, 3"},
-      {"/targets/0/quantity", "friction_angle", "key 'targets[0].quantity': 'friction_angle' is unknown, expected one of: friction_angle_deg"},
-      {"/targets/0/quantity", "cone_index_Pa", "lete_sand.json: key 'terrain': is missing: soil files do not say cone_index_Pa"},
+      {"/parameters/friction", json::object(),
+       "key 'targets': has 2 points, expected as many as there are parameters, 3"},
+      {"/targets/0/quantity", "friction_angle",
+       "key 'targets[0].quantity': 'friction_angle' is unknown, expected one of: friction_angle_deg"},
+      {"/targets/0/quantity", "cone_index_Pa",
+       "lete_sand.json: key 'terrain': is missing: soil files do not say cone_index_Pa"},
       {"/targets/0/data", "dry_soil.json", "key 'targets[0].data'"},
       {"/targets/0/value", 30.0, "key 'targets[0].value': expected either 'value' or 'data'"},
       {"/targets/1/value", nullptr, "key 'targets[1].value': expected either 'value' or 'data'"},
       {"/targets/1/value", -5.0, "key 'targets[1].value': is -5, expected 0 to 1e7 for cohesion_Pa"},
-      {"/held_out", {{{"quantity", "repose_angle_without_cohesion_deg"}, {"value", 400.0}, {"sigma", 1.0}}},
+      {"/held_out",
+       {{{"quantity", "repose_angle_without_cohesion_deg"}, {"value", 400.0}, {"sigma", 1.0}}},
        "key 'held_out[0].value': is 400, expected 0 to 60 for repose_angle_without_cohesion_deg"},
       {"/targets/1/sigma", 0, "key 'targets[1].sigma'"},
       {"/targets/1/sigma", nullptr, "key 'targets[1].sigma': is missing, expected the standard error"},
       {"/targets/1/quantity", "friction_angle_deg", "key 'targets[1].quantity': is friction_angle_deg a second time"},
       {"/targets/1/on", "plate", "key 'targets[1].on': is unknown"},
       {"/targets/1/name", "a,b", "key 'targets[1].name': expected a name without commas"},
-      {"/held_out", {{{"quantity", "cohesion_Pa"}, {"value", 1.0}, {"sigma", 1.0}}}, "key 'held_out[0].quantity': is cohesion_Pa a second time"},
+      {"/held_out",
+       {{{"quantity", "cohesion_Pa"}, {"value", 1.0}, {"sigma", 1.0}}},
+       "key 'held_out[0].quantity': is cohesion_Pa a second time"},
   };
   for (const auto& [place, value, expected] : wrong) {
     json study = good();
@@ -116,7 +125,8 @@ TEST_F(CalibrateGrains, a_K_below_what_grains_of_the_size_have_is_told_and_not_f
   study["targets"].push_back({{"quantity", "janosi_K_m"}, {"value", 2e-3}, {"sigma", 1e-3}});
   const Calibration c = load(study);
   ASSERT_EQ(c.model->notes().size(), 1u);
-  EXPECT_NE(c.model->notes()[0].find("janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"), std::string::npos);
+  EXPECT_NE(c.model->notes()[0].find("janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"),
+            std::string::npos);
   EXPECT_EQ(c.model->targets(TargetSet::fitted).size(), 2u);
   EXPECT_EQ(c.model->targets(TargetSet::held_out).size(), 1u);
   // Where too few are left, it is told why.
@@ -135,13 +145,16 @@ TEST_F(CalibrateGrains, a_prediction_is_what_the_soil_tests_give_and_the_result_
   study["held_out"] = {{{"quantity", "bulk_density_kg_m3"}, {"value", 1300.0}, {"sigma", 50.0}}};
   const Calibration c = load(study);
   const std::vector<double> values{20e3, 0.3};
-  const Prediction found = c.model->predict(values, TargetSet::fitted, {}), beside = c.model->predict(values, TargetSet::held_out, {});
+  const Prediction found = c.model->predict(values, TargetSet::fitted, {}),
+                   beside = c.model->predict(values, TargetSet::held_out, {});
   ASSERT_TRUE(found.problem.empty()) << found.problem;
   EXPECT_GT(found.processor_time, 0.0);
   EXPECT_EQ(beside.processor_time, 0.0);  // of the same tests
 
   terrain::soil::SoilOptions options;
-  options.material = scenario::load_scenario(c.start, {{"terrain.material", "loose_sand.json"}, {"terrain.rolling_friction", "0.3"}, {"terrain.cohesion", "20000"}})
+  options.material = scenario::load_scenario(c.start, {{"terrain.material", "loose_sand.json"},
+                                                       {"terrain.rolling_friction", "0.3"},
+                                                       {"terrain.cohesion", "20000"}})
                          .grains("");
   options.seeds = 1, options.speed = 1.0, options.stresses = {20e3, 60e3};
   options.plate = options.cone = options.repose = false;

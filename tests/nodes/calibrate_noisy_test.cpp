@@ -23,7 +23,8 @@ using Figures = std::function<std::vector<double>(std::span<const double>)>;
 /// Normal deviates that depend on the parameters alone, as those of a simulation with fixed seeds do.
 double deviate(std::span<const double> values, std::uint64_t seed, std::size_t figure) {
   std::uint64_t bits = seed * 0x9e3779b97f4a7c15u + figure;
-  for (const double value : values) bits = (bits ^ std::hash<double>{}(value)) * 0xbf58476d1ce4e5b9u, bits ^= bits >> 31;
+  for (const double value : values)
+    bits = (bits ^ std::hash<double>{}(value)) * 0xbf58476d1ce4e5b9u, bits ^= bits >> 31;
   std::mt19937_64 engine(bits);
   return std::normal_distribution<double>()(engine);
 }
@@ -31,7 +32,8 @@ double deviate(std::span<const double> values, std::uint64_t seed, std::size_t f
 /// Figures with noise of a known size.
 class NoisyModel final : public CalibrationModel {
  public:
-  NoisyModel(Figures figures, std::vector<double> data, std::vector<double> sigma, std::vector<double> noise, std::uint64_t seed)
+  NoisyModel(Figures figures, std::vector<double> data, std::vector<double> sigma, std::vector<double> noise,
+             std::uint64_t seed)
       : figures_(std::move(figures)), noise_(std::move(noise)), seed_(seed) {
     for (std::size_t k = 0; k < data.size(); ++k) {
       Target target;
@@ -51,7 +53,9 @@ class NoisyModel final : public CalibrationModel {
     }
     return found;
   }
-  nlohmann::ordered_json fitted_file(std::span<const double>, const std::string& source) const override { return {{"source", source}}; }
+  nlohmann::ordered_json fitted_file(std::span<const double>, const std::string& source) const override {
+    return {{"source", source}};
+  }
   std::set<std::vector<double>> asked;
 
  private:
@@ -75,7 +79,8 @@ const NoisyModel& model_of(const Calibration& c) { return dynamic_cast<const Noi
 
 /// Three figures of two parameters, as φ, c and K of rolling friction and cohesion: bent, of very different size.
 std::vector<double> soil_like(std::span<const double> p) {
-  return {20.0 + 14.0 * (1.0 - std::exp(-2.0 * p[0])) + 0.05 * p[1], 80.0 * p[1] * (1.0 + 0.3 * p[0]), 0.01 + 2e-4 * p[1] + 0.004 * p[0] * p[0]};
+  return {20.0 + 14.0 * (1.0 - std::exp(-2.0 * p[0])) + 0.05 * p[1], 80.0 * p[1] * (1.0 + 0.3 * p[0]),
+          0.01 + 2e-4 * p[1] + 0.004 * p[0] * p[0]};
 }
 const std::vector<double> kSigma{0.5, 150.0, 1e-3}, kNoise{0.7, 250.0, 1e-3};
 std::vector<Parameter> soil_parameters() {
@@ -146,7 +151,8 @@ TEST(Surrogate, follows_a_bent_surface_and_its_gradient_is_that_of_its_value) {
     EXPECT_NEAR(answer.value, surface(a, 0.4), 300.0);
     for (int k = 0; k < 2; ++k) {
       const Eigen::Vector2d step = 1e-5 * Eigen::Vector2d::Unit(k);
-      EXPECT_NEAR(answer.gradient[k], (surrogate.at(place + step).value - surrogate.at(place - step).value) / 2e-5, 1.0);
+      EXPECT_NEAR(answer.gradient[k], (surrogate.at(place + step).value - surrogate.at(place - step).value) / 2e-5,
+                  1.0);
     }
   }
 }
@@ -160,17 +166,21 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
   for (int k = 0; k < kTries; ++k) {
     // The data have errors of their own.
     std::vector<double> data = exact;
-    for (std::size_t q = 0; q < data.size(); ++q) data[q] += kSigma[q] * deviate(truth, 1000 + static_cast<std::uint64_t>(k), q);
-    const CalibrationResults results = calibrated(noisy_study(soil_like, data, kSigma, kNoise, soil_parameters(), static_cast<std::uint64_t>(k), 20));
+    for (std::size_t q = 0; q < data.size(); ++q)
+      data[q] += kSigma[q] * deviate(truth, 1000 + static_cast<std::uint64_t>(k), q);
+    const CalibrationResults results =
+        calibrated(noisy_study(soil_like, data, kSigma, kNoise, soil_parameters(), static_cast<std::uint64_t>(k), 20));
     ASSERT_LE(results.optimum.evaluations, 20);
     for (std::size_t p = 0; p < 2; ++p) {
       const Estimate& e = results.confidence.estimates[p];
       if (e.low && *e.low <= truth[p] && truth[p] <= *e.high) ++within;
     }
     off += results.values[1] - truth[1];
-    for (std::size_t q = 0; q < 3; ++q) reached += reach_state(results.optimum.reach[q], data[q], kSigma[q]) == ReachState::reached ? 1 : 0;
+    for (std::size_t q = 0; q < 3; ++q)
+      reached += reach_state(results.optimum.reach[q], data[q], kSigma[q]) == ReachState::reached ? 1 : 0;
   }
-  // 95 % of 80, less three standard deviations of a binomial count (1.9), and two for the choice of the surrogates' lengths.
+  // 95 % of 80, less three standard deviations of a binomial count (1.9), and two for the choice of the surrogates'
+  // lengths.
   RecordProperty("within", within);
   EXPECT_GE(within, 68);
   EXPECT_NEAR(off / kTries, 0.0, 1.0);  // kPa; one calibration scatters by 2 to 3
@@ -179,8 +189,10 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
 
 TEST(OptimizeNoisy, the_same_study_gives_the_same_bits_and_keeps_to_its_budget) {
   for (const int evaluations : {least_evaluations(2), 14}) {
-    const Calibration first = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 5, evaluations);
-    const Calibration second = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 5, evaluations);
+    const Calibration first =
+        noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 5, evaluations);
+    const Calibration second =
+        noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 5, evaluations);
     const CalibrationResults a = calibrated(first), b = calibrated(second);
     EXPECT_EQ(a.values, b.values);
     EXPECT_EQ(calibration_json(first, a).dump(), calibration_json(second, b).dump());
@@ -235,9 +247,12 @@ TEST(OptimizeNoisy, a_target_that_cannot_be_reached_is_told_with_the_range) {
 
 TEST(OptimizeNoisy, what_the_figures_do_not_tell_apart_is_named) {
   // Only the sum of the two parameters shows.
-  const auto sum = [](std::span<const double> p) { return std::vector<double>{10.0 * (p[0] + p[1]), 5.0 * (p[0] + p[1])}; };
+  const auto sum = [](std::span<const double> p) {
+    return std::vector<double>{10.0 * (p[0] + p[1]), 5.0 * (p[0] + p[1])};
+  };
   const std::vector<Parameter> parameters{{"a", "-", 0.0, 1.0, 0.4, false}, {"b", "-", 0.0, 1.0, 0.4, false}};
-  const CalibrationResults results = calibrated(noisy_study(sum, {10.0, 5.0}, {0.2, 0.2}, {0.2, 0.2}, parameters, 1, 16));
+  const CalibrationResults results =
+      calibrated(noisy_study(sum, {10.0, 5.0}, {0.2, 0.2}, {0.2, 0.2}, parameters, 1, 16));
   ASSERT_EQ(results.confidence.undetermined.size(), 1u);
   const std::vector<double>& direction = results.confidence.undetermined[0].direction;
   EXPECT_NEAR(std::abs(direction[0]), std::sqrt(0.5), 0.1);
@@ -247,7 +262,8 @@ TEST(OptimizeNoisy, what_the_figures_do_not_tell_apart_is_named) {
 
 TEST(OptimizeNoisy, places_without_an_answer_are_left_out_and_too_few_answers_end_it) {
   const auto half = [](std::span<const double> p) { return p[0] > 0.8 ? std::vector<double>(3, NAN) : soil_like(p); };
-  const CalibrationResults results = calibrated(noisy_study(half, soil_like(std::vector{0.4, 20.0}), kSigma, kNoise, soil_parameters(), 1, 18));
+  const CalibrationResults results =
+      calibrated(noisy_study(half, soil_like(std::vector{0.4, 20.0}), kSigma, kNoise, soil_parameters(), 1, 18));
   EXPECT_NEAR(results.values[1], 20.0, 6.0);
   const auto none = [](std::span<const double>) { return std::vector<double>(3, NAN); };
   try {
@@ -255,8 +271,9 @@ TEST(OptimizeNoisy, places_without_an_answer_are_left_out_and_too_few_answers_en
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::physics);
-    EXPECT_NE(std::string(error.what()).find("the model answers at 0 of the 7 places of the design, expected 4 or more; where it "
-                                             "does not: no answer here"),
+    EXPECT_NE(std::string(error.what())
+                  .find("the model answers at 0 of the 7 places of the design, expected 4 or more; where it "
+                        "does not: no answer here"),
               std::string::npos)
         << error.what();
   }

@@ -1,4 +1,5 @@
-// The kinds `ring` and `planar`: known parameters are found again from curves that another program of the same physics made.
+// The kinds `ring` and `planar`: known parameters are found again from curves that another program of the same physics
+// made.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include "protocol/files/data_files.hpp"
 #include "tests/nodes/calibrate_examples.hpp"
@@ -22,8 +23,9 @@ using namespace testing;
 using nlohmann::json;
 using Ordered = nlohmann::ordered_json;  // parameters in the order of the file
 
-/// The flexible ring on a plate from its energy alone (tire/ring/ring_mechanics.hpp, (1) to (4)), with dense matrices, a penalty
-/// in place of contact and hoop tension from the length and the area of the polygon of segments: nothing of tire/ring but the numbers of the file takes part.
+/// The flexible ring on a plate from its energy alone (tire/ring/ring_mechanics.hpp, (1) to (4)), with dense matrices,
+/// a penalty in place of contact and hoop tension from the length and the area of the polygon of segments: nothing of
+/// tire/ring but the numbers of the file takes part.
 class DenseRing {
  public:
   explicit DenseRing(const tire::RingParams& p) : p_(p), n_(p.segments), phi_(2.0 * std::numbers::pi / n_) {
@@ -59,7 +61,8 @@ class DenseRing {
       Eigen::MatrixXd H = belt_ + taut_;
       Eigen::VectorXd g = belt_ * q_;
       add_tension(g);
-      const double share = p_.radius * phi_ * p_.width, rest = p_.air_share * std::numbers::pi * p_.radius * p_.radius * p_.width,
+      const double share = p_.radius * phi_ * p_.width,
+                   rest = p_.air_share * std::numbers::pi * p_.radius * p_.radius * p_.width,
                    volume = rest + share * q_.head(n_).sum(), absolute = p_.pressure + p_.ambient;
       force_ = 0.0;
       for (int j = 0; j < n_; ++j) {
@@ -69,7 +72,8 @@ class DenseRing {
         H(j, j) += phi_ * (p_.sidewall_1 + 2.0 * p_.sidewall_2 * w + 3.0 * p_.sidewall_3 * w * w);
         g[n_ + j] += phi_ * p_.tangential * q_[n_ + j];
         H(n_ + j, n_ + j) += phi_ * p_.tangential;
-        const double gap = p_.radius - deflection - (p_.radius + q_[j]) * std::cos(angle) + q_[n_ + j] * std::sin(angle);
+        const double gap =
+            p_.radius - deflection - (p_.radius + q_[j]) * std::cos(angle) + q_[n_ + j] * std::sin(angle);
         if (gap >= 0.0 || std::cos(angle) < 0.5) continue;
         const Eigen::Vector2d slope(-std::cos(angle), std::sin(angle));
         g[j] += kPenalty * gap * slope[0], g[n_ + j] += kPenalty * gap * slope[1];
@@ -97,7 +101,8 @@ class DenseRing {
     for (int j = 0; j < n_; ++j) {
       const Eigen::Vector2d before = place(j + n_ - 1), here = place(j), after = place(j + 1), wide = after - before;
       const Eigen::Vector2d pull = (here - before).normalized() + (here - after).normalized();
-      const Eigen::Vector2d force = strength * (p_.radius * std::cos(0.5 * phi_) * pull - 0.5 * Eigen::Vector2d(wide[1], -wide[0]));
+      const Eigen::Vector2d force =
+          strength * (p_.radius * std::cos(0.5 * phi_) * pull - 0.5 * Eigen::Vector2d(wide[1], -wide[0]));
       const double s = std::sin(j * phi_), c = std::cos(j * phi_);
       g[j] += force[0] * s - force[1] * c, g[n_ + j] += force[0] * c + force[1] * s;
     }
@@ -120,7 +125,9 @@ class CalibrateRing : public ::testing::Test {
     file_.erase("tension_share");
     write("ring.json", file_);
   }
-  void write(const std::string& name, const Ordered& content) { std::ofstream(folder_.path() / name) << content.dump(); }
+  void write(const std::string& name, const Ordered& content) {
+    std::ofstream(folder_.path() / name) << content.dump();
+  }
   /// Forces of the other program with the file's values, and normal noise.
   void write_curve(const std::string& name, double pressure, double noise, std::uint64_t seed) {
     tire::RingParams p = tire::read_ring_file(file_, "ring.json").params;
@@ -137,8 +144,9 @@ class CalibrateRing : public ::testing::Test {
     write("study.json", {{"calibrate", "ring"},
                          {"start", "ring.json"},
                          {"parameters", parameters},
-                         {"targets", {{{"data", "low.csv"}, {"on", "plate"}, {"pressure", 1e5}},
-                                      {{"data", "high.csv"}, {"on", "plate"}, {"pressure", 3e5}}}},
+                         {"targets",
+                          {{{"data", "low.csv"}, {"on", "plate"}, {"pressure", 1e5}},
+                           {{"data", "high.csv"}, {"on", "plate"}, {"pressure", 3e5}}}},
                          {"starts", starts}});
     return load_calibration(folder_.path() / "study.json");
   }
@@ -196,7 +204,8 @@ TEST_F(CalibrateRing, the_fitted_file_presses_as_the_calibration_predicts) {
   options.file = folder_.path() / "fitted.json";
   options.pressure.knots = {{0.0, 1e5}};
   tire::PressOptions press;
-  press.unload = false, press.load = INFINITY, press.points = 15, press.deflection = 0.045, press.at = c.model->targets(TargetSet::fitted)[0].x;
+  press.unload = false, press.load = INFINITY, press.points = 15, press.deflection = 0.045,
+  press.at = c.model->targets(TargetSet::fitted)[0].x;
   const auto curve = tire::read_ring(fitted, options)->static_test()->press(press, {}).loading;
   ASSERT_EQ(curve.size(), 16u);
   for (int k = 0; k < 15; ++k) EXPECT_EQ(curve[k + 1].force, results.fitted.values[k]);

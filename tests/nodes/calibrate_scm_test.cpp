@@ -1,5 +1,5 @@
-// The kind `scm`: soil parameters from curves of plate and shear tests, against the laws that made the curves and beside the
-// fits of `furrow soil`.
+// The kind `scm`: soil parameters from curves of plate and shear tests, against the laws that made the curves and
+// beside the fits of `furrow soil`.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,22 +33,29 @@ class CalibrateScm : public ::testing::Test {
     std::mt19937_64 bits(seed);
     std::normal_distribution<double> normal(0.0, noise > 0.0 ? noise : 1.0);
     const auto off = [&] { return noise > 0.0 ? normal(bits) : 0.0; };
-    std::string plate = "seed,width_m,sinkage_m,pressure_Pa\n", shear = "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n";
+    std::string plate = "seed,width_m,sinkage_m,pressure_Pa\n",
+                shear = "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n";
     for (const double b : {0.05, 0.1})
       for (const double z : steps(0.004, 0.08, 20))
         plate += fmt::format("1,{},{:.17g},{:.17g}\n", b, z, (kC / b + kPhi) * std::pow(z, kN) + off());
     for (const double s : {20e3, 50e3})
       for (const double j : steps(0.002, 0.06, 20))
-        shear += fmt::format("1,{},{:.17g},{:.17g},{},0\n", s, j,
-                             (kCohesion + 1.01 * s * std::tan(kAngle * std::numbers::pi / 180.0)) * -std::expm1(-j / kK) + off(), 1.01 * s);
+        shear += fmt::format(
+            "1,{},{:.17g},{:.17g},{},0\n", s, j,
+            (kCohesion + 1.01 * s * std::tan(kAngle * std::numbers::pi / 180.0)) * -std::expm1(-j / kK) + off(),
+            1.01 * s);
     write("plate.csv", plate), write("shear.csv", shear);
   }
   static json good() {
     return {{"calibrate", "scm"},
             {"start", "soil.json"},
             {"parameters",
-             {{"bekker_k_c", json::object()}, {"bekker_k_phi", json::object()}, {"bekker_n", json::object()},
-              {"mohr_cohesion", json::object()}, {"mohr_friction_angle", json::object()}, {"janosi_k", json::object()}}},
+             {{"bekker_k_c", json::object()},
+              {"bekker_k_phi", json::object()},
+              {"bekker_n", json::object()},
+              {"mohr_cohesion", json::object()},
+              {"mohr_friction_angle", json::object()},
+              {"janosi_k", json::object()}}},
             {"targets", {{{"data", "plate.csv"}, {"on", "plate"}}, {{"data", "shear.csv"}, {"on", "shear"}}}},
             {"starts", 1}};
   }
@@ -86,10 +93,13 @@ TEST_F(CalibrateScm, parameters_of_exact_curves_are_found_from_far) {
 }
 
 TEST_F(CalibrateScm, the_fitted_soil_says_nothing_of_the_start_s_grains) {
-  write("soil.json", R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8, "bekker_n": 0.5},
+  write(
+      "soil.json",
+      R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8, "bekker_n": 0.5},
                          "measured": {"grain_radius_m": 0.01}})");
   const Calibration c = load(good());
-  const json fitted = json::parse(c.model->fitted_file(std::vector<double>{kC, kPhi, kN, kCohesion, kAngle, kK}, "where from").dump());
+  const json fitted =
+      json::parse(c.model->fitted_file(std::vector<double>{kC, kPhi, kN, kCohesion, kAngle, kK}, "where from").dump());
   EXPECT_FALSE(fitted.contains("measured"));
   EXPECT_FALSE(fitted["terrain"].contains("law"));
   EXPECT_FALSE(fitted["terrain"].contains("friction"));
@@ -111,14 +121,18 @@ TEST_F(CalibrateScm, noisy_curves_are_met_within_the_errors) {
   const CalibrationResults results = calibrated(load(study));
   const double truth[] = {kC, kPhi, kN, kCohesion, kAngle, kK};
   for (int k = 0; k < 6; ++k)
-    EXPECT_LT(std::abs(results.values[k] - truth[k]), 3.5 * results.confidence.estimates[k].standard_error.value()) << k;
+    EXPECT_LT(std::abs(results.values[k] - truth[k]), 3.5 * results.confidence.estimates[k].standard_error.value())
+        << k;
   EXPECT_NEAR(results.confidence.deviation, 1.0, 0.25);
 }
 
 TEST_F(CalibrateScm, one_plate_does_not_tell_k_c_from_k_phi) {
-  write("one.csv", "width_m,sinkage_m,pressure_Pa\n0.05,0.01,5000\n0.05,0.02,7600\n0.05,0.03,9700\n0.05,0.05,13100\n0.05,0.08,17500\n");
+  write("one.csv",
+        "width_m,sinkage_m,pressure_Pa\n0.05,0.01,5000\n0.05,0.02,7600\n0.05,0.03,9700\n0.05,0.05,13100\n0.05,0.08,"
+        "17500\n");
   json study = good();
-  study["parameters"] = {{"bekker_k_c", {{"start", 1e3}}}, {"bekker_k_phi", {{"start", 1e5}}}, {"bekker_n", {{"start", 0.8}}}};
+  study["parameters"] = {
+      {"bekker_k_c", {{"start", 1e3}}}, {"bekker_k_phi", {{"start", 1e5}}}, {"bekker_n", {{"start", 0.8}}}};
   study["targets"] = {{{"data", "one.csv"}, {"on", "plate"}}};
   const Calibration c = load(study);
   const CalibrationResults results = calibrated(c);
@@ -141,7 +155,8 @@ TEST_F(CalibrateScm, wrong_targets_are_refused) {
       {"/targets/0/data", "negative.csv", "negative.csv: key 'line 2': width_m is -0.05, expected above 0"},
       {"/targets/0/data", "empty.csv", "empty.csv: has no point with sinkage_m above 0"},
       {"/targets/0/normal_stress", 2e4, "key 'targets[0].normal_stress': is given with \"on\": \"plate\""},
-      {"/targets/0/width", 0.05, "key 'targets[0].width': is given, and plate.csv has the column 'width_m', expected one of them"},
+      {"/targets/0/width", 0.05,
+       "key 'targets[0].width': is given, and plate.csv has the column 'width_m', expected one of them"},
       {"/targets/1/normal_stress", 2e4,
        "key 'targets[1].normal_stress': is given, and shear.csv has the column 'nominal_normal_stress_Pa'"},
       {"/targets/1/pressure", 2e4, "key 'targets[1].pressure': is unknown"},

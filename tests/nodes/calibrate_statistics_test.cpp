@@ -16,7 +16,8 @@ using namespace testing;
 
 double line(double x, std::span<const double> p) { return p[0] + p[1] * x; }
 
-// s² = Σr²/(n − 2), se(b) = s/√Sxx, se(a) = s √(1/n + x̄²/Sxx) [Draper & Smith 1998, Applied Regression Analysis, §1.4].
+// s² = Σr²/(n − 2), se(b) = s/√Sxx, se(a) = s √(1/n + x̄²/Sxx) [Draper & Smith 1998, Applied Regression Analysis,
+// §1.4].
 TEST(CalibrateStatistics, errors_of_a_line_match_the_closed_form) {
   const std::vector<double> x = steps(1.0, 9.0, 9), y{2.1, 3.9, 6.2, 7.8, 10.3, 11.7, 14.4, 15.6, 18.2};
   const CalibrationResults results = calibrated(
@@ -27,7 +28,8 @@ TEST(CalibrateStatistics, errors_of_a_line_match_the_closed_form) {
   for (int k = 0; k < 9; ++k) xx += (x[k] - mx) * (x[k] - mx), xy += (x[k] - mx) * (y[k] - my);
   const double b = xy / xx, a = my - b * mx;
   for (int k = 0; k < 9; ++k) off += std::pow(y[k] - a - b * x[k], 2);
-  const double s = std::sqrt(off / (n - 2.0)), error_b = s / std::sqrt(xx), error_a = s * std::sqrt(1.0 / n + mx * mx / xx);
+  const double s = std::sqrt(off / (n - 2.0)), error_b = s / std::sqrt(xx),
+               error_a = s * std::sqrt(1.0 / n + mx * mx / xx);
   EXPECT_NEAR(results.values[0], a, 1e-8);
   EXPECT_NEAR(results.values[1], b, 1e-8);
   const std::vector<Estimate>& estimates = results.confidence.estimates;
@@ -52,8 +54,8 @@ TEST(CalibrateStatistics, intervals_cover_the_truth_at_their_rate) {
   for (int n = 0; n < kTimes; ++n) {
     std::vector<double> y;
     for (const double at : x) y.push_back(decay(at, truth) + noise(bits));
-    const CalibrationResults results =
-        calibrated(study_of(decay, x, y, {{"height", "-", 1.0, 1e3, 10.0, true}, {"length", "m", 0.01, 10.0, 0.3, true}}));
+    const CalibrationResults results = calibrated(
+        study_of(decay, x, y, {{"height", "-", 1.0, 1e3, 10.0, true}, {"length", "m", 0.01, 10.0, 0.3, true}}));
     for (int k = 0; k < 2; ++k) {
       const Estimate& e = results.confidence.estimates[k];
       covered[k] += e.low.value() <= truth[k] && truth[k] <= e.high.value();
@@ -112,8 +114,8 @@ TEST(CalibrateStatistics, a_parameter_at_its_bound_is_held_and_the_others_are_th
 
 TEST(CalibrateStatistics, data_that_the_model_does_not_describe_are_named) {
   const auto warned = [](std::vector<double> y) {
-    const Calibration study = study_of([](double x, std::span<const double> p) { return p[0] * x; }, steps(1.0, 4.0, 4), std::move(y),
-                                       {{"a", "N", 1e-3, 1e6, 1.0, true}});
+    const Calibration study = study_of([](double x, std::span<const double> p) { return p[0] * x; }, steps(1.0, 4.0, 4),
+                                       std::move(y), {{"a", "N", 1e-3, 1e6, 1.0, true}});
     return calibration_warnings(study, calibrated(study));
   };
   const std::vector<std::string> falls = warned({9.0, 5.0, 4.0, 1.0});
@@ -124,8 +126,9 @@ TEST(CalibrateStatistics, data_that_the_model_does_not_describe_are_named) {
 
 TEST(CalibrateStatistics, what_is_done_never_falls_back_from_start_to_start) {
   // The optimum lies at a bound: each start has several rounds.
-  const Calibration study = study_of([](double x, std::span<const double> p) { return p[0] * x * x + p[1] * x; }, steps(0.0, 4.0, 9),
-                                     {0.0, 1.4, 3.1, 4.4, 6.1, 7.4, 9.1, 10.4, 12.0}, {{"a", "N", 0.1, 10.0, 5.0, true}, {"b", "N", 1.0, 100.0, 50.0, true}}, 4);
+  const Calibration study = study_of([](double x, std::span<const double> p) { return p[0] * x * x + p[1] * x; },
+                                     steps(0.0, 4.0, 9), {0.0, 1.4, 3.1, 4.4, 6.1, 7.4, 9.1, 10.4, 12.0},
+                                     {{"a", "N", 0.1, 10.0, 5.0, true}, {"b", "N", 1.0, 100.0, 50.0, true}}, 4);
   std::vector<double> shares;
   const furrow::testing::TemporaryFolder folder;
   calibrate(study, folder.path(), [&](const std::string&, double share) { shares.push_back(share); });

@@ -61,7 +61,7 @@ TEST_F(CalibrateStudy, a_study_is_read_with_its_defaults) {
   EXPECT_TRUE(c.parameters[0].logarithmic);
   const Target& plate = c.model->targets(TargetSet::fitted).front();
   EXPECT_EQ(plate.x, (std::vector<double>{0.01, 0.02, 0.03, 0.04}));  // a point without deflection tells nothing
-  EXPECT_EQ(plate.sigma, std::vector<double>(4, 140.0));        // a hundredth of the largest
+  EXPECT_EQ(plate.sigma, std::vector<double>(4, 140.0));              // a hundredth of the largest
   EXPECT_EQ(plate.what, "plate, 200 kPa");
   EXPECT_EQ(c.model->targets(TargetSet::held_out).front().sigma, std::vector<double>(3, 20.0));
   EXPECT_TRUE(c.model->notes().empty());
@@ -96,7 +96,8 @@ TEST_F(CalibrateStudy, a_pressure_in_another_unit_is_warned_of) {
   study["targets"][0]["pressure"] = 200;
   const Calibration c = load(study);
   ASSERT_EQ(c.model->notes().size(), 1u);
-  EXPECT_NE(c.model->notes()[0].find("key 'targets[0].pressure': 200 Pa is unusually small"), std::string::npos) << c.model->notes()[0];
+  EXPECT_NE(c.model->notes()[0].find("key 'targets[0].pressure': 200 Pa is unusually small"), std::string::npos)
+      << c.model->notes()[0];
 }
 
 TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
@@ -127,7 +128,8 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/parameters/bending/lower", -5, "key 'parameters.bending.lower': is -5, expected 1e-9 to"},
       {"/parameters/bending/lower", "a", "key 'parameters.bending.lower'"},
       {"/parameters/bending/upper", 0.5, "key 'parameters.bending.upper': is 0.5, expected more than lower"},
-      {"/parameters/bending/start", 1e7, "key 'parameters.bending.start': is 1e7, expected a value from lower to upper"},
+      {"/parameters/bending/start", 1e7,
+       "key 'parameters.bending.start': is 1e7, expected a value from lower to upper"},
       {"/parameters/bending/scale", "logarithmic", "key 'parameters.bending.scale'"},
       {"/parameters/sidewall_1/lower", 1e6, "key 'parameters.sidewall_1': begins at 235340 N/m"},
       {"/parameters/sidewall_2", {{"scale", "log"}}, "key 'parameters.sidewall_2.lower': is 0, expected above 0"},
@@ -142,11 +144,13 @@ TEST_F(CalibrateStudy, wrong_studies_are_refused_with_file_and_key) {
       {"/targets/0/data", "empty.csv", "empty.csv: has no point of loading"},
       {"/targets/0/data", "falling.csv", "falling.csv: key 'line 3': deflection_m is 0.01, expected more"},
       {"/targets/0/data", "words.csv", "words.csv: key 'line 2'"},
-      {"/targets/0/data", "columns.csv", "columns.csv: key 'line 1': column 'force_kN' is unknown, expected 'force_N'?"},
+      {"/targets/0/data", "columns.csv",
+       "columns.csv: key 'line 1': column 'force_kN' is unknown, expected 'force_N'?"},
       {"/targets/0/data", "no_force.csv", "no_force.csv: key 'line 2': has no column 'force_N'"},
       {"/targets/0/data", "sigma.csv", "sigma.csv: key 'line 2': sigma_N is 0, expected above 0"},
       {"/targets/0/data", "deep.csv", "deep.csv: key 'line 2': deflection_m is 0.3, expected 0 to 0.2"},
-      {"/targets/0/data", "beyond.csv", "beyond.csv: key 'line 3': deflection_m is 0.15, expected 0.1175 or less, a quarter of the tire's radius"},
+      {"/targets/0/data", "beyond.csv",
+       "beyond.csv: key 'line 3': deflection_m is 0.15, expected 0.1175 or less, a quarter of the tire's radius"},
       {"/targets/0/on", "floor", "key 'targets[0].on': is 'floor', expected 'plate' or 'cleat'"},
       {"/targets/0/cleat_width", 0.05, "key 'targets[0].cleat_width': is given on a plate"},
       {"/targets/0/pressure", -1, "key 'targets[0].pressure'"},
@@ -220,7 +224,9 @@ struct Stopper {
 };
 
 TEST_F(CalibrateStudy, an_interrupted_calibration_ends_with_the_same_files) {
-  const auto decay = [](double x, std::span<const double> p) { return p[0] * std::exp(-x / p[1]) + 0.3 * std::sin(9.0 * x); };
+  const auto decay = [](double x, std::span<const double> p) {
+    return p[0] * std::exp(-x / p[1]) + 0.3 * std::sin(9.0 * x);
+  };
   const auto study = [&] {
     std::vector<double> y;
     for (const double x : steps(0.1, 3.0, 15)) y.push_back(50.0 * std::exp(-x / 0.8));

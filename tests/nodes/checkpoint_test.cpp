@@ -96,8 +96,7 @@ TEST(Checkpoint, one_at_the_same_step_is_replaced) {
 TEST(Checkpoint, a_manifest_with_any_byte_changed_or_cut_is_refused) {
   const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);
-  const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0),
-                 file = checkpoint / "manifest.json";
+  const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0), file = checkpoint / "manifest.json";
   const std::string whole = read_whole_file(file);
   for (std::size_t i = 0; i < whole.size(); i += 7) {
     if (std::isspace(static_cast<unsigned char>(whole[i]))) continue;
@@ -116,13 +115,11 @@ TEST(Checkpoint, one_of_an_older_format_is_refused_by_its_version) {
   const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);
   const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0);
-  std::ofstream(checkpoint / "manifest.json")
-      << R"({"format_version": 1, "kind": "checkpoint", "checksum": "0"})";
-  EXPECT_EQ(
-      error_of(checkpoint),
-      (checkpoint / "manifest.json").string() +
-          ": was written by an older version of furrow, format 1; this program reads format 2: continue the "
-          "run with that version, or start it again with furrow run");
+  std::ofstream(checkpoint / "manifest.json") << R"({"format_version": 1, "kind": "checkpoint", "checksum": "0"})";
+  EXPECT_EQ(error_of(checkpoint),
+            (checkpoint / "manifest.json").string() +
+                ": was written by an older version of furrow, format 1; this program reads format 2: continue the "
+                "run with that version, or start it again with furrow run");
 }
 
 /// Puts a value into the manifest of the run's only checkpoint, and the checksum that fits. @returns its folder
@@ -189,8 +186,7 @@ TEST(FrameClock, numbers_go_on_without_gap_when_the_interval_changes) {
   const checkpoint::FrameClock first{20, 0, 0};
   EXPECT_EQ(first.index(0), 0);
   EXPECT_EQ(first.index(100), 5);
-  const checkpoint::FrameClock second =
-      first.continued(110, 50);  // frames of steps 0 … 100 are written: 0 … 5
+  const checkpoint::FrameClock second = first.continued(110, 50);  // frames of steps 0 … 100 are written: 0 … 5
   EXPECT_EQ(second.index(150), 6);
   EXPECT_EQ(second.index(200), 7);
   EXPECT_EQ(second.continued(200, 0).index(999), 7);
@@ -220,11 +216,9 @@ TEST(WallSchedule, begins_early_and_slows_down_to_its_interval) {
 }
 
 TEST(Resume, what_decides_the_results_may_not_change) {
-  for (const char* key :
-       {"run.end", "run.threads", "output.frame_interval", "checkpoint.keep", "terrain.cache"})
+  for (const char* key : {"run.end", "run.threads", "output.frame_interval", "checkpoint.keep", "terrain.cache"})
     EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
-  for (const char* key :
-       {"run.step", "run.seed", "rig.slip", "terrain.bed", "tire.file", "run.end_of", "outputs"})
+  for (const char* key : {"run.step", "run.seed", "rig.slip", "terrain.bed", "tire.file", "run.end_of", "outputs"})
     EXPECT_FALSE(scenario::may_change_on_resume(key)) << key;
 }
 

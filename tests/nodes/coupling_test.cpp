@@ -135,8 +135,7 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
     const double mass = rig.carrier_mass + rig.rim_mass + tire.mass, spin = rig.angular_speed;
     const double tolerance = rigid ? 1e-9 : 0.2;  // the flexible tire also winds up and swings
     EXPECT_EQ(row.force.norm(), 0.0) << "it must not have landed";
-    EXPECT_NEAR(row.vertical_momentum / (-mass * kStandardGravity * row.time), 1.0, tolerance)
-        << "rigid: " << rigid;
+    EXPECT_NEAR(row.vertical_momentum / (-mass * kStandardGravity * row.time), 1.0, tolerance) << "rigid: " << rigid;
     EXPECT_NEAR(row.spindle_work / (0.5 * 4.0 / 3.0 * tire.inertia(1, 1) * spin * spin), 1.0, tolerance)
         << "rigid: " << rigid;
   }
@@ -146,8 +145,7 @@ TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
   ranks::RunContext one, two;
   one.threads = 1;
   two.threads = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains().made(), one),
-      second(rigid_wheel_on_grains().made(), two);
+  testing::InProcessRun first(rigid_wheel_on_grains().made(), one), second(rigid_wheel_on_grains().made(), two);
   first.steps(0, 200);
   second.steps(0, 200);
   EXPECT_EQ(first.hashes(), second.hashes());
@@ -177,10 +175,8 @@ std::vector<double> vertical_impulses(const testing::InProcessRun& run, std::siz
 
 TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
   const scenario::Scenario scenario = scenario::load_scenario(
-      std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json", {{"terrain.radius", "0.03"},
-                                                                                  {"terrain.layers", "3"},
-                                                                                  {"terrain.cache", "false"},
-                                                                                  {"run.step", "2e-4"}});
+      std::filesystem::path(FURROW_SOURCE_FOLDER) / "rigs" / "four_wheels.json",
+      {{"terrain.radius", "0.03"}, {"terrain.layers", "3"}, {"terrain.cache", "false"}, {"run.step", "2e-4"}});
   testing::InProcessRun run(scenario);
   run.steps(0, 4500);
   const auto before = vertical_impulses(run, 4);

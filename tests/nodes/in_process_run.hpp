@@ -19,16 +19,15 @@ class InProcessRun {
         transports_(make_in_process_transports(static_cast<int>(scenario.tires.size()), scenario.terrain_ranks)) {
     nodes_.resize(transports_.size());
     on_all([&](std::size_t i) {
-      nodes_[i] = ranks::make_node(scenario_, transports_[i]->self(), context.threads, {},
-                                   make_terrain_group(*transports_[i]));
+      nodes_[i] =
+          ranks::make_node(scenario_, transports_[i]->self(), context.threads, {}, make_terrain_group(*transports_[i]));
       const auto cards = handshake(*transports_[i], nodes_[i]->card());
       nodes_[i]->set_up(*transports_[i], cards, context);
     });
   }
 
   void steps(std::int64_t from, std::int64_t to) {
-    on_all(
-        [&](std::size_t i) { ranks::run_steps(*nodes_[i], *transports_[i], scenario_.run.step, from, to); });
+    on_all([&](std::size_t i) { ranks::run_steps(*nodes_[i], *transports_[i], scenario_.run.step, from, to); });
   }
   void synchronize(std::int64_t n) {
     on_all([&](std::size_t i) {

@@ -17,8 +17,7 @@ namespace furrow::testing {
 /// A number without a unit, "-" in its list, may lack the entry in the schema.
 inline void expect_unit(const nlohmann::json& node, const Field& field, const std::string& key) {
   const std::string unit = node.value("unit", "");
-  EXPECT_TRUE(unit == field.unit || (unit.empty() && std::string(field.unit) == "-"))
-      << key << ": " << field.unit;
+  EXPECT_TRUE(unit == field.unit || (unit.empty() && std::string(field.unit) == "-")) << key << ": " << field.unit;
 }
 
 /// The keys of all lists together are those of the schema's section; each has the schema's unit, and the schema's

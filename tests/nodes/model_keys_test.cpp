@@ -1,4 +1,5 @@
-// The sections `terrain` and `rig`: their keys in the schema and in the models' lists of fields, and whose key is whose.
+// The sections `terrain` and `rig`: their keys in the schema and in the models' lists of fields, and whose key is
+// whose.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,9 +76,8 @@ TEST(TerrainKeys, a_key_of_another_engine_is_an_error_in_a_scenario_written_for_
 TEST(TerrainKeys, what_an_engine_cannot_do_is_refused_even_where_it_is_the_default) {
   for (const char* key : {R"("activity": true)", R"("precision": "mixed")"}) {
     const std::string text = fmt::format(R"({{"engine": "liggghts", {}}})", key);
-    EXPECT_NE(
-        with_terrain(text).complaint().find("is a key of engine 'dem', but terrain.engine is 'liggghts'"),
-        std::string::npos)
+    EXPECT_NE(with_terrain(text).complaint().find("is a key of engine 'dem', but terrain.engine is 'liggghts'"),
+              std::string::npos)
         << with_terrain(text).complaint();
   }
   const scenario::Scenario s = with_terrain(R"({"activity": true})").load({{"terrain.engine", "liggghts"}});
@@ -90,8 +90,8 @@ TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside
                                    .load({{"terrain.engine", "rigid"}});
   EXPECT_EQ(s.terrain->describe().engine, "rigid");
   ASSERT_EQ(s.warnings.size(), 1U);
-  EXPECT_TRUE(s.warnings[0].ends_with(
-      "key 'terrain.engine': is 'rigid'; keys of other engines are ignored: length, radius"))
+  EXPECT_TRUE(
+      s.warnings[0].ends_with("key 'terrain.engine': is 'rigid'; keys of other engines are ignored: length, radius"))
       << s.warnings[0];
   const json section = json::parse(s.completed)["terrain"];
   EXPECT_EQ(section["friction"], 0.5);
@@ -141,8 +141,7 @@ std::vector<std::string> two_kinds(const std::string& key) {
 TEST(RigKeys, a_key_of_another_type_is_refused_or_set_aside_as_those_of_engines_are) {
   const scenario::ModelSection rig{"rig", "type", "drawbar", two_kinds};
   const scenario::Schema schema = scenario::Schema::load();
-  const auto set_aside = [&](json& document,
-                             const std::vector<std::pair<std::string, std::string>>& settings) {
+  const auto set_aside = [&](json& document, const std::vector<std::pair<std::string, std::string>>& settings) {
     return scenario::set_aside_keys(document, schema, "mine.json", settings, {&rig, 1});
   };
   const json given = {{"rig", {{"slip", 0.2}, {"speed", 3.0}}}, {"terrain", json::object()}};
@@ -151,15 +150,13 @@ TEST(RigKeys, a_key_of_another_type_is_refused_or_set_aside_as_those_of_engines_
     set_aside(document, {});
     ADD_FAILURE() << "was not refused";
   } catch (const Error& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "mine.json: key 'rig.slip': is a key of type 'trolley', but rig.type is 'drawbar', expected keys of "
-        "that type alone");
+    EXPECT_STREQ(error.what(),
+                 "mine.json: key 'rig.slip': is a key of type 'trolley', but rig.type is 'drawbar', expected keys of "
+                 "that type alone");
   }
   document = given;
   EXPECT_EQ(set_aside(document, {{"rig.type", "drawbar"}}),
-            std::vector<std::string>{
-                "mine.json: key 'rig.type': is 'drawbar'; keys of other types are ignored: slip"});
+            std::vector<std::string>{"mine.json: key 'rig.type': is 'drawbar'; keys of other types are ignored: slip"});
   EXPECT_EQ(document["rig"], json({{"speed", 3.0}}));
   document["rig"]["type"] = "trolley";
   EXPECT_TRUE(set_aside(document, {}).empty());
@@ -173,8 +170,8 @@ TEST(RigKeys, explain_says_whose_key_it_is) {
 }
 
 TEST(ModelKeys, a_scenario_that_is_refused_is_not_told_what_was_set_aside) {
-  const std::string told = with_terrain(R"({"radius": 0.01, "length": 4})")
-                               .complaint({{"terrain.engine", "rigid"}, {"run.end", "1e-9"}});
+  const std::string told =
+      with_terrain(R"({"radius": 0.01, "length": 4})").complaint({{"terrain.engine", "rigid"}, {"run.end", "1e-9"}});
   EXPECT_NE(told.find("run.end"), std::string::npos) << told;
   EXPECT_EQ(told.find("are ignored"), std::string::npos) << told;
 }
@@ -186,10 +183,9 @@ TEST(TerrainKeys, tools_that_need_grains_say_why_and_which_engine_has_them) {
     (void)file.load({{"terrain.engine", "rigid"}}).grains("only grains keep a rut");
     ADD_FAILURE() << "rigid ground has grains";
   } catch (const Error& error) {
-    EXPECT_NE(
-        std::string(error.what())
-            .find("key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts': only grains keep a rut"),
-        std::string::npos)
+    EXPECT_NE(std::string(error.what())
+                  .find("key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts': only grains keep a rut"),
+              std::string::npos)
         << error.what();
   }
 }

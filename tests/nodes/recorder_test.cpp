@@ -60,15 +60,11 @@ TEST(Frames, going_on_removes_later_frames_and_no_file_of_the_users) {
       found.insert(entry.path().filename().string());
     return found;
   };
-  const std::set<std::string> stay{"terrain_000001.h5",
-                                   "tire12_000001.h5",
-                                   "view_000007.png",
-                                   "tire_2026.h5",
-                                   "tire0_99999999999999999999.h5",
-                                   "mine.part"};
+  const std::set<std::string> stay{
+      "terrain_000001.h5", "tire12_000001.h5", "view_000007.png", "tire_2026.h5", "tire0_99999999999999999999.h5",
+      "mine.part"};
   for (const std::string& name : stay) std::ofstream(frames / name) << "x";
-  for (const char* name :
-       {"terrain_000002.h5", "tire12_1000000.h5", ".tire0_000001.h5.0123456789abcdef.part"})
+  for (const char* name : {"terrain_000002.h5", "tire12_1000000.h5", ".tire0_000001.h5.0123456789abcdef.part"})
     std::ofstream(frames / name) << "x";
   output::remove_frames_from(folder.path(), 2);
   EXPECT_EQ(names(), stay);

@@ -64,14 +64,12 @@ TEST(Rolling, spindle_impulse_is_that_of_ground_and_gravity_less_the_tires_momen
         for (int i = 0; i < layout.columns; ++i) {
           force += layout.get(weight, i, j, 0);
           for (const int s : {0, 3})
-            moment += (0.5 * (layout.get(from, i, j, s) + layout.get(to, i, j, s)))
-                          .cross(layout.get(weight, i, j, s));
+            moment += (0.5 * (layout.get(from, i, j, s) + layout.get(to, i, j, s))).cross(layout.get(weight, i, j, s));
         }
       for (std::size_t k = 0; k < rolling.on_tire.vertex.size(); ++k) {
         const int v = rolling.on_tire.vertex[k];
         force += rolling.on_tire.force[k];
-        moment +=
-            (0.5 * (rolling.before.position[v] + rolling.after.position[v])).cross(rolling.on_tire.force[k]);
+        moment += (0.5 * (rolling.before.position[v] + rolling.after.position[v])).cross(rolling.on_tire.force[k]);
       }
       const auto [p1, l1] = momenta(rolling.tire);
       worst = std::max(worst, (p1 - p - kStep * force).norm() / (kStep * load));
@@ -162,8 +160,7 @@ Wrench mean_wrench(double toe, double camber, double& slip_angle) {
 TEST(Rolling, mirrored_toe_and_camber_mirror_forces_and_moments_and_oppose_the_slip) {
   for (const auto& [toe, camber] : {std::pair{0.02, 0.0}, std::pair{0.0, 0.05}}) {
     double slip_angle = 0.0, mirrored_slip_angle = 0.0;
-    const Wrench a = mean_wrench(toe, camber, slip_angle),
-                 b = mean_wrench(-toe, -camber, mirrored_slip_angle);
+    const Wrench a = mean_wrench(toe, camber, slip_angle), b = mean_wrench(-toe, -camber, mirrored_slip_angle);
     EXPECT_NEAR(slip_angle, -toe, 1e-9);
     EXPECT_NEAR(mirrored_slip_angle, toe, 1e-9);
     const double load = a.force.z();
@@ -173,8 +170,8 @@ TEST(Rolling, mirrored_toe_and_camber_mirror_forces_and_moments_and_oppose_the_s
     EXPECT_NEAR(a.moment.x(), -b.moment.x(), 1e-3 * load * 0.5);
     EXPECT_NEAR(a.moment.y(), b.moment.y(), 1e-3 * load * 0.5);
     EXPECT_NEAR(a.moment.z(), -b.moment.z(), 1e-3 * load * 0.5);
-    std::printf("toe %g, camber %g: Fy %.4g and %.4g N, Mz %.4g and %.4g N m\n", toe, camber, a.force.y(),
-                b.force.y(), a.moment.z(), b.moment.z());
+    std::printf("toe %g, camber %g: Fy %.4g and %.4g N, Mz %.4g and %.4g N m\n", toe, camber, a.force.y(), b.force.y(),
+                a.moment.z(), b.moment.z());
     if (toe > 0.0) {  // wheel to the left: slips to its right, is pushed to the left, and turned back
       EXPECT_GT(a.force.y(), 0.05 * load);
       EXPECT_LT(a.moment.z(), 0.0);

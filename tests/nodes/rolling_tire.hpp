@@ -56,8 +56,8 @@ class RollingTire {
     trajectory.extend(rim, step_);
     const Outcome moved = tire.advance(trajectory, on_tire, 1);
     if (!moved.ok) throw physics_error(moved, "tire");
-    sent_ = ranks::carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(),
-                                  trajectory.end(), step_, tire.gravity());
+    sent_ = ranks::carried_wrench(tire.spindle_wrench(), tire.mass_properties(), trajectory.start(), trajectory.end(),
+                                  step_, tire.gravity());
     tire.surface(after);
     const Outcome driven = rig->advance({&sent, 1}, step_, 1);
     if (!driven.ok) throw physics_error(driven, "rig");

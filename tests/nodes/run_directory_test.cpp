@@ -1,5 +1,5 @@
-// The folder of a run: one run at a time has it, nothing but what furrow wrote is ever removed from it, and results to be
-// overwritten survive a run that never started.
+// The folder of a run: one run at a time has it, nothing but what furrow wrote is ever removed from it, and results to
+// be overwritten survive a run that never started.
 #include "nodes/launch/run_directory.hpp"
 
 #include <sys/wait.h>
@@ -76,9 +76,8 @@ TEST(RunList, names_with_numbers_are_those_that_printf_makes) {
   EXPECT_EQ(number, 42);
   for (const char* name : {"tire0_1000000.h5", "tire12_000000.h5"})
     EXPECT_TRUE(launch::is_of_form(name, "tire%1d_%06d.h5")) << name;
-  for (const char* name :
-       {"tire0_00042.h5", "tire0_0000042.h5", "tire00_000042.h5", "tire0_000042.h5x", "tire_000042.h5",
-        "tire0_-00042.h5", "tire0_9999999999999999999.h5", "tire0_.h5", ""})
+  for (const char* name : {"tire0_00042.h5", "tire0_0000042.h5", "tire00_000042.h5", "tire0_000042.h5x",
+                           "tire_000042.h5", "tire0_-00042.h5", "tire0_9999999999999999999.h5", "tire0_.h5", ""})
     EXPECT_FALSE(launch::is_of_form(name, "tire%1d_%06d.h5")) << name;
   EXPECT_TRUE(launch::is_of_form("summary.json", "summary.json"));
   EXPECT_FALSE(launch::is_of_form("summary-json", "summary.json"));
@@ -102,9 +101,8 @@ TEST(RunList, one_that_was_tampered_with_or_is_of_another_version_is_refused) {
     return error_of([&] { RunList::read(folder.path()); });
   };
   for (const char* name : {"../victim", "/etc/passwd", "frames/../../victim", "a\tb", ""})
-    EXPECT_NE(
-        refusal(std::string("furrow-run 1\n") + name + "\n").find("is not the name of a file below its folder"),
-        std::string::npos)
+    EXPECT_NE(refusal(std::string("furrow-run 1\n") + name + "\n").find("is not the name of a file below its folder"),
+              std::string::npos)
         << name;
   EXPECT_NE(refusal("furrow-run 2\na\n").find("is of version '2', expected 1"), std::string::npos);
   EXPECT_NE(refusal("summary.json\n").find("is not a list of a run's files"), std::string::npos);
@@ -115,10 +113,9 @@ TEST(RunList, a_file_that_furrow_did_not_write_is_never_written_over) {
   const testing::TemporaryFolder folder;
   launch::begin_run_list(folder.path(), {});
   write(folder.path() / "rut.png", "mine");
-  EXPECT_NE(error_of([&] {
-              launch::add_to_run_list(folder.path(), {"rut.png"});
-            }).find("rut.png: stands where a result"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([&] { launch::add_to_run_list(folder.path(), {"rut.png"}); }).find("rut.png: stands where a result"),
+      std::string::npos);
   EXPECT_TRUE(RunList::read(folder.path()).forms().empty());
 }
 
@@ -209,10 +206,9 @@ TEST_F(RunFolderTest, a_folder_that_no_run_made_is_refused) {
   write(run_ / "scenario.json", "mine");
   write(run_ / "frames" / "tire0_000001.h5", "mine");
   for (const bool overwrite : {true, false})
-    EXPECT_NE(error_of([&] {
-                RunDirectory("test", run_, overwrite);
-              }).find(overwrite ? "holds no run" : "exists already"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of([&] { RunDirectory("test", run_, overwrite); }).find(overwrite ? "holds no run" : "exists already"),
+        std::string::npos);
   EXPECT_NE(error_of([&] { RunDirectory::of_study(run_); }).find("holds no run's list"), std::string::npos);
   EXPECT_NE(error_of([&] { RunDirectory go_on(run_); }).find("an earlier version of furrow made it"),
             std::string::npos);

@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nodes/scenario/machine_speed.hpp"
 #include "nodes/scenario/grain_loads.hpp"
+#include "nodes/scenario/machine_speed.hpp"
 #include "nodes/scenario/run_time.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "protocol/files/data_files.hpp"
@@ -21,18 +21,16 @@ namespace {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-constexpr scenario::MachineSpeed kMachine{
-    .grain_step = 5e-8, .tire_step = 2e-3, .tire_coordinates = 4680, .cores = 2};
+constexpr scenario::MachineSpeed kMachine{.grain_step = 5e-8, .tire_step = 2e-3, .tire_coordinates = 4680, .cores = 2};
 
-scenario::RunTime time_of(const char* name, Settings settings = {},
-                          scenario::MachineSpeed machine = kMachine) {
+scenario::RunTime time_of(const char* name, Settings settings = {}, scenario::MachineSpeed machine = kMachine) {
   if (std::string(name) != "rigid_ground.json") settings.emplace_back("terrain.cache", "false");
   const scenario::Scenario s = scenario::load_scenario(data_folder() / "rigs" / name, settings);
   return scenario::run_time(s, machine);
 }
 
-/// By hand: 25,000 steps; the tire 1.2 × 2 ms and 0.08 ms for its messages, the terrain less, together less than two cores'
-/// time of that.
+/// By hand: 25,000 steps; the tire 1.2 × 2 ms and 0.08 ms for its messages, the terrain less, together less than two
+/// cores' time of that.
 TEST(RunTime, the_slowest_node_decides_where_there_are_cores_for_all) {
   const scenario::RunTime t = time_of("drawbar_pull_small.json");
   EXPECT_NEAR(t.tire, 2.48e-3, 1e-9);
@@ -84,8 +82,8 @@ scenario::RunTime time_of_wheels(int count, double frames_every = 0.0, double ch
   return scenario::run_time(testing::ScenarioFile(s.dump()).load(), kMachine);
 }
 
-/// Measured on two cores: a step took 1.1 ms with 4 wheels, 4.6 with 16 and 32 with 64; the ranks began and ended in 0.6,
-/// 0.65, 1.1 and 6.4 s with 1, 4, 16 and 64 wheels (tests/benchmarks/start_of_ranks.csv).
+/// Measured on two cores: a step took 1.1 ms with 4 wheels, 4.6 with 16 and 32 with 64; the ranks began and ended in
+/// 0.6, 0.65, 1.1 and 6.4 s with 1, 4, 16 and 64 wheels (tests/benchmarks/start_of_ranks.csv).
 TEST(RunTime, many_ranks_for_each_core_begin_later_and_take_longer_for_their_messages) {
   const auto about = [](double told, double measured) { return told > measured / 1.5 && told < 1.5 * measured; };
   for (const auto& [wheels, step] : {std::pair{4, 1.1e-3}, {16, 4.6e-3}, {64, 32e-3}})
@@ -94,14 +92,11 @@ TEST(RunTime, many_ranks_for_each_core_begin_later_and_take_longer_for_their_mes
     EXPECT_PRED2(about, time_of_wheels(wheels).start, start) << wheels;
 }
 
-/// Measured on two cores: 100 frames took 0.13, 2.0 and 6.9 s with 1, 16 and 64 wheels, 100 checkpoints 0.87, 6.3 and 21
-/// (tests/benchmarks/writing_time.csv).
+/// Measured on two cores: 100 frames took 0.13, 2.0 and 6.9 s with 1, 16 and 64 wheels, 100 checkpoints 0.87, 6.3 and
+/// 21 (tests/benchmarks/writing_time.csv).
 TEST(RunTime, frames_and_checkpoints_take_as_long_as_their_files) {
-  const auto about = [](double told, double measured) {
-    return told > measured / 2.0 && told < 2.0 * measured;
-  };
-  for (const auto& [wheels, frames, checkpoints] :
-       {std::tuple{1, 0.13, 0.87}, {16, 2.0, 6.3}, {64, 6.9, 21.0}}) {
+  const auto about = [](double told, double measured) { return told > measured / 2.0 && told < 2.0 * measured; };
+  for (const auto& [wheels, frames, checkpoints] : {std::tuple{1, 0.13, 0.87}, {16, 2.0, 6.3}, {64, 6.9, 21.0}}) {
     EXPECT_PRED2(about, time_of_wheels(wheels, 1e-3).writing, frames) << wheels;
     EXPECT_PRED2(about, time_of_wheels(wheels, 0.0, 1e-3).writing, checkpoints) << wheels;
   }
@@ -115,8 +110,7 @@ TEST(RunTime, sleeping_tiled_and_kept_beds_take_less) {
   // Measured: 14.8 % of 10 m (tests/studies/full_size_activity.json).
   EXPECT_NEAR(asleep.awake, 0.148, 0.02);
   EXPECT_LT(asleep.terrain, 0.25 * awake.terrain);
-  const scenario::RunTime tiled =
-      time_of("drawbar_pull.json", {{"terrain.width", "0.6"}, {"terrain.tile", "1"}});
+  const scenario::RunTime tiled = time_of("drawbar_pull.json", {{"terrain.width", "0.6"}, {"terrain.tile", "1"}});
   EXPECT_LT(tiled.bed, 0.5 * asleep.bed);
   const scenario::RunTime rigid = time_of("rigid_ground.json");
   EXPECT_EQ(rigid.bed, 0.0);
@@ -191,8 +185,7 @@ TEST(MachineSpeed, is_kept_and_measured_again_when_damaged) {
   EXPECT_LT(first.grain_step, 1e-5);
   EXPECT_GT(first.tire_step, 1e-5);
   EXPECT_EQ(first.tire_coordinates, 4680);
-  const std::filesystem::path kept =
-      std::filesystem::directory_iterator(folder.path() / "furrow" / "speed")->path();
+  const std::filesystem::path kept = std::filesystem::directory_iterator(folder.path() / "furrow" / "speed")->path();
   std::ofstream(kept) << R"({"grain_step_s": 1e-7, "tire_step_s": 1e-3, "tire_coordinates": 4680})";
   EXPECT_EQ(scenario::machine_speed().grain_step, 1e-7);
   std::ofstream(kept) << R"({"grain_step_s": "fast)";

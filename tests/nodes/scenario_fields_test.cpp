@@ -145,13 +145,12 @@ TEST(ScenarioFields, a_soil_file_of_ones_own_has_its_full_name_in_the_completed_
 TEST(ScenarioFields, what_is_harmless_is_free_on_resume_and_leaves_the_digest) {
   const testing::ScenarioFile file(testing::kSmallest);
   const std::string digest = file.load().digest;
-  for (const auto& [key, value] :
-       std::vector<std::pair<std::string, std::string>>{{"run.threads", "2"},
-                                                        {"run.peer_timeout", "5"},
-                                                        {"checkpoint.keep", "3"},
-                                                        {"checkpoint.interval", "1"},
-                                                        {"terrain.cache", "false"},
-                                                        {"description", "other"}}) {
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"run.threads", "2"},
+                                                                                   {"run.peer_timeout", "5"},
+                                                                                   {"checkpoint.keep", "3"},
+                                                                                   {"checkpoint.interval", "1"},
+                                                                                   {"terrain.cache", "false"},
+                                                                                   {"description", "other"}}) {
     EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
     EXPECT_EQ(file.load({{key, value}}).digest, digest) << key;
   }

@@ -16,9 +16,7 @@ inline constexpr const char* kSmallest = R"({"tire": {"file": "hmmwv_layered.jso
 
 class ScenarioFile {
  public:
-  explicit ScenarioFile(const std::string& text) : path_(folder_.path() / "test.json") {
-    std::ofstream(path_) << text;
-  }
+  explicit ScenarioFile(const std::string& text) : path_(folder_.path() / "test.json") { std::ofstream(path_) << text; }
   const std::filesystem::path& path() const { return path_; }
   scenario::Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
     return scenario::load_scenario(path_, settings);

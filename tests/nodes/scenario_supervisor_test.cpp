@@ -27,11 +27,8 @@ TEST(RankLine, survives_the_way_to_the_supervisor) {
   EXPECT_EQ(error->text, line.text);
   EXPECT_EQ(error->code, ExitCode::physics);
 
-  line = {launch::RankLine::Kind::progress,
-          0,
-          {},
-          ExitCode::done,
-          {"running", 0.25, 0.5, 2.0, 1432.5, 0.031, 1.4, 83.0}};
+  line = {
+      launch::RankLine::Kind::progress, 0, {}, ExitCode::done, {"running", 0.25, 0.5, 2.0, 1432.5, 0.031, 1.4, 83.0}};
   const auto progress = launch::decode(launch::encode(line));
   ASSERT_TRUE(progress);
   EXPECT_EQ(progress->progress.phase, "running");
@@ -49,9 +46,9 @@ TEST(RankLine, fits_into_one_write_to_a_pipe) {
 }
 
 TEST(RankLine, what_is_not_ours_is_left_alone) {
-  for (const char* text : {"", "hello", "@furrow", "@furrow {", "@furrow []",
-                           "@furrow {\"kind\":\"x\",\"rank\":0}", "@furrow {\"kind\":\"note\"}",
-                           "@furrow {\"kind\":\"progress\",\"rank\":0,\"phase\":\"a\",\"values\":[1]}"})
+  for (const char* text :
+       {"", "hello", "@furrow", "@furrow {", "@furrow []", "@furrow {\"kind\":\"x\",\"rank\":0}",
+        "@furrow {\"kind\":\"note\"}", "@furrow {\"kind\":\"progress\",\"rank\":0,\"phase\":\"a\",\"values\":[1]}"})
     EXPECT_FALSE(launch::decode(text)) << text;
 }
 
@@ -127,8 +124,7 @@ TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
             "t 0.500 of 2 s   pull 2.53 N   sinkage 7.12 mm   0.0141 m/s");
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, NAN, 0.00712, 1.4, 83.0, "gear 2"}),
             "t 0.500 of 2 s   1:23 left   sinkage 7.12 mm   1.40 m/s   gear 2");
-  EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, -1.0}),
-            "settling the bed 42 %");
+  EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, -1.0}), "settling the bed 42 %");
   EXPECT_EQ(launch::progress_text({"settling the bed", 0.42, 0.0, 1.5, 0.0, 0.0, 0.0, 65.0}),
             "settling the bed 42 %   1:05 left");
 }

@@ -69,13 +69,10 @@ TEST(Scenario, numbers_that_no_arithmetic_can_bear_are_refused) {
 
 TEST(Scenario, a_line_of_the_series_may_be_as_long_as_the_averaging_window) {
   const ScenarioFile file(kSmallest);  // 0.3 − 0.2 < 0.1 in binary
-  EXPECT_EQ(
-      file.complaint({{"run.end", "0.3"}, {"run.average_from", "0.2"}, {"output.series_interval", "0.1"}}),
-      "");
-  EXPECT_NE(
-      file.complaint({{"run.end", "0.3"}, {"run.average_from", "0.22"}, {"output.series_interval", "0.1"}})
-          .find("output.series_interval"),
-      std::string::npos);
+  EXPECT_EQ(file.complaint({{"run.end", "0.3"}, {"run.average_from", "0.2"}, {"output.series_interval", "0.1"}}), "");
+  EXPECT_NE(file.complaint({{"run.end", "0.3"}, {"run.average_from", "0.22"}, {"output.series_interval", "0.1"}})
+                .find("output.series_interval"),
+            std::string::npos);
 }
 
 TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
@@ -104,8 +101,7 @@ TEST(Scenario, former_name_of_the_contact_law_means_the_same_and_gives_the_same_
   EXPECT_EQ(former.completed, present.completed);
   EXPECT_EQ(former.digest, present.digest);
   const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"law": "coulomb"}})");
-  EXPECT_EQ(file.load({{"terrain.material", '"' + soil.path().string() + '"'}}).terrain->describe().law,
-            "hertz_tanh");
+  EXPECT_EQ(file.load({{"terrain.material", '"' + soil.path().string() + '"'}}).terrain->describe().law, "hertz_tanh");
 }
 
 TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
@@ -148,12 +144,10 @@ TEST(Scenario, a_tire_file_without_a_rim_leaves_the_masses_to_the_scenario) {
   const std::string told = file.complaint();
   for (const char* word : {"'rig.load'", "rig.carrier_mass", "rig.rim_mass", "rig.rim_spin_inertia", "'rim'"})
     EXPECT_NE(told.find(word), std::string::npos) << told;
-  EXPECT_EQ(file.complaint({{"rig.load", "4600"}, {"rig.rim_mass", "12"}, {"rig.rim_spin_inertia", "0.5"}}),
-            "");
+  EXPECT_EQ(file.complaint({{"rig.load", "4600"}, {"rig.rim_mass", "12"}, {"rig.rim_spin_inertia", "0.5"}}), "");
   tire["rim"] = {{"mass", 12}, {"weight", 3}};
   const testing::ScenarioFile wrong(tire.dump());
-  const testing::ScenarioFile other(R"({"tire": {"file": ")" + wrong.path().string() +
-                                    R"("}, "terrain": {}})");
+  const testing::ScenarioFile other(R"({"tire": {"file": ")" + wrong.path().string() + R"("}, "terrain": {}})");
   EXPECT_NE(other.complaint({}, wrong.path()).find("key 'rim.weight': is unknown"), std::string::npos);
 }
 
@@ -169,13 +163,10 @@ TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {
   };
   using Keys = std::set<std::string>;
   EXPECT_EQ(bounding_keys(load({})), Keys{});
-  EXPECT_EQ(bounding_keys(load({{"terrain.radius", "0.006"}, {"terrain.layers", "50"}})),
-            Keys{"terrain.radius"});
+  EXPECT_EQ(bounding_keys(load({{"terrain.radius", "0.006"}, {"terrain.layers", "50"}})), Keys{"terrain.radius"});
   EXPECT_EQ(bounding_keys(load({{"terrain.layers", "40"}})), Keys{"terrain.layers"});
-  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}})),
-            Keys{"terrain.width"});
-  EXPECT_EQ(bounding_keys(
-                load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}, {"terrain.sides", "periodic"}})),
+  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}})), Keys{"terrain.width"});
+  EXPECT_EQ(bounding_keys(load({{"terrain.width", "0.08"}, {"terrain.layers", "90"}, {"terrain.sides", "periodic"}})),
             Keys{});
   EXPECT_EQ(bounding_keys(load({{"terrain.length", "0.28"}})), Keys{"terrain.length"});
   EXPECT_EQ(bounding_keys(load({{"rig.lowering_speed", "0.01"}})), Keys{"rig.move_from"});
@@ -205,8 +196,8 @@ TEST(Scales, a_report_for_programs_holds_them_for_each_wheel) {
        {"load_N", "contact_pressure_Pa", "width_in_grains", "contact_length_in_grains", "expected_sinkage_m",
         "bed_height_over_sinkage", "beside_m", "ahead_at_end_m", "froude_number", "inertial_number"})
     EXPECT_TRUE(report["wheels"][3].contains(key)) << key;
-  EXPECT_NEAR(report["wheels"][3]["load_N"].get<double>() - report["wheels"][0]["load_N"].get<double>(),
-              500.0 * 9.81, 1e-9);
+  EXPECT_NEAR(report["wheels"][3]["load_N"].get<double>() - report["wheels"][0]["load_N"].get<double>(), 500.0 * 9.81,
+              1e-9);
   EXPECT_TRUE(report["bound_by"].is_array());
 }
 
@@ -222,14 +213,12 @@ TEST(Scenario, only_grains_take_threads) {
   const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {}})");
   EXPECT_EQ(file.load({{"run.threads", "3"}}).run.threads, 3);
   for (const std::string engine : {"scm", "rigid"})
-    EXPECT_EQ(file.load({{"run.threads", "3"}, {"run.step", "1e-4"}, {"terrain.engine", engine}}).run.threads,
-              1)
+    EXPECT_EQ(file.load({{"run.threads", "3"}, {"run.step", "1e-4"}, {"terrain.engine", engine}}).run.threads, 1)
         << engine;
 }
 
 TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
-  const testing::ScenarioFile soil(
-      R"({"format_version": 1, "terrain": {"friction": 0.4, "size_spread": 0.2}})");
+  const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"friction": 0.4, "size_spread": 0.2}})");
   const std::string name = soil.path().string();
   const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"},
                               "terrain": {"material": ")" +
@@ -240,11 +229,9 @@ TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
   EXPECT_EQ(testing::ScenarioFile(s.completed).load().digest, s.digest);
   // On the command line what comes later wins.
   const std::string quoted = '"' + name + '"';
-  const testing::ScenarioFile own(
-      R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
+  const testing::ScenarioFile own(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
   EXPECT_EQ(own.load({{"terrain.material", quoted}}).terrain->grains()->friction, 0.4);
-  EXPECT_EQ(own.load({{"terrain.material", quoted}, {"terrain.friction", "0.6"}}).terrain->grains()->friction,
-            0.6);
+  EXPECT_EQ(own.load({{"terrain.material", quoted}, {"terrain.friction", "0.6"}}).terrain->grains()->friction, 0.6);
   EXPECT_EQ(file.load({{"terrain.material", "null"}}).terrain->grains()->size_spread, 0.0);
 }
 
@@ -282,8 +269,7 @@ TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
 }
 
 TEST(Scenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
-  const testing::ScenarioFile soil(
-      R"({"format_version": 1, "terrain": {"rolling_friction": 0.2, "bekker_n": 0.5}})");
+  const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"rolling_friction": 0.2, "bekker_n": 0.5}})");
   const testing::ScenarioFile grains(testing::kSmallest);
   const std::string name = '"' + soil.path().string() + '"';
   for (const std::string engine : {"dem", "scm"}) {
@@ -317,9 +303,8 @@ TEST(Scenario, mistakes_are_named_with_what_is_expected) {
   EXPECT_TRUE(file.load({{"tire.contact_tangent", "true"}}).terrain_context().contact_tangents);
   EXPECT_EQ(file.complaint({{"run.step", "1e-3"}}).substr(0, 66),
             ": key 'run.step': 0.001 s is above the stable step of 6.35e-05 s (");
-  EXPECT_EQ(file.complaint({{"run.step", "1e-3"},
-                            {"output.series_interval", "1e-3"},
-                            {"terrain.allow_unstable_step", "true"}}),
+  EXPECT_EQ(file.complaint(
+                {{"run.step", "1e-3"}, {"output.series_interval", "1e-3"}, {"terrain.allow_unstable_step", "true"}}),
             "");
 }
 
@@ -339,8 +324,7 @@ TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
   const auto warnings =
       file.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
   ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_NE(warnings[0].find("key 'terrain.density': 2.5 kg/m³ is unusually small"), std::string::npos)
-      << warnings[0];
+  EXPECT_NE(warnings[0].find("key 'terrain.density': 2.5 kg/m³ is unusually small"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("did you mean 2500?"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[1].find("did you mean 200e3?"), std::string::npos) << warnings[1];
   EXPECT_TRUE(file.load({{"tire.pressure", "0"}, {"terrain.cohesion", "0"}}).warnings.empty());
@@ -348,21 +332,16 @@ TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
 
 TEST(Scenario, times_that_are_no_whole_steps_are_told) {
   const testing::ScenarioFile file(testing::kSmallest);
-  const auto warnings = [&](const char* key, const char* value) {
-    return file.load({{key, value}}).warnings;
-  };
+  const auto warnings = [&](const char* key, const char* value) { return file.load({{key, value}}).warnings; };
   const auto only = [&](const char* key, const char* value, const std::string& expected) {
     const auto told = warnings(key, value);
     ASSERT_EQ(told.size(), 1U) << key;
     EXPECT_NE(told[0].find(std::string("key '") + key + "': " + expected), std::string::npos) << told[0];
   };
-  only("output.series_interval", "3.3e-4",
-       "is 0.00033 s, not a whole number of steps of 4e-5 s: 0.00032 s is used");
+  only("output.series_interval", "3.3e-4", "is 0.00033 s, not a whole number of steps of 4e-5 s: 0.00032 s is used");
   only("output.series_interval", "1e-9", "is 1e-9 s, not a whole number of steps of 4e-5 s: 4e-5 s is used");
-  only("output.frame_interval", "0.03001",
-       "is 0.03001 s, not a whole number of steps of 4e-5 s: 0.03 s is used");
-  only("checkpoint.interval", "0.10001",
-       "is 0.10001 s, not a whole number of steps of 4e-5 s: 0.1 s is used");
+  only("output.frame_interval", "0.03001", "is 0.03001 s, not a whole number of steps of 4e-5 s: 0.03 s is used");
+  only("checkpoint.interval", "0.10001", "is 0.10001 s, not a whole number of steps of 4e-5 s: 0.1 s is used");
   only("run.end", "1.50003", "is 1.50003 s, not a whole number of steps of 4e-5 s: 1.50004 s is used");
   EXPECT_TRUE(warnings("output.series_interval", "0.0012").empty());
   EXPECT_TRUE(warnings("output.frame_interval", "0").empty());
@@ -381,21 +360,19 @@ TEST(Scenario, disk_is_estimated_with_at_most_one_frame_and_one_line_per_step) {
 }
 
 TEST(Scenario, a_tire_that_damps_nothing_is_warned_of_with_a_damping_that_would_do) {
-  const auto warnings =
-      testing::ScenarioFile(testing::kSmallest).load({{"tire.structural_damping", "0"}}).warnings;
+  const auto warnings = testing::ScenarioFile(testing::kSmallest).load({{"tire.structural_damping", "0"}}).warnings;
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("key 'tire.structural_damping': is 0 s: contact forces come one step late"),
             std::string::npos)
       << warnings[0];
-  EXPECT_NE(warnings[0].find("expected at least 0.002 s for a run.step of 4e-5 s"), std::string::npos)
-      << warnings[0];
+  EXPECT_NE(warnings[0].find("expected at least 0.002 s for a run.step of 4e-5 s"), std::string::npos) << warnings[0];
 }
 
 TEST(Scenario, wheels_that_share_a_tire_warn_of_it_once) {
-  const auto warnings = testing::ScenarioFile(testing::kSmallest)
-                            .load({{"rig.wheels", R"([{"start": 1}, {"start": 3}, {"start": 5}])"},
-                                   {"tire.structural_damping", "1e-4"}})
-                            .warnings;
+  const auto warnings =
+      testing::ScenarioFile(testing::kSmallest)
+          .load({{"rig.wheels", R"([{"start": 1}, {"start": 3}, {"start": 5}])"}, {"tire.structural_damping", "1e-4"}})
+          .warnings;
   ASSERT_EQ(warnings.size(), 1U);
 }
 
@@ -411,13 +388,12 @@ TEST(Scenario, settings_cannot_nest_without_end) {
   const testing::ScenarioFile file(testing::kSmallest);
   std::string key = "a";
   for (int k = 0; k < 200000; ++k) key += ".a";
-  EXPECT_NE(file.complaint({{key, "1"}}).find("': is not a key, expected --set section.key=value"),
-            std::string::npos);
+  EXPECT_NE(file.complaint({{key, "1"}}).find("': is not a key, expected --set section.key=value"), std::string::npos);
   EXPECT_LT(file.complaint({{key, "1"}}).size(), 200U);
   EXPECT_NE(file.complaint({{"rig.slip\n", "1"}}).find("key 'rig.slip\\n': is not a key"), std::string::npos);
-  EXPECT_NE(file.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}})
-                .find("nested deeper"),
-            std::string::npos);
+  EXPECT_NE(
+      file.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}}).find("nested deeper"),
+      std::string::npos);
 }
 
 TEST(Scenario, names_of_files_are_single_lines) {

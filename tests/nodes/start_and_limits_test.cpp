@@ -167,8 +167,7 @@ TEST(Cause, of_a_death_by_the_limit_of_processor_time_is_that_limit) {
   rlimit limited = before;
   limited.rlim_cur = 100000;
   ASSERT_EQ(setrlimit(RLIMIT_CPU, &limited), 0);
-  EXPECT_NE(launch::cause_of(SIGKILL, 1e6, certain).find("100000 s of processor time (ulimit -t)"),
-            std::string::npos);
+  EXPECT_NE(launch::cause_of(SIGKILL, 1e6, certain).find("100000 s of processor time (ulimit -t)"), std::string::npos);
   EXPECT_TRUE(certain);
   EXPECT_NE(launch::cause_of(SIGKILL, 10.0, certain).find("memory"), std::string::npos);
   EXPECT_FALSE(certain);
@@ -192,8 +191,7 @@ TEST(ForgetLauncher, takes_a_launchers_variables_and_leaves_the_users) {
 TEST(OutOfMemory, says_what_is_needed_and_what_there_is) {
   const Error error = scenario::out_of_memory(1.2e12);
   EXPECT_EQ(error.code(), ExitCode::limit);
-  EXPECT_NE(std::string(error.what()).find("out of memory: needs about 1200"), std::string::npos)
-      << error.what();
+  EXPECT_NE(std::string(error.what()).find("out of memory: needs about 1200"), std::string::npos) << error.what();
   EXPECT_NE(std::string(error.what()).find(", limit "), std::string::npos) << error.what();
 }
 
@@ -218,9 +216,8 @@ TEST(RequireMemory, refuses_what_surely_does_not_fit) {
     FAIL() << "an exabyte fits";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::limit);
-    EXPECT_EQ(std::string(error.what())
-                  .find("large.json: out of memory: the terrain needs about 1000000000.0 GB, limit"),
-              0U)
+    EXPECT_EQ(
+        std::string(error.what()).find("large.json: out of memory: the terrain needs about 1000000000.0 GB, limit"), 0U)
         << error.what();
   }
 }

@@ -88,8 +88,7 @@ int main(int argc, char** argv) {
     row({bounces == 3.0   ? "bouncing_3"
          : bounces == 5.0 ? "bouncing_5"
                           : "bouncing_8",
-         0.0,
-         [=](std::mt19937_64& e) { return furrow::testing::bouncing(kSamples / bounces, 0.2, kSamples, e); }},
+         0.0, [=](std::mt19937_64& e) { return furrow::testing::bouncing(kSamples / bounces, 0.2, kSamples, e); }},
         trials);
   std::printf("\n");
   return 0;

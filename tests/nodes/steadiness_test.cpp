@@ -19,8 +19,7 @@ TEST(Drift, is_found_in_one_of_forty_stationary_series_with_enough_independent_s
   for (const double n_eff : {20.0, 60.0})
     for (const testing::Process& process :
          {testing::autoregressive_of(n_eff, kSamples), testing::moving_average_of(n_eff, kSamples)}) {
-      const double found =
-          testing::share_found(process, testing::Drift::line, 0.0, 0.0, kTrials, testing::drift_found);
+      const double found = testing::share_found(process, testing::Drift::line, 0.0, 0.0, kTrials, testing::drift_found);
       EXPECT_NEAR(found, output::kDriftLevel, 3.0 * scatter) << process.name << " n_eff " << n_eff;
     }
 }
@@ -63,7 +62,8 @@ TEST(Steadiness, the_bounce_period_follows_from_what_tire_and_soil_give_under_th
   EXPECT_TRUE(output::unsteady_because({}, {}, small).empty());
 }
 
-/// On hard ground everything decays smoothly towards its limit: what is left at the end is found, but matters to nobody.
+/// On hard ground everything decays smoothly towards its limit: what is left at the end is found, but matters to
+/// nobody.
 TEST(Steadiness, small_drifts_and_few_samples_of_a_pull_that_hardly_varies_count_for_nothing) {
   output::SeriesStatistics pull, sinkage;
   pull.drift.found = sinkage.drift.found = true;

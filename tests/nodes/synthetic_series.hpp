@@ -65,8 +65,7 @@ struct Process {
 
 inline Process autoregressive_of(double n_eff, std::size_t n) {
   const double tau = static_cast<double>(n) / n_eff;
-  return {"autoregressive", n_eff,
-          [=](std::mt19937_64& e) { return autoregressive((tau - 1.0) / (tau + 1.0), n, e); }};
+  return {"autoregressive", n_eff, [=](std::mt19937_64& e) { return autoregressive((tau - 1.0) / (tau + 1.0), n, e); }};
 }
 inline Process moving_average_of(double n_eff, std::size_t n) {
   const auto length = static_cast<std::size_t>(std::llround(static_cast<double>(n) / n_eff));
@@ -79,8 +78,7 @@ enum class Drift { line, step, decay };  // a decay falls to 1/e in a quarter of
 /// Adds a drift whose halves differ by `change`.
 inline void add_drift(Drift drift, double change, Series& samples) {
   const auto n = static_cast<double>(samples.size());
-  const double of_decay =
-      0.25 * std::pow(1.0 - std::exp(-2.0), 2);  // first half less second, each a mean, over 2
+  const double of_decay = 0.25 * std::pow(1.0 - std::exp(-2.0), 2);  // first half less second, each a mean, over 2
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double at = (static_cast<double>(i) + 0.5) / n;
     samples[i] += change * (drift == Drift::line   ? 2.0 * at
@@ -117,8 +115,7 @@ inline bool drift_found(const output::SeriesStatistics& s) { return s.drift.foun
 /// Share of series in which a test finds the drift that was added to them, whose halves differ by `sigmas` times
 /// 2 · true_sem, the standard deviation of the difference of the halves.
 template <class Test>
-double share_found(const Process& process, Drift drift, double true_sem, double sigmas, int trials,
-                   Test test) {
+double share_found(const Process& process, Drift drift, double true_sem, double sigmas, int trials, Test test) {
   std::mt19937_64 engine(2);
   int found = 0;
   for (int k = 0; k < trials; ++k) {

@@ -289,16 +289,14 @@ TEST(Table, goes_on_with_a_file_whose_columns_stand_in_another_order) {
       output::TableWriter(file, mark, table);
       FAIL() << "accepted";
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(other.size() == 2 ? "column 'c'" : "column 'd'"),
-                std::string::npos)
+      EXPECT_NE(std::string(error.what()).find(other.size() == 2 ? "column 'c'" : "column 'd'"), std::string::npos)
           << error.what();
     }
   }
 }
 
 TEST(LineBuilder, restores_by_name_what_another_order_of_columns_has_saved) {
-  const Column mean = column::mean("a"), instant = column::instant("b_m", "m"),
-               sum = column::cumulative("c_J", "J");
+  const Column mean = column::mean("a"), instant = column::instant("b_m", "m"), sum = column::cumulative("c_J", "J");
   output::LineBuilder before({mean, instant, sum}), now({sum, mean, instant});
   before.add(std::vector<double>{1.0, 20.0, 300.0});
   before.add(std::vector<double>{2.0, 30.0, 400.0});
@@ -350,8 +348,7 @@ TEST(Subjects, columns_and_tables_of_the_rig_are_written_resumed_and_cut) {
   checkpoint::ResumePoint resume;
   Archive saved;
   const std::vector<FinalReport> reports(3);
-  const fs::path wheel_file = folder.path() / "timeseries.csv",
-                 vehicle_file = folder.path() / "timeseries_vehicle.csv";
+  const fs::path wheel_file = folder.path() / "timeseries.csv", vehicle_file = folder.path() / "timeseries_vehicle.csv";
   {
     Series series(rig);
     output::Results results(scenario, cards_of_one_wheel(), {}, folder.path(), series.tables());
@@ -364,8 +361,8 @@ TEST(Subjects, columns_and_tables_of_the_rig_are_written_resumed_and_cut) {
     results.finish({reports, {}, TerrainState(), output::Accounts({}, 1.0), 0.0, 0.0}, true);
   }
   EXPECT_TRUE(read_whole_file(wheel_file).starts_with("time_s,slip,spring_force_N,spring_work_J,sinkage_m,"));
-  EXPECT_TRUE(read_whole_file(vehicle_file)
-                  .starts_with("time_s,spring_force_N,heave_m,spring_work_J,double_heave_m\n"));
+  EXPECT_TRUE(
+      read_whole_file(vehicle_file).starts_with("time_s,spring_force_N,heave_m,spring_work_J,double_heave_m\n"));
   for (const fs::path& file : {wheel_file, vehicle_file}) {
     const auto line = last_line(file);
     EXPECT_EQ(line.at("time_s"), 4e-3);

@@ -114,8 +114,7 @@ TEST(TerrainRanks, an_engine_that_cannot_use_them_is_refused_by_key) {
   } catch (const Error& error) {
     text = error.what();
   }
-  EXPECT_EQ(text,
-            "scenario.json: key 'terrain.ranks': is 9, expected 1 to 8: engine 'strip_mat' runs on no more");
+  EXPECT_EQ(text, "scenario.json: key 'terrain.ranks': is 9, expected 1 to 8: engine 'strip_mat' runs on no more");
 }
 
 }  // namespace

@@ -33,8 +33,7 @@ launch::HostView machine(int cores, int tires = 1) {
 
 std::vector<launch::ThreadPlan> plan_all(const launch::HostView& host, int terrain_threads = 0) {
   std::vector<launch::ThreadPlan> plans;
-  for (std::size_t i = 0; i < host.nodes.size(); ++i)
-    plans.push_back(launch::plan_threads(host, i, terrain_threads));
+  for (std::size_t i = 0; i < host.nodes.size(); ++i) plans.push_back(launch::plan_threads(host, i, terrain_threads));
   return plans;
 }
 
@@ -50,8 +49,7 @@ void expect_disjoint(const std::vector<launch::ThreadPlan>& plans) {
   for (std::size_t i = 1; i < plans.size(); ++i) {
     EXPECT_TRUE(plans[i].disjoint);
     EXPECT_EQ(static_cast<int>(plans[i].cores.size()), plans[i].threads);
-    for (const int core : plans[i].cores)
-      EXPECT_TRUE(used.insert(core).second) << "core " << core << " twice";
+    for (const int core : plans[i].cores) EXPECT_TRUE(used.insert(core).second) << "core " << core << " twice";
   }
 }
 
@@ -110,8 +108,7 @@ TEST(ThreadPlan, what_the_user_wants_is_done_even_where_it_does_not_fit) {
   const auto plans = plan_all(machine(2), 6);
   EXPECT_EQ(plans.back().threads, 6);
   EXPECT_FALSE(plans.back().disjoint);
-  EXPECT_NE(plans.back().note.find("terrain runs 6 threads on 2 cores"), std::string::npos)
-      << plans.back().note;
+  EXPECT_NE(plans.back().note.find("terrain runs 6 threads on 2 cores"), std::string::npos) << plans.back().note;
 }
 
 TEST(ThreadPlan, a_busy_machine_or_a_limited_container_is_not_bound) {
@@ -142,8 +139,7 @@ TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
   for (int i = 0; i < 3; ++i) host.nodes[static_cast<std::size_t>(i)].cores = {i};
   const auto plans = plan_all(host, 4);
   EXPECT_EQ(plans[2].threads, 4);
-  EXPECT_NE(plans[2].note.find("terrain is pinned to core 2 of 8 while 4 threads are wanted"),
-            std::string::npos)
+  EXPECT_NE(plans[2].note.find("terrain is pinned to core 2 of 8 while 4 threads are wanted"), std::string::npos)
       << plans[2].note;
   EXPECT_NE(plans[2].note.find("--bind-to none"), std::string::npos);
   EXPECT_TRUE(plans[1].note.empty());
@@ -155,8 +151,7 @@ TEST(ThreadPlan, a_run_on_the_one_core_that_it_was_started_on_hears_nothing_of_t
   launch::HostView host = machine(8);
   for (HostNode& node : host.nodes) node.cores = {3};
   for (const launch::ThreadPlan& plan : plan_all(host)) EXPECT_EQ(plan.note, "");
-  EXPECT_NE(plan_all(host, 4)[2].note.find("terrain runs 4 threads on 1 cores; fewer are faster"),
-            std::string::npos)
+  EXPECT_NE(plan_all(host, 4)[2].note.find("terrain runs 4 threads on 1 cores; fewer are faster"), std::string::npos)
       << plan_all(host, 4)[2].note;
   host.nodes = {host.nodes.back()};  // alone on its machine: srun gave it that core
   EXPECT_NE(plan_all(host)[0].note.find("--cpus-per-task"), std::string::npos);

@@ -17,17 +17,13 @@ namespace {
 using nlohmann::json;
 using testing::ScenarioFile;
 
-json hmmwv() {
-  return {{"rig", {{"type", "vehicle"}, {"vehicle", "hmmwv.json"}}}, {"terrain", {{"engine", "rigid"}}}};
-}
+json hmmwv() { return {{"rig", {{"type", "vehicle"}, {"vehicle", "hmmwv.json"}}}, {"terrain", {{"engine", "rigid"}}}}; }
 
-scenario::Scenario load(const json& document,
-                        const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+scenario::Scenario load(const json& document, const std::vector<std::pair<std::string, std::string>>& settings = {}) {
   return ScenarioFile(document.dump()).load(settings);
 }
 
-std::string complaint(const json& document,
-                      const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+std::string complaint(const json& document, const std::vector<std::pair<std::string, std::string>>& settings = {}) {
   return ScenarioFile(document.dump()).complaint(settings);
 }
 
@@ -42,8 +38,7 @@ TEST(VehicleScenario, brings_the_tires_of_its_wheels) {
   EXPECT_NEAR(rig.wheels[0].lateral, 0.91, 0.01);
   EXPECT_NEAR(rig.wheels[0].from - rig.wheels[2].from, 3.302, 0.01);
   EXPECT_EQ(rig.wheels[1].start_key, "rig.start");
-  EXPECT_NE(scenario::validation_text(s).find("vehicle HMMWV on 4 wheels, 19 bodies, parked"),
-            std::string::npos);
+  EXPECT_NE(scenario::validation_text(s).find("vehicle HMMWV on 4 wheels, 19 bodies, parked"), std::string::npos);
 }
 
 TEST(VehicleScenario, changes_the_tires_of_all_wheels_of_each_axle_or_of_each_wheel) {
@@ -119,25 +114,23 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   EXPECT_NEAR(json::parse(s.completed)["rig"]["start"].get<double>(), wheels[2].from + 1.653, 0.01);
   const std::vector<std::pair<std::string, std::string>> into_wall{{"terrain.length", "5"},
                                                                    {"rig.stop_before_wall", "0"}};
-  EXPECT_TRUE(complaint(document, into_wall)
-                  .starts_with(": key 'terrain.length': is 5 m, but the axle travels from x = "))
+  EXPECT_TRUE(
+      complaint(document, into_wall).starts_with(": key 'terrain.length': is 5 m, but the axle travels from x = "))
       << complaint(document, into_wall);
   const scenario::Scenario early = load(document, {{"terrain.length", "5"}});
   const rigs::WheelDescription foremost = scenario::describe_rig(early).wheels[0];
   EXPECT_TRUE(foremost.stops_before_wall);
   EXPECT_NEAR(5.0 - foremost.to - foremost.along, 0.4673, 1e-6);  // a tire's radius
   EXPECT_TRUE(std::any_of(early.warnings.begin(), early.warnings.end(), [](const std::string& warning) {
-    return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") !=
-           std::string::npos;
+    return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") != std::string::npos;
   }));
-  EXPECT_TRUE(complaint(document, {{"terrain.width", "1.5"}})
-                  .starts_with(": key 'terrain.width': is 1.5 m, expected at "))
+  EXPECT_TRUE(
+      complaint(document, {{"terrain.width", "1.5"}}).starts_with(": key 'terrain.width': is 1.5 m, expected at "))
       << complaint(document, {{"terrain.width", "1.5"}});
   // Places are those of the key, the vehicle's origin, not those of a wheel.
   EXPECT_TRUE(
       complaint(document, {{"rig.start", "1"}})
-          .starts_with(
-              ": key 'rig.start': is 1 m, expected 2.120 to 5.884 m: the tire of rear_left with radius "))
+          .starts_with(": key 'rig.start': is 1 m, expected 2.120 to 5.884 m: the tire of rear_left with radius "))
       << complaint(document, {{"rig.start", "1"}});
   EXPECT_EQ(complaint(document, {{"terrain.length", "3"}}),
             ": key 'terrain.length': is 3 m, expected at least 4.28 m: from the first to the last tire the "
@@ -154,11 +147,9 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
   json none = hmmwv();
   none["rig"].erase("vehicle");
   none["tire"] = {{"file", "hmmwv_layered.json"}};
-  EXPECT_EQ(complaint(none),
-            ": key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json");
-  EXPECT_TRUE(
-      complaint(with("/rig/vehicle", "nowhere.json"))
-          .starts_with(": key 'rig.vehicle': 'nowhere.json' does not exist, expected a file at one of: "));
+  EXPECT_EQ(complaint(none), ": key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json");
+  EXPECT_TRUE(complaint(with("/rig/vehicle", "nowhere.json"))
+                  .starts_with(": key 'rig.vehicle': 'nowhere.json' does not exist, expected a file at one of: "));
   EXPECT_EQ(complaint(with("/tires", json::array({json::object()}))),
             ": key 'tires': has 1 entries, expected 4, one per wheel, or 2, one per axle");
   EXPECT_EQ(complaint(with("/rig/slip", 0.5)),
@@ -171,9 +162,8 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
             ": key 'rig.driver': asks for gear 4 at 2 s, expected at most 3: the vehicle HMMWV has no more");
   json rover = with("/rig/driver", {{"inputs", {{"gear", 2}}}});
   rover["rig"]["vehicle"] = "rover.json";
-  EXPECT_EQ(
-      complaint(rover),
-      ": key 'rig.driver': asks for gear 2 at 0 s, expected at most 1: the vehicle Rover has no gearbox");
+  EXPECT_EQ(complaint(rover),
+            ": key 'rig.driver': asks for gear 2 at 0 s, expected at most 1: the vehicle Rover has no gearbox");
   rover["rig"]["driver"] = {{"inputs", {{"brake", {{0, 0}, {1, 0.5}}}}}};
   EXPECT_EQ(complaint(rover),
             ": key 'rig.driver': gives brake 0.5 at 1 s, expected a driver that does not: the vehicle Rover "
@@ -188,9 +178,7 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
             "keys of that type alone");
 }
 
-json vehicle_text(const char* name) {
-  return json::parse(std::ifstream(data_folder() / "vehicle" / "data" / name));
-}
+json vehicle_text(const char* name) { return json::parse(std::ifstream(data_folder() / "vehicle" / "data" / name)); }
 
 /// A scenario beside the file of its vehicle, mine.json.
 class OwnVehicle : public ScenarioFile {
@@ -335,8 +323,7 @@ TEST(VehicleScenario, paths_that_the_vehicle_cannot_follow_are_warned_of) {
     const scenario::Scenario s = load(document, {{"tire.rigid", "true"}});
     std::string texts;
     for (const std::string& text : s.warnings)
-      if (const std::size_t at = text.find("key 'rig.driver': "); at != std::string::npos)
-        texts += text.substr(at);
+      if (const std::size_t at = text.find("key 'rig.driver': "); at != std::string::npos) texts += text.substr(at);
     return texts;
   };
   const auto waypoints = [](const json& points) { return json{{"kind", "waypoints"}, {"points", points}}; };
@@ -368,16 +355,13 @@ TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
     std::ofstream(path) << changed.dump();
     return file.complaint({}, path);
   };
-  EXPECT_TRUE(
-      complains("/axles/0/wheel/tire", "none.json")
-          .starts_with(
-              ": key 'axles[0].wheel.tire': 'none.json' does not exist, expected a file at one of: "));
+  EXPECT_TRUE(complains("/axles/0/wheel/tire", "none.json")
+                  .starts_with(": key 'axles[0].wheel.tire': 'none.json' does not exist, expected a file at one of: "));
   EXPECT_EQ(complains("/driveline/gearbox/ratios/0", 0.0),
             ": key 'driveline.gearbox.ratios[0]': is 0, expected a number above zero");
   // It cannot stand on wheels that all are in front of its centre of mass.
   const std::string falls = complains("/chassis/center_of_mass/0", -9.0);
-  EXPECT_NE(falls.find("key 'rig.vehicle': is " + path.string() + ", which cannot be used: "),
-            std::string::npos)
+  EXPECT_NE(falls.find("key 'rig.vehicle': is " + path.string() + ", which cannot be used: "), std::string::npos)
       << falls;
 }
 

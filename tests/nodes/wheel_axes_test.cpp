@@ -24,8 +24,7 @@ RimState wheel(double toe, double camber, double travel, double spin = 0.7) {
 }
 
 void expect_near(const Vec3& value, const Vec3& reference, double tolerance) {
-  EXPECT_LT((value - reference).norm(), tolerance)
-      << value.transpose() << " is not " << reference.transpose();
+  EXPECT_LT((value - reference).norm(), tolerance) << value.transpose() << " is not " << reference.transpose();
 }
 
 TEST(WheelAxes, upright_straight_wheel_has_the_world_s_axes_under_its_centre) {
@@ -49,16 +48,15 @@ TEST(WheelAxes, straight_travel_has_the_toe_angle_as_slip_angle_and_keeps_the_ca
         EXPECT_NEAR(w.loaded_radius, (kHeight - kGround) / std::cos(camber), 1e-15);
         EXPECT_NEAR(w.origin.z(), kGround, 1e-15);
         // A top that leans to the right (−y) puts the contact centre to the left of the wheel's centre.
-        EXPECT_NEAR((w.origin - wheel(toe, camber, travel).position).dot(w.y),
-                    (kHeight - kGround) * std::tan(camber), 1e-15);
+        EXPECT_NEAR((w.origin - wheel(toe, camber, travel).position).dot(w.y), (kHeight - kGround) * std::tan(camber),
+                    1e-15);
       }
 }
 
 TEST(WheelAxes, forces_turn_by_the_toe_angle) {
   const double toe = 0.25, c = std::cos(toe), s = std::sin(toe);
   const tire::WheelAxes w = tire::wheel_axes(wheel(toe, 0.0, 1.0), Vec3::UnitX(), kGround);
-  expect_near(w.turn(Vec3(100.0, 30.0, 4600.0)), Vec3(100.0 * c + 30.0 * s, -100.0 * s + 30.0 * c, 4600.0),
-              1e-12);
+  expect_near(w.turn(Vec3(100.0, 30.0, 4600.0)), Vec3(100.0 * c + 30.0 * s, -100.0 * s + 30.0 * c, 4600.0), 1e-12);
 }
 
 TEST(WheelAxes, moment_about_the_contact_centre_is_the_spindles_less_the_arm_times_the_force) {
@@ -71,8 +69,8 @@ TEST(WheelAxes, moment_about_the_contact_centre_is_the_spindles_less_the_arm_tim
     const double rho = w.loaded_radius, c = std::cos(camber), s = std::sin(camber);
     const Wrench at_ground = w.wrench(force, moment, rim.position);
     expect_near(at_ground.force, force, 1e-12);
-    expect_near(at_ground.moment,
-                moment + rho * Vec3(-s * force.z() - c * force.y(), c * force.x(), s * force.x()), 1e-12);
+    expect_near(at_ground.moment, moment + rho * Vec3(-s * force.z() - c * force.y(), c * force.x(), s * force.x()),
+                1e-12);
     // About the spin axis: M_C · a = M_r · a + ρ F_x.
     const Vec3 axle(0.0, c, s);
     EXPECT_NEAR(at_ground.moment.dot(axle), moment.dot(axle) + rho * force.x(), 1e-11);
@@ -98,8 +96,7 @@ TEST(WheelAxes, half_a_turn_of_everything_changes_nothing) {
                         b = tire::wheel_axes(back, -Vec3::UnitX(), kGround);
   EXPECT_NEAR(a.slip_angle, b.slip_angle, 1e-15);
   EXPECT_NEAR(a.camber_angle, b.camber_angle, 1e-15);
-  const Wrench wa = a.wrench(force, moment, Vec3::Zero()),
-               wb = b.wrench(half * force, half * moment, Vec3::Zero());
+  const Wrench wa = a.wrench(force, moment, Vec3::Zero()), wb = b.wrench(half * force, half * moment, Vec3::Zero());
   expect_near(wa.force, wb.force, 1e-11);
   expect_near(wa.moment, wb.moment, 1e-10);
 }
@@ -127,8 +124,7 @@ TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_int
   }
   const output::WheelRow row = builder.take();
   const double c = std::cos(toe), s = std::sin(toe);
-  expect_near(row.iso_force, Vec3(c * force.x() + s * force.y(), -s * force.x() + c * force.y(), force.z()),
-              1e-11);
+  expect_near(row.iso_force, Vec3(c * force.x() + s * force.y(), -s * force.x() + c * force.y(), force.z()), 1e-11);
   EXPECT_NEAR(row.iso_moment.z(), -0.03 * row.iso_force.y(), 1e-10);  // trail t: M_z = −t F_y
   EXPECT_NEAR(row.iso_moment.y(), 0.03 * force.z(), 1e-10);
   EXPECT_NEAR(row.iso_moment.x(), 0.0, 1e-10);

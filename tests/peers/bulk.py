@@ -3,15 +3,16 @@
 
 usage: bulk.py OUT bed|plate|shear [--seeds 5] [--engine ENGINE] …
 
-Appends one JSON line per run to OUT/<test>.jsonl and skips what is there: it can be stopped and started again, and the two
-engines run side by side (table.py makes the tables). Seeds differ in the random start. Material: common.py.
+Appends one JSON line per run to OUT/<test>.jsonl and skips what is there: it can be stopped and started again, and the
+two engines run side by side (table.py makes the tables). Seeds differ in the random start. Material: common.py.
 
 bed    1200 grains fall between rough walls y = ±10 r, periodic along x, floor rough; 0.6 s; cohesion 0 and 80 kPa.
-plate  2500 grains on 36 r × 36 r, periodic, settled in the engine; a box of triangles 10 r wide goes in by 4 r at 0.2 m/s.
-shear  650 grains on 24 r × 14 r, periodic, between plates of grains: direct shear under 20, 50, 100 kPa, on the plateau at
-       three speeds one after the other, with two steps, cohesion 0 and 80 kPa. More engines: furrow_switched, furrow_spring,
-       furrow_damper, with LIGGGHTS's tangential law or a part of it in the engine; liggghts_sjkr, with LIGGGHTS's own cohesion
-       in the place of the constant pull, which must differ.
+plate  2500 grains on 36 r × 36 r, periodic, settled in the engine; a box of triangles 10 r wide goes in by 4 r at 0.2
+m/s. shear  650 grains on 24 r × 14 r, periodic, between plates of grains: direct shear under 20, 50, 100 kPa, on the
+plateau at
+       three speeds one after the other, with two steps, cohesion 0 and 80 kPa. More engines: furrow_switched,
+       furrow_spring, furrow_damper, with LIGGGHTS's tangential law or a part of it in the engine; liggghts_sjkr, with
+       LIGGGHTS's own cohesion in the place of the constant pull, which must differ.
 """
 import argparse
 import json
@@ -21,7 +22,8 @@ import time
 
 import numpy
 
-from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres, record_program, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres,
+                    record_program, run_furrow, run_liggghts)
 from packing import measure
 
 STEP = 4e-5  # s
@@ -62,15 +64,18 @@ def bed(a, rows):
                     continue
                 begun, folder = time.monotonic(), a.out / f"runs/bed-{engine}-{seed}-{cohesion:g}"
                 if engine == "furrow":
-                    job = {"test": "fall", "length": length, "width": width, "periodic_y": False, "step": STEP, "steps": steps,
+                    job = {"test": "fall", "length": length, "width": width,
+                           "periodic_y": False, "step": STEP, "steps": steps,
                            "every": steps, "cohesion": cohesion}
                     frames, series = run_furrow(folder, job, [FREE] * count, x)
                 else:
                     box = {"length": length, "width": width, "height": height + 10 * R, "periodic_y": False}
-                    frames, _ = run_liggghts(folder, "deck_settle.in", [FREE] * count, x, box, cohesion, step=STEP, steps=steps)
+                    frames, _ = run_liggghts(folder, "deck_settle.in",
+                                             [FREE] * count, x, box, cohesion, step=STEP, steps=steps)
                 values = measure(frames[-1], length, width, (True, False))
                 if engine == "furrow":
-                    values["floor_force_over_overlaps"] = float(series["floor_N"][-1]) / (values["floor_pressure_Pa"] * length * width)
+                    values["floor_force_over_overlaps"] = float(series["floor_N"][-1]) / (values["floor_pressure_Pa"]
+                                                                                          * length * width)
                 rows.add(key, values, begun)
 
 
@@ -118,7 +123,8 @@ def plate(a, rows):
                 near = (abs(y[:, 0] - 0.5 * side) < 0.5 * plate_side + R) & (abs(y[:, 1]) < 0.5 * plate_side + R)
                 low = float(y[near, 2].max() + R)
                 if engine == "furrow":
-                    job = {"test": "plate", "plate_side": plate_side, "plate_height": plate_height, "plate_z": low, "speed": speed,
+                    job = {"test": "plate", "plate_side": plate_side, "plate_height": plate_height,
+                           "plate_z": low, "speed": speed,
                            "rest_steps": rest, "steps": every * samples, "every": every, **common}
                     _, series = run_furrow(folder, job, [FREE] * count, y, half_step_start=False)
                     force = series["force_z_N"]
@@ -127,7 +133,8 @@ def plate(a, rows):
                     write_box(folder / "plate.stl", 0.5 * side, plate_side, low, plate_height)
                     box = {"length": side, "width": side, "height": low + plate_height + 5 * R}
                     rest_here = -(-rest // every) * every  # the samples of ave/time start at multiples of `every`
-                    _, series = run_liggghts(folder, "deck_plate.in", [FREE] * count, y, box, cohesion, step=STEP, speed=speed,
+                    _, series = run_liggghts(folder, "deck_plate.in", [FREE] * count,
+                                             y, box, cohesion, step=STEP, speed=speed,
                                              rest=f"run {rest_here}", every=every, steps=every * samples)
                     force = series[-samples:, 3]
                 pressure = numpy.asarray(force) / plate_side**2
@@ -140,11 +147,12 @@ SHEAR_CELL = (24 * R, 14 * R)
 SHEAR_FREE = 650  # grains between the plates
 # Speed, m/s, and travel, r: first on to the plateau, then one after the other there.
 STAGES = ((0.4, 5), (0.15, 4), (0.4, 4), (1.0, 4))
-# Energy density of LIGGGHTS's cohesion model sjkr, J/m³, with which two grains rest at the overlap that 80 kPa gives ours:
-# k π (r² − d²/4) = F_c = K δ^{3/2}, d = 2 r − δ. It parts at 1.4 N, not at 9.0 N.
+# Energy density of LIGGGHTS's cohesion model sjkr, J/m³, with which two grains rest at the overlap that 80 kPa gives
+# ours: k π (r² − d²/4) = F_c = K δ^{3/2}, d = 2 r − δ. It parts at 1.4 N, not at 9.0 N.
 SJKR = 1.127e6
 # The engine with parts of LIGGGHTS's tangential law: all of it, its spring alone, its damper alone.
-VARIANTS = {"furrow_switched": {"switches": ALL_SWITCHES, "damper_mass": "full"}, "furrow_spring": {"switches": ALL_SWITCHES},
+VARIANTS = {"furrow_switched": {"switches": ALL_SWITCHES, "damper_mass": "full"},
+            "furrow_spring": {"switches": ALL_SWITCHES},
             "furrow_damper": {"switches": 0, "damper_mass": "full"}}
 LID_SPEED = 0.4  # at which the lid falls under its load, m/s
 
@@ -156,7 +164,8 @@ def shear_start(seed):
     top = 3.5 * R + space_for(SHEAR_FREE, length * width) + 3.5 * R
 
     def lattice(z, sign):
-        return [((2 * k + 1) * R, (2 * m + 1) * R - 0.5 * width, z + sign * generator.random() * R) for k in range(12) for m in range(7)]
+        return [((2 * k + 1) * R, (2 * m + 1) * R - 0.5 * width, z + sign * generator.random() * R)
+                for k in range(12) for m in range(7)]
 
     base, lid = lattice(1.01 * R, 1), lattice(top, -1)
     free = random_spheres(SHEAR_FREE, length, width, 4.1 * R, top - 3.1 * R, seed)
@@ -171,7 +180,8 @@ def shear(a, rows):
             for cohesion in a.cohesions:
                 for pressure in a.pressures:
                     for engine in a.engines:
-                        key = {"engine": engine, "seed": seed, "cohesion_Pa": cohesion, "step_s": step, "pressure_Pa": pressure}
+                        key = {"engine": engine, "seed": seed, "cohesion_Pa": cohesion,
+                               "step_s": step, "pressure_Pa": pressure}
                         if not rows.has(key):
                             begun = time.monotonic()
                             rows.add(key, one_shear(a, key, kinds, x), begun)
@@ -186,11 +196,13 @@ def one_shear(a, key, kinds, x):
 
     stages = [{"speed": v, "steps": whole(way * R / v), "ramp_steps": every} for v, way in STAGES]
     damping = key["pressure_Pa"] * area / LID_SPEED
-    phases = {"settle_steps": whole(0.12), "load_steps": whole(0.1), "hold_steps": whole(0.26), "every": every, "step": step}
+    phases = {"settle_steps": whole(0.12), "load_steps": whole(0.1), "hold_steps": whole(0.26),
+              "every": every, "step": step}
     folder = a.out / f"runs/shear-{key['engine']}"
     if key["engine"].startswith("furrow"):
         law = VARIANTS.get(key["engine"], {})
-        job = {"test": "shear", "length": length, "width": width, "cohesion": key["cohesion_Pa"], "pressure": key["pressure_Pa"],
+        job = {"test": "shear", "length": length, "width": width, "cohesion": key["cohesion_Pa"],
+               "pressure": key["pressure_Pa"],
                "lid_damping": damping, "stages": stages, **phases}
         _, series = run_furrow(folder, job, kinds, x, **law)
         tau, sigma, rise = series["shear_N"] / area, series["normal_N"] / area, series["lid_m"]
@@ -199,7 +211,8 @@ def one_shear(a, key, kinds, x):
         lines, speed = [], 0.0
         for s in stages:
             push = MASS * (s["speed"] - speed) / (s["ramp_steps"] * step)
-            lines += ["unfix lid_x", f"fix lid_x lid setforce {push!r} 0.0 NULL", f"run {s['ramp_steps']}", "unfix lid_x",
+            lines += ["unfix lid_x", f"fix lid_x lid setforce {push!r} 0.0 NULL",
+                      f"run {s['ramp_steps']}", "unfix lid_x",
                       "fix lid_x lid setforce 0.0 0.0 NULL", f"run {s['steps'] - s['ramp_steps']}"]
             speed = s["speed"]
         kind = {"sjkr": SJKR} if key["engine"] == "liggghts_sjkr" else {"cohesion": key["cohesion_Pa"]}

@@ -52,7 +52,8 @@ def origin(out):
     """What a table says that is made of OUT."""
     record = out / "made.json"
     made = json.loads(record.read_text()) if record.exists() else {}
-    return {key: made.get(key, provenance.UNKNOWN) for key in ("commit", "compiler", "processor")} | {"command": provenance.command()}
+    return {key: made.get(key, provenance.UNKNOWN)
+            for key in ("commit", "compiler", "processor")} | {"command": provenance.command()}
 
 
 def liggghts():
@@ -109,7 +110,8 @@ def run_furrow(folder, job, kinds, x, switches=None, **more):
     folder.mkdir(parents=True, exist_ok=True)
     write_start(folder / "start.csv", kinds, x)
     full = {**MATERIAL, "start": str(folder / "start.csv"), "periodic_x": True, "periodic_y": True, "cohesion": 0.0,
-            "wall_friction": MATERIAL["friction"], "precision": "mixed", "half_step_start": True, "damper_mass": "sliding",
+            "wall_friction": MATERIAL["friction"], "precision": "mixed",
+            "half_step_start": True, "damper_mass": "sliding",
             "switches": switches or 0, **job, **more}
     (folder / "job.json").write_text(json.dumps(full))
     name = "peer_grains" if switches is None else "peer_grains_switched"
@@ -122,9 +124,9 @@ def run_furrow(folder, job, kinds, x, switches=None, **more):
 def run_liggghts(folder, deck, kinds, x, box, cohesion=0.0, sjkr=0.0, clear=True, **values):
     """Runs a deck of this folder with {keys} filled in. box: length, width, height, periodic_x, periodic_y.
 
-    cohesion: c_t of the engine's constant pull, Pa, through liggghts_with_pull; sjkr: energy density of LIGGGHTS's own model, J/m³.
-    clear: end springs when grains part. LIGGGHTS 3.8 by itself looks at pairs that touch only, and a pair that touches
-    again before the neighbour list is made anew goes on with the spring it had.
+    cohesion: c_t of the engine's constant pull, Pa, through liggghts_with_pull; sjkr: energy density of LIGGGHTS's own
+    model, J/m³. clear: end springs when grains part. LIGGGHTS 3.8 by itself looks at pairs that touch only, and a pair
+    that touches again before the neighbour list is made anew goes on with the spring it had.
     """
     folder = folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -134,8 +136,10 @@ def run_liggghts(folder, deck, kinds, x, box, cohesion=0.0, sjkr=0.0, clear=True
     room = [0.0 if box.get(f"periodic_{a}", True) else RADIUS for a in "xy"]
     with open(folder / "start.data", "w") as out:
         out.write(f"spheres\n\n{len(x)} atoms\n2 atom types\n\n{-room[0]!r} {length + room[0]!r} xlo xhi\n"
-                  f"{-0.5 * width - room[1]!r} {0.5 * width + room[1]!r} ylo yhi\n{-RADIUS!r} {box['height']!r} zlo zhi\n\nAtoms\n\n")
-        out.writelines(f"{n} 1 {2 * RADIUS!r} {DENSITY!r} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n" for n, p in enumerate(x, 1))
+                  f"{-0.5 * width - room[1]!r} {0.5 * width + room[1]!r} ylo yhi\n{-RADIUS!r} {box['height']!r} zlo "
+                  f"zhi\n\nAtoms\n\n")
+        out.writelines(f"{n} 1 {2 * RADIUS!r} {DENSITY!r} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n" for n,
+                       p in enumerate(x, 1))
     common = {**MATERIAL, "wall_friction": MATERIAL["friction"], **values}
     side = {a: "p" if box.get(f"periodic_{a}", True) else "f" for a in "xy"}
     law = "model hertz tangential history"
@@ -143,10 +147,13 @@ def run_liggghts(folder, deck, kinds, x, box, cohesion=0.0, sjkr=0.0, clear=True
                     for a, ends in (("x", (0.0, length)), ("y", (-0.5 * width, 0.5 * width))) if side[a] == "f"
                     for k, v in enumerate(ends))
     head = (HERE / "deck_common.in").read_text().format(
-        side_x=side["x"], side_y=side["y"], law=law, walls=walls, last_plate=max(1, n_base + n_lid), first_lid=n_base + 1,
-        first_free=n_base + n_lid + 1, clear="contact_distance_factor 1.5" if clear else "", last=len(x), pull="fix pull all external pf/callback 1 1" if cohesion else "",
+        side_x=side["x"], side_y=side["y"], law=law, walls=walls, last_plate=max(1, n_base + n_lid),
+        first_lid=n_base + 1,
+        first_free=n_base + n_lid + 1, clear="contact_distance_factor 1.5" if clear else "",
+        last=len(x), pull="fix pull all external pf/callback 1 1" if cohesion else "",
         pair_law=law + (" cohesion sjkr" if sjkr else ""),
-        sjkr=f"fix m5 all property/global cohesionEnergyDensity peratomtypepair 2 {sjkr!r} 0 0 0" if sjkr else "", **common)
+        sjkr=f"fix m5 all property/global cohesionEnergyDensity peratomtypepair 2 {sjkr!r} 0 0 0" if sjkr else "",
+        **common)
     text = head + (HERE / deck).read_text().format(**{"n_lid": n_lid, "law": law, **common})
     (folder / "deck.in").write_text(text)
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")

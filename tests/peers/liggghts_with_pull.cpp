@@ -74,16 +74,14 @@ class Pull {
       for (int a = 0; a < 3; ++a) at_[3 * g + a] = x[g][a];
       in[index(cell(g, 0), cell(g, 1), cell(g, 2))].push_back(g);
     }
-    if (cells[0] < 3 || cells[1] < 3)
-      std::cerr << "liggghts_with_pull: error: the box is too small\n", std::exit(2);
+    if (cells[0] < 3 || cells[1] < 3) std::cerr << "liggghts_with_pull: error: the box is too small\n", std::exit(2);
     for (int i = 0; i < count; ++i)
       for (int dz = -1; dz <= 1; ++dz) {
         const int cz = cell(i, 2) + dz;
         if (cz < 0 || cz >= cells[2]) continue;
         for (int dy = -1; dy <= 1; ++dy)
           for (int dx = -1; dx <= 1; ++dx) {
-            const int cx = (cell(i, 0) + dx + cells[0]) % cells[0],
-                      cy = (cell(i, 1) + dy + cells[1]) % cells[1];
+            const int cx = (cell(i, 0) + dx + cells[0]) % cells[0], cy = (cell(i, 1) + dy + cells[1]) % cells[1];
             for (const int j : in[index(cx, cy, cz)]) {
               if (j <= i) continue;
               double d[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};

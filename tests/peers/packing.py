@@ -20,7 +20,8 @@ def pairs(x, length, width, periodic=(True, True), reach=2.0 * RADIUS):
     found = []
     for c, mine in grid.items():
         for shift in numpy.ndindex(3, 3, 3):
-            other = tuple((c[a] + shift[a] - 1) % cells[a] if a < 2 and periodic[a] else c[a] + shift[a] - 1 for a in range(3))
+            other = tuple((c[a] + shift[a] - 1) % cells[a] if a < 2 and periodic[a]
+                          else c[a] + shift[a] - 1 for a in range(3))
             found += [(i, j) for i in mine for j in grid.get(other, ()) if i < j]
     if not found:
         return numpy.empty((0, 2), int), numpy.empty((0, 3))

@@ -72,8 +72,7 @@ PeerBed::PeerBed(const Job& job)
   // The peers' velocity Verlet stands at whole steps: half a step of free fall lies between.
   if (job.at("half_step_start"))
     for (int g = 0; g < solver_.grains().count; ++g)
-      if (kind_[solver_.grains().id[g]] == kFree)
-        solver_.grains().velocity[g].z = 0.5 * step_ * kStandardGravity;
+      if (kind_[solver_.grains().id[g]] == kFree) solver_.grains().velocity[g].z = 0.5 * step_ * kStandardGravity;
 }
 
 void PeerBed::step(const std::function<void()>& drive) {
@@ -88,8 +87,7 @@ void PeerBed::step(const std::function<void()>& drive) {
   for (Plate& plate : plates_) plate.force.setZero();
   each_driven([&](int g, Plate& plate) {
     const terrain::dem::Quad& v = grains.velocity[g];
-    plate.force +=
-        mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * kStandardGravity);
+    plate.force += mass / step_ * (Vec3(v.x, v.y, v.z) - plate.velocity) + Vec3(0.0, 0.0, mass * kStandardGravity);
   });
   if (drive) drive();
   each_driven([&](int g, const Plate& plate) {

@@ -80,8 +80,8 @@ terrain::soil::Tool box(double middle, double side, double low, double height) {
 }
 
 void plate(PeerBed& bed, const Job& job, Output& out) {
-  terrain::soil::Tool tool = box(0.5 * job.at("length").get<double>(), job.at("plate_side"),
-                                 job.at("plate_z"), job.at("plate_height"));
+  terrain::soil::Tool tool =
+      box(0.5 * job.at("length").get<double>(), job.at("plate_side"), job.at("plate_z"), job.at("plate_height"));
   terrain::dem::SurfaceContacts& surfaces = bed.solver().surfaces();
   surfaces.attach(tool.mesh(), {}, bed.coefficients().side, tool.state());
   const double high = 1.0;  // m

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""The engine and LIGGGHTS move the same: falling grains, and a plate of triangles pressed on them; seconds. Exits 77 (skip)
+"""The engine and LIGGGHTS move the same: falling grains, and a plate of triangles pressed on them; seconds. Exits 77
+(skip)
 where LIGGGHTS is not installed.
 
-With LIGGGHTS's tangential law in the place of the engine's, everything else must agree to round-off: geometry, Hertz force and
-damper, contact arms, integration, pair lists, the springs' bookkeeping, periodic sides, cohesion, triangles.
+With LIGGGHTS's tangential law in the place of the engine's, everything else must agree to round-off: geometry, Hertz
+force and damper, contact arms, integration, pair lists, the springs' bookkeeping, periodic sides, cohesion, triangles.
 """
 import pathlib
 import sys
@@ -20,7 +21,8 @@ except ImportError as error:
 
 SIDE, STEP, GRAINS = 12 * RADIUS, 2e-5, 90
 KINDS = [FREE] * GRAINS
-COMMON = {"length": SIDE, "width": SIDE, "step": STEP, "precision": "double", "wall_friction": 0.0, "damper_mass": "full"}
+COMMON = {"length": SIDE, "width": SIDE, "step": STEP, "precision": "double",
+          "wall_friction": 0.0, "damper_mass": "full"}
 HEIGHT = 3.6 * GRAINS * 4.0 / 3.0 * numpy.pi * RADIUS**3 / SIDE**2
 TOP = 1.2 * RADIUS + HEIGHT
 # Once grains touch, round-off grows by e every 2 ms or so; with the engine's own law the distance is 1e-6 m by then.
@@ -52,7 +54,8 @@ def pressed(folder, x):
     (folder / "liggghts").mkdir(exist_ok=True)
     write_box(folder / "liggghts/plate.stl", 0.5 * SIDE, side, low, height)
     box = {"length": SIDE, "width": SIDE, "height": low + 2 * height}
-    _, theirs = run_liggghts(folder / "liggghts", "deck_plate.in", KINDS, x, box, 80e3, step=STEP, speed=speed, rest="", every=1,
+    _, theirs = run_liggghts(folder / "liggghts", "deck_plate.in", KINDS,
+                             x, box, 80e3, step=STEP, speed=speed, rest="", every=1,
                              steps=steps, wall_friction=0.0)
     # The engine evaluates at the start of a step, LIGGGHTS at its end.
     mine = numpy.array([series[f"force_{a}_N"][1:] for a in "xyz"])

@@ -16,10 +16,10 @@ struct SwitchedLaw {
 
   enum Switch {
     kRescaleOnLoading = 1,  // spring = 8 G* √(R*δ) × displacement: rescaled by √(δ/δ_old) on loading too
-    kPlainProjection = 2,  // turned by projection only, which shortens it
-    kNoSpin = 4,           // not turned with the spin about the normal
-    kDamperApart = 8,      // the spring alone is cut at the limit, and where it is there is no damper
-    kLimitOfSize = 16,     // limit μ |F_e|: friction also while the damper pulls
+    kPlainProjection = 2,   // turned by projection only, which shortens it
+    kNoSpin = 4,            // not turned with the spin about the normal
+    kDamperApart = 8,       // the spring alone is cut at the limit, and where it is there is no damper
+    kLimitOfSize = 16,      // limit μ |F_e|: friction also while the damper pulls
     kAll = 31
   };
 

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Tables and plots of what bulk.py and trajectories.py left: table.py OUT [TO]
 
-TO (default: this folder) receives bulk.csv, bulk.json, law_and_step.csv, trajectories.json and the plots. Columns hold values with half their 95 %
-confidence interval (Student's t). Beds, plate: means over seeds, differences seed by seed, for both started from the same
-positions. Shear: the line τ = c + σ tan φ through all tests, intervals from the scatter about it; only tests that both have.
+TO (default: this folder) receives bulk.csv, bulk.json, law_and_step.csv, trajectories.json and the plots. Columns hold
+values with half their 95 % confidence interval (Student's t). Beds, plate: means over seeds, differences seed by seed,
+for both started from the same positions. Shear: the line τ = c + σ tan φ through all tests, intervals from the scatter
+about it; only tests that both have.
 """
 import json
 import math
@@ -21,7 +22,8 @@ from plot import style  # found by what common adds to the path
 from plot.student import half_interval, student
 
 ENGINES = ("furrow", "liggghts")
-COLUMNS = ["test", "quantity", "unit", "furrow", "furrow_ci95", "liggghts", "liggghts_ci95", "difference", "difference_ci95", "seeds"]
+COLUMNS = ["test", "quantity", "unit", "furrow", "furrow_ci95", "liggghts",
+           "liggghts_ci95", "difference", "difference_ci95", "seeds"]
 SPEEDS = (0.15, 0.4, 1.0)  # m/s
 LOOKS = {"furrow": (style.BLUE, "o", "-", "Furrow"), "liggghts": (style.ORANGE, "s", "--", "LIGGGHTS 3.8")}
 
@@ -51,12 +53,15 @@ def kilo(cohesion):
 def bed_rows(folder):
     rows = rows_of(folder, "bed")
     quantities = (("height_m", "height", "mm", 1e3), ("solid_fraction", "solid fraction, middle half", "-", 1.0),
-                  ("coordination", "contacts per grain, middle half", "-", 1.0), ("mean_overlap_m", "mean overlap", "µm", 1e6),
-                  ("floor_pressure_Pa", "floor pressure", "Pa", 1.0), ("floor_share_of_weight", "floor force / weight", "-", 1.0),
+                  ("coordination", "contacts per grain, middle half", "-", 1.0),
+                  ("mean_overlap_m", "mean overlap", "µm", 1e6),
+                  ("floor_pressure_Pa", "floor pressure", "Pa", 1.0),
+                  ("floor_share_of_weight", "floor force / weight", "-", 1.0),
                   ("side_pressure_Pa", "side wall pressure", "Pa", 1.0))
     for cohesion in sorted({r["cohesion_Pa"] for r in rows}):
         for key, name, unit, scale in quantities:
-            values = {e: {r["seed"]: r[key] for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion} for e in ENGINES}
+            values = {e: {r["seed"]: r[key] for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion}
+                      for e in ENGINES}
             yield compare(f"bed, {kilo(cohesion)}", name, unit, values, scale)
 
 
@@ -67,7 +72,8 @@ def plate_rows(folder):
             def near(row):
                 z, p = numpy.array(row["sinkage_m"]) / RADIUS, numpy.array(row["pressure_Pa"])
                 return float(p[(z > depth - 0.3) & (z < depth + 0.3)].mean())
-            values = {e: {r["seed"]: near(r) for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion} for e in ENGINES}
+            values = {e: {r["seed"]: near(r) for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion}
+                      for e in ENGINES}
             yield compare(f"plate, {kilo(cohesion)}", f"pressure at {depth} r", "kPa", values, 1e-3)
 
 
@@ -91,7 +97,8 @@ def shear_rows(folder):
         cases += [(f"all speeds, step {h * 1e6:g} µs", h, SPEEDS, "liggghts") for h in (4e-5, 2e-5)]
         cases += [("all speeds, step 40 µs, LIGGGHTS: sjkr", 4e-5, SPEEDS, "liggghts_sjkr")]
         for name, step, speeds, peer in cases:
-            mine, theirs = ({key(r): r for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion and r["step_s"] == step}
+            mine, theirs = ({key(r): r for r in rows if r["engine"] == e
+                             and r["cohesion_Pa"] == cohesion and r["step_s"] == step}
                             for e in ("furrow", peer))
             both = sorted(set(mine) & set(theirs))
             compared = len(both) >= 4 and len({k[3] for k in both}) > 1
@@ -103,9 +110,11 @@ def shear_rows(folder):
             for n, (quantity, unit) in enumerate((("c", "kPa"), ("φ", "°"))):
                 row = dict.fromkeys(COLUMNS)
                 row.update(test=f"shear, {kilo(cohesion)}, {name}", quantity=quantity, unit=unit,
-                           seeds=len({k[0] for k in (both if compared else mine)}), furrow=fits[0][n][0], furrow_ci95=fits[0][n][1])
+                           seeds=len({k[0] for k in (both if compared else mine)}),
+                           furrow=fits[0][n][0], furrow_ci95=fits[0][n][1])
                 if compared:
-                    row.update(liggghts=fits[1][n][0], liggghts_ci95=fits[1][n][1], difference=fits[0][n][0] - fits[1][n][0],
+                    row.update(liggghts=fits[1][n][0], liggghts_ci95=fits[1][n][1],
+                               difference=fits[0][n][0] - fits[1][n][0],
                                difference_ci95=math.hypot(fits[0][n][1], fits[1][n][1]))
                 yield row
 
@@ -115,11 +124,13 @@ def law_and_step(folder, to):
     rows = [r for r in rows_of(folder, "shear") if r["cohesion_Pa"] == 80e3 and r["pressure_Pa"] == 100e3]
     with open(to / "law_and_step.csv", "w") as out:
         provenance.write_header(out, origin(folder))
-        out.write("engine,step_us,seeds," + ",".join(f"tau_{v:g}_m_per_s_kPa,ci95" for v in SPEEDS) + ",lid_sinks_mm,ci95\n")
+        out.write("engine,step_us,seeds," + ",".join(f"tau_{v:g}_m_per_s_kPa,ci95" for v in SPEEDS)
+                  + ",lid_sinks_mm,ci95\n")
         for engine, step in sorted({(r["engine"], r["step_s"]) for r in rows}):
             mine = [r for r in rows if (r["engine"], r["step_s"]) == (engine, step)]
             values = [[r[f"tau_{v:g}_Pa"] / 1e3 for r in mine] for v in SPEEDS] + [[-1e3 * r["rise_m"] for r in mine]]
-            line = f"{engine},{1e6 * step:g},{len(mine)}," + ",".join(f"{numpy.mean(v):.3g},{half_interval(v):.2g}" for v in values)
+            line = f"{engine},{1e6 * step:g},{len(mine)}," + ",".join(f"{numpy.mean(v):.3g},{half_interval(v):.2g}"
+                                                                      for v in values)
             print(line)
             out.write(line + "\n")
 
@@ -133,7 +144,8 @@ def plot_trajectories(folder, to):
     figure, axis = plt.subplots(figsize=(7.5, 4.6))
     for name, (colour, line) in shown.items():
         if f"mean: {name}" in series:
-            axis.semilogy(series["time_s"], numpy.maximum(series[f"mean: {name}"], 1e-18), line, color=colour, label=name)
+            axis.semilogy(series["time_s"], numpy.maximum(series[f"mean: {name}"], 1e-18),
+                          line, color=colour, label=name)
     axis.set(xlabel="time in s", ylabel="mean distance of the same grains in m", ylim=(1e-17, 1e-1),
              title="Falling grains, engine against LIGGGHTS from the same start")
     axis.legend(fontsize=7.5, loc="upper left")
@@ -154,7 +166,8 @@ def plot_plate(folder, to):
             mean, half = p.mean(axis=0), [half_interval(list(column)) for column in p.T]
             axis.plot(z, mean, line, color=colour, label=f"{name}, {kilo(cohesion)}")
             axis.fill_between(z, mean - half, mean + half, color=colour, alpha=0.15, lw=0)
-    axis.set(xlabel="way of the plate in mm", ylabel="pressure in kPa", title="Plate 60 mm wide, 0.2 m/s; mean of the seeds, 95 % band")
+    axis.set(xlabel="way of the plate in mm", ylabel="pressure in kPa",
+             title="Plate 60 mm wide, 0.2 m/s; mean of the seeds, 95 % band")
     axis.legend()
     save(figure, to, "plate")
 
@@ -176,7 +189,8 @@ def plot_shear(folder, to):
                     if len(points) < 4 or numpy.ptp(sigma) < 15.0:
                         continue
                     slope, offset = numpy.polyfit(sigma, tau, 1)
-                    axis.plot([0, 110], [offset, offset + 110 * slope], line, color=colour, label=f"{name}, {kilo(cohesion)}", lw=1)
+                    axis.plot([0, 110], [offset, offset + 110 * slope],
+                              line, color=colour, label=f"{name}, {kilo(cohesion)}", lw=1)
             axis.set(title=f"{speed:g} m/s, step {1e6 * step:g} µs", xlim=(0, 112), ylim=(0, 70))
         line_of_axes[0].set_ylabel("shear stress in kPa")
     for axis in axes[1]:
@@ -197,18 +211,21 @@ def main():
     to = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
     table = [row for part in (bed_rows, plate_rows, shear_rows) for row in part(folder) if row]
     rows = [{k: row[k] for k in COLUMNS} for row in table]
-    (to / "bulk.json").write_text(json.dumps({"made": origin(folder), "rows": rows}, indent=0, ensure_ascii=False) + "\n")
+    (to / "bulk.json").write_text(json.dumps({"made": origin(folder), "rows": rows}, indent=0, ensure_ascii=False)
+                                  + "\n")
     with open(to / "bulk.csv", "w") as out:
         provenance.write_header(out, origin(folder))
         out.write(",".join(COLUMNS) + "\n")
         for row in table:
-            out.write(",".join("" if row[k] is None else f'"{row[k]}"' if isinstance(row[k], str) else f"{row[k]:.4g}" for k in COLUMNS) + "\n")
+            out.write(",".join("" if row[k] is None else f'"{row[k]}"'
+                               if isinstance(row[k], str) else f"{row[k]:.4g}" for k in COLUMNS) + "\n")
     compared, outside = [row for row in table if row["liggghts"] is not None], 0
     for row in compared:
         differs = abs(row["difference"]) > row["difference_ci95"]
         outside += differs
         print(f"| {row['test']} | {row['quantity']}, {row['unit']} | {row['furrow']:.4g} ± {row['furrow_ci95']:.2g} | "
-              f"{row['liggghts']:.4g} ± {row['liggghts_ci95']:.2g} | {row['difference']:+.3g} ± {row['difference_ci95']:.2g}"
+              f"{row['liggghts']:.4g} ± {row['liggghts_ci95']:.2g} | {row['difference']:+.3g} ± "
+              f"{row['difference_ci95']:.2g}"
               f"{' *' if differs else ''} | {row['seeds']} |")
     print(f"{outside} of {len(compared)} differences outside their 95 % interval")
     law_and_step(folder, to)

@@ -3,12 +3,12 @@
 
 usage: trajectories.py OUT [--grains 2000] [--end 0.2] [--step 2e-5] [--seed 1]
 
-Both start from the same positions, the engine half a step of free fall before (LIGGGHTS's velocity Verlet stands at whole
-steps), and the floor has no friction. Cases: LIGGGHTS against itself with the bed shifted along a periodic side, which parts by
-round-off alone; without friction between grains; with LIGGGHTS's tangential law in the engine, whole and with one difference
-put back at a time; the engine as it is.
-OUT/trajectories.csv: time, then mean and greatest distance between the same grains per case, m. OUT/trajectories.json: when
-the mean passes 1e-12 … 1e-4 m, when grains first touch, what is left at the end.
+Both start from the same positions, the engine half a step of free fall before (LIGGGHTS's velocity Verlet stands at
+whole steps), and the floor has no friction. Cases: LIGGGHTS against itself with the bed shifted along a periodic side,
+which parts by round-off alone; without friction between grains; with LIGGGHTS's tangential law in the engine, whole and
+with one difference put back at a time; the engine as it is. OUT/trajectories.csv: time, then mean and greatest distance
+between the same grains per case, m. OUT/trajectories.json: when the mean passes 1e-12 … 1e-4 m, when grains first
+touch, what is left at the end.
 """
 import argparse
 import csv
@@ -17,7 +17,8 @@ import pathlib
 
 import numpy
 
-from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, program, random_spheres, record_program, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name,
+                    program, random_spheres, record_program, run_furrow, run_liggghts)
 
 SIDE = 20 * RADIUS  # m, periodic
 FILL = 0.28  # share of the space that the spheres take at the start
@@ -47,7 +48,8 @@ def main():
     kinds = [FREE] * a.grains
     steps = round(a.end / a.step)
     every = max(1, steps // a.frames)
-    job = {"test": "fall", "length": SIDE, "width": SIDE, "step": a.step, "steps": steps, "every": every, "precision": "double",
+    job = {"test": "fall", "length": SIDE, "width": SIDE, "step": a.step,
+           "steps": steps, "every": every, "precision": "double",
            "wall_friction": 0.0}
     box = {"length": SIDE, "width": SIDE, "height": 2.0 * height}
 
@@ -56,10 +58,12 @@ def main():
         return frames, series
 
     def peer(name, x=x, **more):
-        return run_liggghts(a.out / "runs" / folder_name(name), "deck_fall.in", kinds, x, box, step=a.step, steps=steps, every=every,
+        return run_liggghts(a.out / "runs" / folder_name(name), "deck_fall.in",
+                            kinds, x, box, step=a.step, steps=steps, every=every,
                             **{"wall_friction": 0.0, **more})[0]
 
-    liggghts, smooth, rough_floor = peer("liggghts"), peer("liggghts smooth", friction=0.0), peer("liggghts floor", wall_friction=0.9)
+    liggghts, smooth, rough_floor = peer("liggghts"), peer("liggghts smooth",
+                                                           friction=0.0), peer("liggghts floor", wall_friction=0.9)
     moved = x + [0.3 * SIDE, 0.0, 0.0]
     moved[:, 0] %= SIDE
     shifted = peer("liggghts shifted", x=moved) - [0.3 * SIDE, 0.0, 0.0]
@@ -71,7 +75,8 @@ def main():
         "tangential law of LIGGGHTS": (furrow("theirs", **theirs)[0], liggghts),
     }
     if program("liggghts_with_pull"):
-        cohesive, sticky = furrow("theirs cohesive", cohesion=80e3, **theirs)[0], peer("liggghts cohesive", cohesion=80e3)
+        cohesive, sticky = furrow("theirs cohesive", cohesion=80e3,
+                                  **theirs)[0], peer("liggghts cohesive", cohesion=80e3)
         cases["the same with cohesion 80 kPa"] = (cohesive, sticky)
     for name, bit in SWITCHES.items():
         cases["but not: " + name] = (furrow(name, **{**theirs, "switches": ALL_SWITCHES - bit})[0], liggghts)
@@ -99,7 +104,8 @@ def main():
             out.write(",".join(f"{v:.4g}" for v in row) + "\n")
     touching = series["contacts"]
     facts = {"grains": a.grains, "step_s": a.step, "seed": a.seed,
-             "first_contacts_s": float(series["time_s"][next(k for k, c in enumerate(touching) if c > 0)]), "cases": summary}
+             "first_contacts_s": float(series["time_s"][next(k for k, c in enumerate(touching) if c > 0)]),
+             "cases": summary}
     (a.out / "trajectories.json").write_text(json.dumps(facts, indent=1) + "\n")
 
 

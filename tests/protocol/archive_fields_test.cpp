@@ -88,8 +88,7 @@ TEST(ArchiveFields, every_kind_of_field_comes_back_under_its_own_name) {
   EXPECT_EQ(archive.get<std::int32_t>("a/sample/on", 1).front(), 1);
   EXPECT_EQ(archive.get<double>("a/sample/force"), (std::vector<double>{4, 5, 6}));
   EXPECT_EQ(archive.get_double("a/sample/at/y"), sample.at.y);
-  EXPECT_EQ(archive.get<double>("a/sample/path/y"),
-            (std::vector<double>{sample.path[0].y, sample.path[1].y}));
+  EXPECT_EQ(archive.get<double>("a/sample/path/y"), (std::vector<double>{sample.path[0].y, sample.path[1].y}));
   EXPECT_EQ(other.text, sample.text);
   EXPECT_EQ(other.triangles, sample.triangles);
 }
@@ -138,19 +137,14 @@ TEST(ArchiveFields, what_is_missing_or_of_another_type_or_size_is_refused_by_nam
   archive.put("p/y", std::int64_t{2});
   EXPECT_EQ(refusal([&] { restore_fields(archive, "p", point); }), "saved state holds 'p/y' as another type");
   archive.put("p/y", std::vector<double>{1.0, 2.0});
-  EXPECT_EQ(refusal([&] { restore_fields(archive, "p", point); }),
-            "saved state 'p/y' has 2 values, expected 1");
+  EXPECT_EQ(refusal([&] { restore_fields(archive, "p", point); }), "saved state 'p/y' has 2 values, expected 1");
   std::vector<Point> points;
-  EXPECT_EQ(refusal([&] { restore_value(archive, "p", points); }),
-            "saved state 'p/y' has 2 values, expected 1");
-  EXPECT_EQ(refusal([&] { ColumnReader<Point>(archive, "p", 3); }),
-            "saved state 'p/x' has 1 values, expected 3");
+  EXPECT_EQ(refusal([&] { restore_value(archive, "p", points); }), "saved state 'p/y' has 2 values, expected 1");
+  EXPECT_EQ(refusal([&] { ColumnReader<Point>(archive, "p", 3); }), "saved state 'p/x' has 1 values, expected 3");
   std::vector<Vec3> vectors;
   archive.put("v", std::vector<double>(7, 0.0));
-  EXPECT_EQ(refusal([&] { restore_value(archive, "v", vectors); }),
-            "saved state 'v' has 7 values, expected 6");
-  EXPECT_EQ(refusal([&] { restore_value(archive, "v", vectors, 3); }),
-            "saved state 'v' has 7 values, expected 9");
+  EXPECT_EQ(refusal([&] { restore_value(archive, "v", vectors); }), "saved state 'v' has 7 values, expected 6");
+  EXPECT_EQ(refusal([&] { restore_value(archive, "v", vectors, 3); }), "saved state 'v' has 7 values, expected 9");
 }
 
 TEST(ArchiveFields, no_structs_leave_empty_columns) {

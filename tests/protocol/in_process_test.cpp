@@ -13,9 +13,7 @@ namespace {
 
 constexpr Address kRig{Role::rig, 0}, kTire{Role::tire, 0}, kTerrain{Role::terrain, 0};
 
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 void sleep_for(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 /// Runs `work` on all nodes; what each ended with, as "4: text", empty when it ended well.
@@ -28,8 +26,8 @@ std::vector<std::string> play(int tires, const std::function<void(Transport&)>& 
       try {
         work(*transports[i]);
       } catch (const PeerFailure& failure) {
-        ends[i] = "left " + std::to_string(static_cast<int>(failure.code())) + " for " +
-                  to_string(failure.who()) + ": " + failure.what();
+        ends[i] = "left " + std::to_string(static_cast<int>(failure.code())) + " for " + to_string(failure.who()) +
+                  ": " + failure.what();
       } catch (const Error& error) {
         ends[i] = std::to_string(static_cast<int>(error.code())) + ": " + error.what();
         transports[i]->announce_failure(error.code(), error.what());
@@ -64,8 +62,7 @@ TEST(InProcess, messages_keep_their_order_per_kind) {
       }
     } else if (t.self() == kTire) {
       for (int step = 0; step < 50; ++step) EXPECT_EQ(receive<TerrainSetup>(t, kRig).grains, step);
-      for (int step = 0; step < 50; ++step)
-        EXPECT_EQ(receive_step<RimMotion>(t, kRig, step).header.step, step);
+      for (int step = 0; step < 50; ++step) EXPECT_EQ(receive_step<RimMotion>(t, kRig, step).header.step, step);
     }
   });
   EXPECT_EQ(ends, std::vector<std::string>(4));
@@ -118,10 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Mismatch{"version", [](NodeCard& c) { c.protocol_version = 99; }, kTerrain,
                  "protocol version of rig is " + std::to_string(kProtocolVersion)},
-        Mismatch{"digest",
-                 [](NodeCard& c) { c.scenario_digest = "xyz"; },
-                 {Role::tire, 1},
-                 "scenario digest of rig"},
+        Mismatch{"digest", [](NodeCard& c) { c.scenario_digest = "xyz"; }, {Role::tire, 1}, "scenario digest of rig"},
         Mismatch{"step", [](NodeCard& c) { c.step = 2e-4; }, kTire, "communication step of rig is 0.0001"},
         Mismatch{"steps", [](NodeCard& c) { c.steps = 3; }, kTerrain, "number of steps of rig is 100"},
         Mismatch{"substeps", [](NodeCard& c) { c.substeps = 0; }, kTire, "tire 0 takes 0 substeps"},

@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 class MemoryLimitTest : public ::testing::Test {
  protected:
   MemoryLimitTest() {
-    write("proc/meminfo",
-          "MemTotal:        8000000 kB\nMemAvailable:    5000000 kB\nSwapTotal:       2000000 kB\n");
+    write("proc/meminfo", "MemTotal:        8000000 kB\nMemAvailable:    5000000 kB\nSwapTotal:       2000000 kB\n");
   }
   ~MemoryLimitTest() override {
     std::error_code ignored;

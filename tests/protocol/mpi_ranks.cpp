@@ -22,9 +22,7 @@ using namespace furrow;
 
 constexpr Address kRig{Role::rig, 0}, kTire{Role::tire, 0}, kTerrain{Role::terrain, 0};
 
-double wall_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double cpu_s() {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
@@ -71,8 +69,7 @@ void exchange(Transport& t, std::int64_t step, std::size_t vertices) {
     send(t, kTerrain, motion_of(step, vertices));
     receive_step<RimMotion>(t, kRig, step);
     const auto forces = receive_step<TerrainForces>(t, kTerrain, step).forces;
-    require(forces.vertex.size() == vertices / 4 &&
-                forces.vertex.back() == static_cast<int>(vertices / 4 - 1) &&
+    require(forces.vertex.size() == vertices / 4 && forces.vertex.back() == static_cast<int>(vertices / 4 - 1) &&
                 forces.force.back() == Vec3(1.0, static_cast<double>(step), 3.0),
             "nodal forces");
   } else {
@@ -124,8 +121,7 @@ void waiting(Transport& t, double step_length, int steps) {
   }
   const double length = wall_s() - wall;
   say("%s: wall %.4f cpu_share %.4f wait_share %.4f lost_share %.4f\n", to_string(t.self()).c_str(), length,
-      (cpu_s() - cpu) / length, (t.wait_clock().waited_s - waited) / length,
-      length / (steps * step_length) - 1.0);
+      (cpu_s() - cpu) / length, (t.wait_clock().waited_s - waited) / length, length / (steps * step_length) - 1.0);
 }
 
 bool is_stopped(int process) {

@@ -35,8 +35,7 @@ struct Outcome {
 
 Outcome start_once(const std::string& scene, int ranks, const std::string& environment) {
   const std::string command =
-      environment +
-      " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout -k 5 50 " MPIRUN " -n " +
+      environment + " OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout -k 5 50 " MPIRUN " -n " +
       std::to_string(ranks) + " --oversubscribe --bind-to none '" RANKS "' " + scene + " 2>&1 < /dev/null";
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
@@ -49,8 +48,7 @@ Outcome start_once(const std::string& scene, int ranks, const std::string& envir
   // fail returned: that is what is tested.
   const std::size_t crash = outcome.output.find("PMIx_server_finalize");
   const std::size_t told = outcome.output.find("Exit code:");
-  if (crash != std::string::npos && told < crash)
-    outcome.exit_code = std::atoi(outcome.output.c_str() + told + 10);
+  if (crash != std::string::npos && told < crash) outcome.exit_code = std::atoi(outcome.output.c_str() + told + 10);
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return outcome;
 }
@@ -87,9 +85,8 @@ TEST(Mpi, a_wrong_number_of_ranks_is_the_same_error_on_each) {
   for (const int ranks : {2, 4}) {
     const Outcome outcome = start("ping", ranks);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
-    EXPECT_EQ(outcome.count(
-                  "error: this scenario needs 3 ranks (1 rig, 1 tire(s), 1 terrain), but " +
-                  std::to_string(ranks) + " were started"),
+    EXPECT_EQ(outcome.count("error: this scenario needs 3 ranks (1 rig, 1 tire(s), 1 terrain), but " +
+                            std::to_string(ranks) + " were started"),
               ranks)
         << outcome.output;
   }
@@ -150,8 +147,7 @@ TEST(Mpi, ranks_yield_while_they_are_set_up_and_not_in_steps) {
 TEST(Mpi, long_waits_cost_next_to_nothing) {
   const Outcome outcome = start("waiting_long");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  for (const char* rank : {"rig", "tire 0"})
-    EXPECT_LE(outcome.value(rank, "cpu_share"), 0.10) << outcome.output;
+  for (const char* rank : {"rig", "tire 0"}) EXPECT_LE(outcome.value(rank, "cpu_share"), 0.10) << outcome.output;
 }
 
 // Where processes may not read each other's memory a message moves only while both ends are in MPI. Without flush the

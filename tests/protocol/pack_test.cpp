@@ -33,9 +33,7 @@ NodeCard node_card() {
   m.size = 13'500;
   return m;
 }
-SurfaceSetup surface_setup() {
-  return {{5, {{0, 1, 2}, {2, 3, 4}}}, {1e7, 0.45, 0.9, 0.2, 1e6, 30.0, 0.0, 4.2}};
-}
+SurfaceSetup surface_setup() { return {{5, {{0, 1, 2}, {2, 3, 4}}}, {1e7, 0.45, 0.9, 0.2, 1e6, 30.0, 0.0, 4.2}}; }
 TerrainSetup terrain_setup() { return {{0.1, 0.2}, {0.3, 0.4}, -0.5, 12.5, 382'500}; }
 RimMotion rim_motion() {
   return {{42, 1.5}, {{1, 2, 3}, Quat(0.5, -0.5, 0.5, -0.5), {4, 5, 6}, {7, 8, 9}}, Order::stop};
@@ -157,11 +155,10 @@ TEST(Pack, every_field_of_every_message_arrives) {
 }
 
 TEST(Pack, no_list_forgets_a_member_of_its_struct) {
-  expect_whole_lists<NodeCard, SurfaceSetup, TerrainSetup, RimMotion, SurfaceMotion, TerrainForces,
-                     TerrainReport, FinalReport, RunFolder, CheckpointPart>();
-  expect_whole_lists<Address, StepHeader, RimState, Wrench, SurfaceMesh, SurfaceState, ContactTangent,
-                     NodalForces, MassProperties, ContactMaterial, ContactSums, TerrainState, HeightField,
-                     TireDiagnostics>();
+  expect_whole_lists<NodeCard, SurfaceSetup, TerrainSetup, RimMotion, SurfaceMotion, TerrainForces, TerrainReport,
+                     FinalReport, RunFolder, CheckpointPart>();
+  expect_whole_lists<Address, StepHeader, RimState, Wrench, SurfaceMesh, SurfaceState, ContactTangent, NodalForces,
+                     MassProperties, ContactMaterial, ContactSums, TerrainState, HeightField, TireDiagnostics>();
 }
 
 /// The report of a tire lists what its model says of itself in place of the struct that holds it.
@@ -211,7 +208,8 @@ std::size_t bytes_of(const T& value) {
   } else if constexpr (requires { T::SizeAtCompileTime; }) {
     return T::SizeAtCompileTime * sizeof(double);
   } else {
-    std::size_t sum = requires { std::declval<T&>().resize(1); } ? kLength : 0;
+    std::size_t sum = requires { std::declval<T&>().resize(1); }
+    ? kLength : 0;
     for (const auto& one : value) sum += bytes_of(one);
     return sum;
   }

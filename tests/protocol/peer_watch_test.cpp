@@ -71,8 +71,8 @@ class PeerWatches : public ::testing::Test {
   std::vector<std::unique_ptr<PeerWatch>> watches_;
 };
 
-// Both tires wait for the silent rig, the terrain waits for tire 0. Tire 1 loses patience; tire 0 hears of it and leaves
-// before the terrain does: the terrain must still know whom tire 0 waited for.
+// Both tires wait for the silent rig, the terrain waits for tire 0. Tire 1 loses patience; tire 0 hears of it and
+// leaves before the terrain does: the terrain must still know whom tire 0 waited for.
 TEST_F(PeerWatches, WhoLeavesBecauseOfAFailureDoesNotHideWhomItWaitedFor) {
   waits(kTire0, kRig);
   waits(kTerrain, kTire0);

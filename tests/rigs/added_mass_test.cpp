@@ -15,10 +15,9 @@ TEST(AddedMass, free_spin_up_and_drop_are_exact_with_three_times_the_rims_inerti
   options.carrier_mass = 1.0;
   MassProperties tire;
   tire.mass = 3.0 * (options.rim_mass + options.carrier_mass);
-  tire.inertia =
-      3.0 * Vec3(options.rim_diametral_inertia, options.rim_spin_inertia, options.rim_diametral_inertia)
-                .asDiagonal()
-                .toDenseMatrix();
+  tire.inertia = 3.0 * Vec3(options.rim_diametral_inertia, options.rim_spin_inertia, options.rim_diametral_inertia)
+                           .asDiagonal()
+                           .toDenseMatrix();
   const auto rig = placed_rig(options, tire);
   // A rigid tire in the air hands over its whole wrench less its own inertia and weight: nothing but the
   // moment that somebody else applies to it.
@@ -39,8 +38,7 @@ TEST(AddedMass, wheel_falls_along_its_slider_and_the_drive_holds_it_on_a_slope) 
   options.gravity = Vec3(2.0, 0.0, -9.0);
   const auto rig = placed_rig(options, MassProperties{});
   advance(*rig, wrench(Vec3::Zero()), 2000);
-  const double t = 2000 * kStep,
-               mass = rig->report(0).carried_mass + options.chassis_mass + options.set_toe_mass;
+  const double t = 2000 * kStep, mass = rig->report(0).carried_mass + options.chassis_mass + options.set_toe_mass;
   EXPECT_NEAR(rig->rim(0).velocity.z(), -9.0 * t, 1e-10);
   EXPECT_NEAR(measured(*rig, "drawbar_pull_raw_N"), mass * 2.0, 1e-8 * mass);
   EXPECT_EQ(rig->report(0).gravity, options.gravity);

@@ -120,8 +120,7 @@ TEST(Vertical, touchdown_damper_acts_for_its_time_only) {
     v = half * (1.0 - c) - 0.5 * kStep * kStandardGravity;
     advance(*rig, Wrench{}, 1);
     ASSERT_NEAR(rig->report(0).vertical_speed, v, 1e-11) << i;
-    ASSERT_NEAR(measured(*rig, "damper_force_N"), active ? -options.touchdown_damping * half : 0.0, 1e-6)
-        << i;
+    ASSERT_NEAR(measured(*rig, "damper_force_N"), active ? -options.touchdown_damping * half : 0.0, 1e-6) << i;
   }
 }
 
@@ -195,8 +194,7 @@ TEST(Camber, mirrored_camber_and_toe_mirror_everything) {
   EXPECT_NEAR(a.lateral_force, -b.lateral_force, 1e-12);
   EXPECT_NEAR(a.spin, b.spin, 1e-9);
   EXPECT_NEAR(a.axle_height, b.axle_height, 1e-12);
-  const Vec3 axle = one->rim(0).orientation * Vec3::UnitY(),
-             mirrored = other->rim(0).orientation * Vec3::UnitY();
+  const Vec3 axle = one->rim(0).orientation * Vec3::UnitY(), mirrored = other->rim(0).orientation * Vec3::UnitY();
   EXPECT_LT((axle - Vec3(-mirrored.x(), mirrored.y(), -mirrored.z())).norm(), 1e-12);
 }
 

@@ -33,8 +33,8 @@ void expect_equal(const rigs::Rig& a, const rigs::Rig& b) {
 }  // namespace
 
 TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
-  for (const auto& [mode, move_from] : {std::pair{"fixed_angular_speed", 0.0}, {"fixed_speed", 0.0},
-                                        {"free_rolling", 0.0}, {"fixed_speed", 0.012}}) {
+  for (const auto& [mode, move_from] :
+       {std::pair{"fixed_angular_speed", 0.0}, {"fixed_speed", 0.0}, {"free_rolling", 0.0}, {"fixed_speed", 0.012}}) {
     rigs::DrawbarRigOptions options = reference_options();
     options.mode = mode;
     options.move_from = move_from;
@@ -56,8 +56,7 @@ TEST(Restart, continues_bit_for_bit_whether_placed_before_or_not) {
     expect_equal(*original, *placed);
     expect_equal(*original, *fresh);
     for (; i < 500; ++i)
-      for (rigs::Rig* rig : {original.get(), placed.get(), fresh.get()})
-        advance(*rig, varying(i), 1, 4e-5, 2);
+      for (rigs::Rig* rig : {original.get(), placed.get(), fresh.get()}) advance(*rig, varying(i), 1, 4e-5, 2);
     expect_equal(*original, *placed);
     expect_equal(*original, *fresh);
   }

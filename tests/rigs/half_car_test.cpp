@@ -8,8 +8,8 @@
 #include <complex>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include <Eigen/LU>
 
@@ -64,7 +64,8 @@ TEST(HalfCar, is_two_quarter_cars_where_the_pitch_inertia_is_mass_times_both_dis
     const double omega = 2.0 * pi * hertz;
     const auto quarter = [&](const vehicle::HalfCarAxle& axle, double share) {
       return vehicle::quarter_car_response({car.body_mass * share, axle.wheel_mass, axle.stiffness, axle.damping,
-                                   axle.tire_stiffness, axle.tire_damping}, omega);
+                                            axle.tire_stiffness, axle.tire_damping},
+                                           omega);
     };
     const vehicle::QuarterCarResponse front = quarter(car.front, b / (a + b)), rear = quarter(car.rear, a / (a + b));
     const std::complex<double> late = std::polar(1.0, -omega * delay);
@@ -102,7 +103,9 @@ TEST(HalfCar, its_modes_diagonalise_mass_and_stiffness_and_its_response_peaks_at
   EXPECT_NEAR(squares.prod() / (m.stiffness.determinant() / m.mass.determinant()), 1.0, 1e-10);
   for (vehicle::HalfCarAxle* axle : {&car.front, &car.rear}) axle->damping = axle->tire_damping = 0.0;
   for (int k = 0; k < 4; ++k)
-    EXPECT_GT(std::abs(vehicle::half_car_response(car, 2.0 * pi * modes.frequencies[k] * (1.0 + 1e-9), 0.1).wheel_front), 1e4);
+    EXPECT_GT(
+        std::abs(vehicle::half_car_response(car, 2.0 * pi * modes.frequencies[k] * (1.0 + 1e-9), 0.1).wheel_front),
+        1e4);
 }
 
 TEST(HalfCar, follows_a_slow_road_and_filters_by_its_wheelbase) {
@@ -333,14 +336,18 @@ TEST(HalfCar, what_is_open_comes_from_the_tires_file) {
   loaded.load = 6000.0;
   EXPECT_NEAR(mounted(loaded, tires, kContext).body_mass, 6000.0 / kStandardGravity - 2.0 * 18.1, 1e-9);
   loaded.load = 300.0;
-  EXPECT_NE(complaint([&] { mounted(loaded, tires, kContext); }).find("s.json: key 'rig.load': is 300 N, expected above"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint([&] { mounted(loaded, tires, kContext); }).find("s.json: key 'rig.load': is 300 N, expected above"),
+      std::string::npos);
   MountedTire bare = tire();
   bare.rim = {};
-  EXPECT_NE(complaint([&] { mounted({}, std::array{bare, bare}, kContext); })
-                .find("s.json: key 'rig.load': is missing and so is rig.rim_mass, rig.rim_spin_inertia, expected here"),
+  EXPECT_NE(complaint([&] {
+              mounted({}, std::array{bare, bare}, kContext);
+            }).find("s.json: key 'rig.load': is missing and so is rig.rim_mass, rig.rim_spin_inertia, expected here"),
             std::string::npos);
-  EXPECT_EQ(complaint([] { read_half_car({{"load", 1.0}, {"body_mass", 2.0}}, kContext); }),
+  EXPECT_EQ(complaint([] {
+              read_half_car({{"load", 1.0}, {"body_mass", 2.0}}, kContext);
+            }),
             "s.json: key 'rig.load': is given beside 'rig.body_mass', expected one of the two");
 }
 

@@ -1,14 +1,14 @@
 // The quarter car: transfer function against the linear model's closed form, accounts, masses, exact continuation.
-#include <algorithm>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "protocol/core/error.hpp"
 #include "rigs/quarter_car_rig.hpp"
@@ -66,7 +66,8 @@ vehicle::QuarterCarResponse driven(double omega) {
     const RimState rim = rig->rim(0);
     const double rise = rim.position.z() + 0.5 * h * rim.velocity.z() - kHeight;
     Wrench wrench;
-    wrench.force.z() = 460.0 * kStandardGravity + kLinear.tire_stiffness * (amplitude * std::cos(omega * middle) - rise) +
+    wrench.force.z() = 460.0 * kStandardGravity +
+                       kLinear.tire_stiffness * (amplitude * std::cos(omega * middle) - rise) +
                        kLinear.tire_damping * (-amplitude * omega * std::sin(omega * middle) - rim.velocity.z());
     EXPECT_TRUE(rig->advance({&wrench, 1}, h, 1).ok);
     if (k < settle) continue;
@@ -189,14 +190,18 @@ TEST(QuarterCar, what_is_open_comes_from_the_tires_file) {
   loaded.load = 3000.0;
   EXPECT_NEAR(mounted(loaded, tire(), kContext).body_mass, 3000.0 / kStandardGravity - 50.1, 1e-9);
   loaded.load = 400.0;
-  EXPECT_NE(complaint([&] { mounted(loaded, tire(), kContext); }).find("s.json: key 'rig.load': is 400 N, expected above"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint([&] { mounted(loaded, tire(), kContext); }).find("s.json: key 'rig.load': is 400 N, expected above"),
+      std::string::npos);
   MountedTire bare = tire();
   bare.rim = {};
-  EXPECT_NE(complaint([&] { mounted({}, bare, kContext); })
-                .find("s.json: key 'rig.load': is missing and so is rig.rim_mass, rig.rim_spin_inertia, expected here"),
+  EXPECT_NE(complaint([&] {
+              mounted({}, bare, kContext);
+            }).find("s.json: key 'rig.load': is missing and so is rig.rim_mass, rig.rim_spin_inertia, expected here"),
             std::string::npos);
-  EXPECT_EQ(complaint([] { read_quarter_car({{"load", 1.0}, {"body_mass", 2.0}}, kContext); }),
+  EXPECT_EQ(complaint([] {
+              read_quarter_car({{"load", 1.0}, {"body_mass", 2.0}}, kContext);
+            }),
             "s.json: key 'rig.load': is given beside 'rig.body_mass', expected one of the two");
 }
 

@@ -60,8 +60,10 @@ TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire
   const rigs::RigAccounts start = rig->accounts();
   const auto push = [&](int from, int to) {
     for (int i = from; i < to; ++i)
-      advance(*rig, wrench(Vec3(-300.0 * std::sin(0.01 * i), 0.0, 4000.0 + 2000.0 * std::sin(0.02 * i)),
-                           Vec3(0.0, 30.0, 0.0)), 1);
+      advance(
+          *rig,
+          wrench(Vec3(-300.0 * std::sin(0.01 * i), 0.0, 4000.0 + 2000.0 * std::sin(0.02 * i)), Vec3(0.0, 30.0, 0.0)),
+          1);
   };
   push(0, 1251);  // one step beyond 0.05 s
   const double height = rig->rim(0).position.z();
@@ -73,7 +75,9 @@ TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire
   const rigs::RigAccounts end = rig->accounts();
   // At rest in z, guide and tire carry the weight together; what the guide gave while the axle fell is before that.
   EXPECT_NEAR((end.guide_impulse + end.gravity_impulse + end.tire_impulse - held.guide_impulse - held.gravity_impulse -
-               held.tire_impulse).z(), 0.0, 1e-8 * end.gravity_impulse.norm());
+               held.tire_impulse)
+                  .z(),
+              0.0, 1e-8 * end.gravity_impulse.norm());
   EXPECT_LT(momentum_residual(start, end).norm(), 1e-8 * end.tire_impulse.norm());
   EXPECT_NEAR(energy_residual(start, end), 0.0, 1e-4 * (std::abs(end.pull_work) + std::abs(end.tire_work)));
 }
@@ -91,8 +95,8 @@ TEST(RigAccounts, a_wheel_let_down_by_its_damper_loses_its_height_and_the_ground
   const double fast = kStandardGravity * T, e = std::exp(-time / T);
   const double loss = c * fast * fast * (time - 2.0 * T * (1.0 - e) + 0.5 * T * (1.0 - e * e));
   EXPECT_NEAR(end.damper_loss / loss, 1.0, 1e-5);
-  EXPECT_NEAR(end.potential_energy - start.potential_energy,
-              -mass * kStandardGravity * fast * (time - T * (1.0 - e)), 1e-5 * loss);
+  EXPECT_NEAR(end.potential_energy - start.potential_energy, -mass * kStandardGravity * fast * (time - T * (1.0 - e)),
+              1e-5 * loss);
   EXPECT_NEAR(end.guide_impulse.z() + end.gravity_impulse.z(), -mass * fast * (1.0 - e), 1e-5 * mass);
   EXPECT_NEAR(energy_residual(start, end), 0.0, 1e-6 * loss);
 }

@@ -27,8 +27,7 @@ rigs::MountedTire bare_tire() { return {kRadius, kTireMass, {}, "tire.json"}; }
 rigs::MountedTire tire_on_rim() { return {kRadius, kTireMass, {15.0, 0.7, 0.4, 450.0}, "tire.json"}; }
 
 /// The rig on tires that are all alike.
-std::unique_ptr<rigs::RigSpec> mounted_rig(const json& section,
-                                           const rigs::MountedTire& tire = tire_on_rim()) {
+std::unique_ptr<rigs::RigSpec> mounted_rig(const json& section, const rigs::MountedTire& tire = tire_on_rim()) {
   auto rig = rigs::read_rig(section, kContext);
   rig->mount(std::vector<rigs::MountedTire>(rig->wheel_count(), tire));
   return rig;
@@ -69,9 +68,8 @@ TEST(Rigs, an_unknown_type_lists_the_valid_ones) {
 TEST(Rigs, full_slip_at_an_imposed_speed_is_refused_with_its_key) {
   EXPECT_EQ(complaint({{"mode", "fixed_speed"}, {"slip", 1.0}}).substr(0, 55),
             "test.json: key 'rig.slip': is 1, expected below 1 in mo");
-  EXPECT_EQ(
-      complaint({{"mode", "fixed_speed"}, {"wheels", {{{"slip", 0.1}}, {{"slip", 1.0}}}}}).substr(0, 40),
-      "test.json: key 'rig.wheels.1.slip': is 1");
+  EXPECT_EQ(complaint({{"mode", "fixed_speed"}, {"wheels", {{{"slip", 0.1}}, {{"slip", 1.0}}}}}).substr(0, 40),
+            "test.json: key 'rig.wheels.1.slip': is 1");
 }
 
 TEST(Rigs, entries_of_wheels_take_from_the_rig_what_they_leave_out) {
@@ -175,14 +173,12 @@ TEST(Masses, the_carrier_follows_from_the_load) {
 TEST(Masses, of_load_and_carrier_one_is_said) {
   EXPECT_EQ(complaint({{"load", 100.0}, {"carrier_mass", 5.0}}),
             "test.json: key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two");
-  EXPECT_EQ(
-      complaint({{"wheels", {{{"lateral", 0.1}}, {{"load", 900.0}, {"carrier_mass", 5.0}}}}}),
-      "test.json: key 'rig.wheels.1.load': is given beside 'rig.wheels.1.carrier_mass', expected one of "
-      "the two");
-  EXPECT_EQ(
-      complaint({{"lowering_speed", 0.1}, {"touchdown_damping", 5.0}}),
-      "test.json: key 'rig.lowering_speed': is given beside 'rig.touchdown_damping', expected one of the "
-      "two");
+  EXPECT_EQ(complaint({{"wheels", {{{"lateral", 0.1}}, {{"load", 900.0}, {"carrier_mass", 5.0}}}}}),
+            "test.json: key 'rig.wheels.1.load': is given beside 'rig.wheels.1.carrier_mass', expected one of "
+            "the two");
+  EXPECT_EQ(complaint({{"lowering_speed", 0.1}, {"touchdown_damping", 5.0}}),
+            "test.json: key 'rig.lowering_speed': is given beside 'rig.touchdown_damping', expected one of the "
+            "two");
 }
 
 TEST(Masses, a_load_below_the_weight_of_rim_and_tire_says_the_least) {
@@ -215,8 +211,7 @@ TEST(Masses, the_tire_file_says_what_the_scenario_does_not) {
 }
 
 TEST(Masses, an_entry_of_wheels_has_its_own_load) {
-  const auto rig =
-      mounted_rig({{"carrier_mass", 100.0}, {"wheels", {{{"lateral", 0.4}}, {{"load", 2000.0}}}}});
+  const auto rig = mounted_rig({{"carrier_mass", 100.0}, {"wheels", {{{"lateral", 0.4}}, {{"load", 2000.0}}}}});
   const std::vector<rigs::WheelSize> tires(2, {kRadius, kWidth});
   const rigs::RigDescription d = rig->describe(tires, 1.0);
   EXPECT_EQ(d.wheels[0].carried_mass, 115.0);

@@ -38,13 +38,13 @@ inline rigs::VehicleRigPlan vehicle_plan(const std::string& file, nlohmann::json
 
 /// A vehicle of the HMMWV's size on its ground z = 0.
 struct Track {
-  double radius = 0.4673;    // m
-  double stiffness = 4e5;    // N/m
-  double damping = 4e3;      // N s/m
-  double friction = 0.9;     // -
-  double slip_scale = 2.0;   // s/m, of the force with the sliding speed: it comes one step late
-  double step = 5e-4;        // s
-  bool sinks = false;        // observes the depth of the tires
+  double radius = 0.4673;   // m
+  double stiffness = 4e5;   // N/m
+  double damping = 4e3;     // N s/m
+  double friction = 0.9;    // -
+  double slip_scale = 2.0;  // s/m, of the force with the sliding speed: it comes one step late
+  double step = 5e-4;       // s
+  bool sinks = false;       // observes the depth of the tires
   MassProperties tire{4.8, Vec3(0.5, 0.78, 0.5).asDiagonal().toDenseMatrix()};
 
   std::unique_ptr<rigs::Rig> rig(const rigs::VehicleRigPlan& plan, double gap = 0.0) const {
@@ -70,8 +70,7 @@ struct Track {
   }
 
   /// @param after called after every advance
-  void drive(rigs::Rig& rig, double duration, const std::function<void()>& after = {},
-             int substeps = 1) const {
+  void drive(rigs::Rig& rig, double duration, const std::function<void()>& after = {}, int substeps = 1) const {
     const auto steps = static_cast<int>(std::lround(duration / step));
     std::vector<Wrench> wrenches(rig.wheel_count());
     for (int i = 0; i < steps; ++i) {

@@ -26,13 +26,10 @@ double figure(const rigs::Rig& rig, std::string_view name) {
 }
 
 rigs::VehicleRigPlan lane_change(const json& steering, double speed) {
-  const json driver = {{"speed", {{"target", speed}}},
-                       {"path",
-                        {{"kind", "double_lane_change"},
-                         {"x", -1.65},
-                         {"lead_in", 20},
-                         {"lead_out", 20},
-                         {"steering", steering}}}};
+  const json driver = {
+      {"speed", {{"target", speed}}},
+      {"path",
+       {{"kind", "double_lane_change"}, {"x", -1.65}, {"lead_in", 20}, {"lead_out", 20}, {"steering", steering}}}};
   rigs::VehicleRigPlan plan = vehicle_plan("hmmwv.json", driver);
   plan.options.start_speed = speed;
   return plan;
@@ -66,8 +63,7 @@ TEST(StartAtSpeed, a_rover_with_motors_rolls_in_any_order_of_wheels) {
   track.radius = 0.058, track.stiffness = 2e4, track.damping = 40.0, track.slip_scale = 5.0;
   track.tire = {};
   const auto rig = track.rig(plan);
-  for (int k = 0; k < rig->wheel_count(); ++k)
-    EXPECT_NEAR(rig->rim(k).angular_velocity.y(), 0.2 / 0.058, 1e-6) << k;
+  for (int k = 0; k < rig->wheel_count(); ++k) EXPECT_NEAR(rig->rim(k).angular_velocity.y(), 0.2 / 0.058, 1e-6) << k;
 }
 
 // Margins are what is left beside the vehicle in lanes that are 1.1 to 1.3 of its width and 25 cm wide.
@@ -87,7 +83,8 @@ TEST(LaneChange, preview_stays_in_its_lanes_where_pure_pursuit_leaves_them) {
   EXPECT_LT(figure(*pursuit, "lane_margin_least_m"), -0.1);
 }
 
-// With the higher centre of mass it leans until wheels on the inner side carry nothing; what was found continues after a restart.
+// With the higher centre of mass it leans until wheels on the inner side carry nothing; what was found continues after
+// a restart.
 TEST(WheelLift, is_noticed_and_kept) {
   const json driver = {{"inputs", {{"steering", json::array({{0, 0}, {0.5, 0}, {0.8, 1}})}, {"gear", 2}}}};
   rigs::VehicleRigPlan plan = vehicle_plan("hmmwv_tr.json", driver);

@@ -146,9 +146,9 @@ TEST(VehicleRig, drives_backwards_in_reverse_and_not_at_all_in_neutral) {
 
 TEST(VehicleRig, steers_to_the_left_and_measures_its_turn) {
   const Track track;
-  const auto rig = track.rig(vehicle_plan(
-      "hmmwv.json",
-      {{"inputs", {{"steering", json::array({{0, 0}, {1, 0}, {1.5, 0.5}})}}}, {"speed", {{"target", 3.0}}}}));
+  const auto rig =
+      track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"steering", json::array({{0, 0}, {1, 0}, {1.5, 0.5}})}}},
+                                            {"speed", {{"target", 3.0}}}}));
   track.drive(*rig, 5.0);
   EXPECT_GT(of_vehicle(*rig, "yaw_rad"), 0.3);
   EXPECT_GT(of_vehicle(*rig, "y_m"), 0.3);
@@ -165,10 +165,9 @@ TEST(VehicleRig, steers_to_the_left_and_measures_its_turn) {
 
 TEST(VehicleRig, a_braked_wheel_slips_and_the_vehicle_stops) {
   Track track;
-  const auto rig =
-      track.rig(vehicle_plan("hmmwv.json", {{"inputs",
-                                             {{"throttle", json::array({{0, 0.6}, {3, 0.6}, {3.01, 0}})},
-                                              {"brake", json::array({{0, 0}, {3, 0}, {3.1, 0.3}})}}}}));
+  const auto rig = track.rig(vehicle_plan("hmmwv.json", {{"inputs",
+                                                          {{"throttle", json::array({{0, 0.6}, {3, 0.6}, {3.01, 0}})},
+                                                           {"brake", json::array({{0, 0}, {3, 0}, {3.1, 0.3}})}}}}));
   track.drive(*rig, 3.0);
   const double speed = of_vehicle(*rig, "speed_m_s"), slip = rig->report(0).slip;
   EXPECT_GT(speed, 3.0);
@@ -234,8 +233,7 @@ TEST(VehicleRig, accounts_of_energy_and_momentum_close) {
     EXPECT_LT(momentum.norm(), 1e-9 * b.gravity_impulse.norm());
     EXPECT_GT(of_vehicle(*rig, "shift_heat_J"), 10.0);
     EXPECT_GT(b.drive_work, 1e5);
-    return (b.drive_work + b.pull_work + b.guide_work + b.tire_work - (b.stored() - a.stored()) -
-            b.damper_loss) /
+    return (b.drive_work + b.pull_work + b.guide_work + b.tire_work - (b.stored() - a.stored()) - b.damper_loss) /
            b.drive_work;
   };
   const double coarse = residuals(2e-3), fine = residuals(1e-3);

@@ -4,8 +4,8 @@
 usage: activity_rut.py [--radius 0.01] OUT.csv      after run_study.py activity.json
 
 One row per seed and strip of the bin along y: mean depth of the rut from 0.3 to 0.55 m behind the axle, both runs, m.
-On the screen, in grain radii: root mean square of the difference with and without sleep for each seed, of the difference
-between seeds without sleep as the yardstick, and of the difference of the profiles' means over the seeds.
+On the screen, in grain radii: root mean square of the difference with and without sleep for each seed, of the
+difference between seeds without sleep as the yardstick, and of the difference of the profiles' means over the seeds.
 """
 import argparse
 import itertools
@@ -46,7 +46,8 @@ def main():
         seed = on.name.split("_")[1]
         y, asleep = profile(on)
         _, awake = profile(off)
-        rows += [{"seed": seed, "y_m": f"{at:.4g}", "depth_activity_on_m": f"{a:.5g}", "depth_activity_off_m": f"{b:.5g}"}
+        rows += [{"seed": seed, "y_m": f"{at:.4g}", "depth_activity_on_m": f"{a:.5g}",
+                  "depth_activity_off_m": f"{b:.5g}"}
                  for at, a, b in zip(y, asleep, awake)]
         asleep_all.append(asleep / arguments.radius)
         awake_all.append(awake / arguments.radius)

@@ -3,12 +3,12 @@
 
 usage: budget.py [--only VARIANT ...] [--results DIR] [--table]
 
-Writes two tables beside the study: budget_runs.csv, a line a run, and budget.csv, a line a variant: mean over the beds, half
-of its 95 % interval (Student), and its difference from the reference. Variants of one soil have the soil's own reference,
-all others `base`. Where a variant runs on the very beds of its reference (it changes no key of the terrain but those that leave
-the bed alone) the difference is taken bed by bed, otherwise between the means (Welch). Finished runs are used again as long as
-this build of the program would make them from the same scenario. The tables are written when all variants are done; --table
-makes them of what there is.
+Writes two tables beside the study: budget_runs.csv, a line a run, and budget.csv, a line a variant: mean over the beds,
+half of its 95 % interval (Student), and its difference from the reference. Variants of one soil have the soil's own
+reference, all others `base`. Where a variant runs on the very beds of its reference (it changes no key of the terrain
+but those that leave the bed alone) the difference is taken bed by bed, otherwise between the means (Welch). Finished
+runs are used again as long as this build of the program would make them from the same scenario. The tables are written
+when all variants are done; --table makes them of what there is.
 """
 import argparse
 import json
@@ -25,10 +25,14 @@ sys.path.insert(0, str(ROOT / "scripts"))
 from plot.student import student  # noqa: E402
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
-COLUMNS = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.n_eff", "drawbar_pull_N.steady", "sinkage_m", "sinkage_sem_m",
-           "rut_depth_m", "tractive_effort_N", "terrain_resistance_N", "tire_deflection_m", "bed_clearance_m", "vertical_load_N",
-           "accounts.energy.turnover", "accounts.energy.residual_share", "accounts.energy.sample_error", "accounts.momentum.largest",
-           "accounts.momentum.residual_share", "grains", "active_share_mean", "scenario_digest", "state_hash", "settle_wall_s", "wall_s")
+COLUMNS = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.n_eff",
+           "drawbar_pull_N.steady", "sinkage_m", "sinkage_sem_m",
+           "rut_depth_m", "tractive_effort_N", "terrain_resistance_N",
+           "tire_deflection_m", "bed_clearance_m", "vertical_load_N",
+           "accounts.energy.turnover", "accounts.energy.residual_share",
+           "accounts.energy.sample_error", "accounts.momentum.largest",
+           "accounts.momentum.residual_share", "grains", "active_share_mean",
+           "scenario_digest", "state_hash", "settle_wall_s", "wall_s")
 FIGURES = {"pull_N": ("drawbar_pull_N.mean", 1.0), "sinkage_mm": ("sinkage_m", 1e3), "rut_mm": ("rut_depth_m", 1e3),
            "tractive_effort_N": ("tractive_effort_N", 1.0), "resistance_N": ("terrain_resistance_N", 1.0)}
 SAME_BED = {"terrain.substeps", "terrain.activity"}  # of the terrain's keys
@@ -41,7 +45,8 @@ def reference_of(variant):
 
 def same_beds(cases, variant):
     def bed(name):
-        return {key: value for key, value in cases[name]["set"].items() if key.startswith("terrain.") and key not in SAME_BED}
+        return {key: value for key, value in cases[name]["set"].items()
+                if key.startswith("terrain.") and key not in SAME_BED}
     return bed(variant) == bed(reference_of(variant))
 
 
@@ -61,7 +66,8 @@ def difference(these, those, paired):
         return mean, half
     if min(len(these), len(those)) < 2:
         return None, None
-    a, b = ((statistics.mean(v), statistics.variance(v) / len(v), len(v)) for v in (list(these.values()), list(those.values())))
+    a, b = ((statistics.mean(v), statistics.variance(v) / len(v), len(v))
+            for v in (list(these.values()), list(those.values())))
     error = a[1] + b[1]
     freedom = error**2 / (a[1]**2 / (a[2] - 1) + b[1]**2 / (b[2] - 1))  # Welch, Biometrika 34 (1947) 28
     return a[0] - b[0], student(max(1, math.floor(freedom))) * math.sqrt(error)
@@ -83,8 +89,10 @@ def line_of(study, found, variant):
     line = {"variant": variant, "beds": len(beds), "not_steady": steady.count(False),
             "reference": reference_of(variant), "paired": "yes" if paired else "no"}
     for name, (path, scale) in FIGURES.items():
-        values = {seed: scale * run_study.value_of(s, path) for seed, s in beds.items() if run_study.value_of(s, path) is not None}
-        those = {seed: scale * run_study.value_of(s, path) for seed, s in base.items() if run_study.value_of(s, path) is not None}
+        values = {seed: scale * run_study.value_of(s, path) for seed,
+                  s in beds.items() if run_study.value_of(s, path) is not None}
+        those = {seed: scale * run_study.value_of(s, path) for seed,
+                 s in base.items() if run_study.value_of(s, path) is not None}
         line[name], _, line[f"{name}_half_95"] = interval(list(values.values()))
         if variant != reference_of(variant):
             line[f"{name}_change"], line[f"{name}_change_half_95"] = difference(values, those, paired)
@@ -103,13 +111,15 @@ def write_tables(study, folders):
     columns = ["variant", "beds", "not_steady", "reference", "paired"]
     for name in FIGURES:
         columns += [name, f"{name}_half_95", f"{name}_change", f"{name}_change_half_95"]
-    provenance.write_table(STUDY.with_suffix(".csv"), columns, [line_of(study, found, variant) for variant in found], origin)
+    provenance.write_table(STUDY.with_suffix(".csv"), columns, [line_of(study, found, variant) for variant in found],
+                           origin)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", help="names of variants")
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / "budget", help="where the folders of runs are")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / "budget",
+                        help="where the folders of runs are")
     parser.add_argument("--table", action="store_true", help="run nothing")
     arguments = parser.parse_args()
     study = json.loads(STUDY.read_text())

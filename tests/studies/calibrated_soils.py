@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Grains calibrated to the strength of a soil: runs `furrow calibrate rigs/calibrate_SOIL.json` in results/studies, or continues
+"""Grains calibrated to the strength of a soil: runs `furrow calibrate rigs/calibrate_SOIL.json` in results/studies, or
+continues
 it, and writes the evaluations as calibrated_SOIL.csv beside this script and the fitted soil file into terrain/data.
 
 usage: calibrated_soils.py [lete_sand] [sandy_loam]
@@ -42,13 +43,15 @@ def main():
     for soil in soils:
         out = ROOT / "results" / "studies" / f"calibrated_{soil}"
         out.parent.mkdir(parents=True, exist_ok=True)
-        subprocess.run([provenance.program(), "calibrate", str(ROOT / "rigs" / f"calibrate_{soil}.json"), "--out", str(out)], check=True)
+        subprocess.run([provenance.program(), "calibrate", str(ROOT / "rigs" / f"calibrate_{soil}.json"),
+                        "--out", str(out)], check=True)
         result = provenance.read_json(out / "calibration.json")
         rows = evaluations(out, [target["name"] for target in result["targets"]])
         provenance.write_table(HERE / f"calibrated_{soil}.csv", list(rows[0]), rows, made)
         fitted = provenance.read_json(out / result["result"])
         fitted["measured"] = {"made": made, **fitted["measured"]}
-        (ROOT / "terrain" / "data" / result["result"]).write_text(json.dumps(fitted, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        (ROOT / "terrain" / "data" / result["result"]).write_text(json.dumps(fitted, indent=2, ensure_ascii=False)
+                                                                  + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -3,11 +3,11 @@
 
     /usr/bin/python3 tests/studies/cleat_ground.py
 
-The planar tire of cleat_roll.py rolls at 0.5 m/s and without friction over its cleat, 20 mm high and 25 mm long, with its axle
-held, on layers of 4e8 N/m³, the default, times FACTORS; the step becomes smaller as the layer becomes stiffer, and the layer's
-damper keeps its share of the critical one. Beside it is the press on the same profile at the same height of the axle, in which
-the ground does not give. Writes cleat_ground.csv beside this script: the ground's vertical force with the cleat's middle under
-the axle and 120 mm from there, and both over that of the press.
+The planar tire of cleat_roll.py rolls at 0.5 m/s and without friction over its cleat, 20 mm high and 25 mm long, with
+its axle held, on layers of 4e8 N/m³, the default, times FACTORS; the step becomes smaller as the layer becomes stiffer,
+and the layer's damper keeps its share of the critical one. Beside it is the press on the same profile at the same
+height of the axle, in which the ground does not give. Writes cleat_ground.csv beside this script: the ground's vertical
+force with the cleat's middle under the axle and 120 mm from there, and both over that of the press.
 """
 import math
 import pathlib
@@ -40,7 +40,8 @@ def main():
             # The press depends on the height at which the axle is held, and that a little on the layer.
             still = statically(slow.height, HEIGHTS[0], place)
             found = float(np.mean([np.interp(side * place, slow.way, slow.ground["z"]) for side in (-1.0, 1.0)]))
-            rows.append({"ground_stiffness_N_per_m3": f"{factor * LAYER:g}", "step_s": f"{step:g}", "place_mm": f"{1e3 * place:.0f}",
+            rows.append({"ground_stiffness_N_per_m3": f"{factor * LAYER:g}",
+                         "step_s": f"{step:g}", "place_mm": f"{1e3 * place:.0f}",
                          "run_N": f"{found:.0f}", "press_N": f"{still:.0f}", "beside": f"{found / still - 1.0:.4f}"})
             print(rows[-1], file=sys.stderr, flush=True)
     provenance.write_table(pathlib.Path(__file__).with_suffix(".csv"), list(rows[0]), rows, made)

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Side force, aligning moment and camber thrust on hard ground from the sweeps of rigs/study_slip_angle.json,
 study_camber.json and study_hard_slip.json, and what the runs of rolling.json add: relaxation length, mesh and
-friction checks. Writes cornering.csv (one line a run), cornering_figures.csv (what is derived) and cornering.png beside it.
+friction checks. Writes cornering.csv (one line a run), cornering_figures.csv (what is derived) and cornering.png beside
+it.
 
 The tire takes about half a metre to build up its side force, so that at small angles the means of the summaries are a
 few per cent short of the steady values. Those are taken from the series: F = F_end - B exp(-x/sigma), x the distance
@@ -9,8 +10,8 @@ travelled, fitted from 0.2 s on; the interval is the difference from a fit that 
 
     build/furrow sweep rigs/study_slip_angle.json --out results/study_slip_angle      (and the other two)
     /usr/bin/python3 tests/studies/run_study.py tests/studies/rolling.json
-    FURROW_ROLLING_MESH=60x12 FURROW_ROLLING_CSV=tests/studies/revolutions.csv build/tests_nodes_rolling --gtest_filter='*ten*'
-    /usr/bin/python3 tests/studies/cornering.py
+    FURROW_ROLLING_MESH=60x12 FURROW_ROLLING_CSV=tests/studies/revolutions.csv build/tests_nodes_rolling
+    --gtest_filter='*ten*' /usr/bin/python3 tests/studies/cornering.py
 """
 import argparse
 import json
@@ -33,7 +34,8 @@ import provenance  # noqa: E402
 from plot.student import student  # noqa: E402
 
 SWEEPS = {"study_slip_angle": "rig.toe_angle", "study_camber": "rig.camber_angle", "study_hard_slip": "rig.slip"}
-COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.force_N.2", "Fy_sem_N": "iso_w.force_sem_N.1",
+COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.force_N.2",
+           "Fy_sem_N": "iso_w.force_sem_N.1",
            "Mx_Nm": "iso_w.moment_Nm.0", "My_Nm": "iso_w.moment_Nm.1", "Mz_Nm": "iso_w.moment_Nm.2",
            "Mz_sem_Nm": "iso_w.moment_sem_Nm.2", "slip_angle_rad": "iso_w.slip_angle_rad",
            "camber_angle_rad": "iso_w.camber_angle_rad", "loaded_radius_m": "iso_w.loaded_radius_m",
@@ -74,7 +76,8 @@ def exponential(x, y):
 
 
 def steady(series, name, begin):
-    """Where a series is heading: least squares of end − B exp(−x/σ), x from the distance at `begin`; its last mean where
+    """Where a series is heading: least squares of end − B exp(−x/σ), x from the distance at `begin`; its last mean
+    where
     it has no more than 2 % of the range to go."""
     window = series["time_s"] > begin
     x, y = series["position_m"][window], series[name][window]
@@ -98,10 +101,12 @@ def sweep_rows():
             series = read_series(summary.with_name("timeseries.csv"))
             for name, source in FITTED:
                 first, second = steady(series, source, 0.2), steady(series, source, 0.28)
-                values[f"steady_{name}"], values[f"steady_interval_{name}"] = first["end"], abs(first["end"] - second["end"])
+                values[f"steady_{name}"], values[f"steady_interval_{name}"] = first["end"], abs(first["end"]
+                                                                                                - second["end"])
                 if name == "Fy_N":
                     values["sigma_m"] = first["sigma"]
-            values = {name: value if isinstance(value, bool) or value is None else f"{value:.6g}" for name, value in values.items()}
+            values = {name: value if isinstance(value, bool) or value is None else f"{value:.6g}" for name,
+                      value in values.items()}
             rows.append({"study": study.removeprefix("study_"), "tire": tire, "setting": setting, **values})
     return sorted(rows, key=lambda r: (r["study"], r["tire"], r["setting"]))
 
@@ -128,7 +133,8 @@ def column(rows, name):
 
 
 def relaxation(series, toe_time, toe_ramp, reach):
-    """σ of F = F_end − B exp(−s/σ), s the distance travelled since the middle of the step, fitted from CONTACT to `reach`.
+    """σ of F = F_end − B exp(−s/σ), s the distance travelled since the middle of the step, fitted from CONTACT to
+    `reach`.
     Until the wheel has rolled one contact length off, what the turn of the wheel twisted is still in contact."""
     middle = toe_time + 0.5 * toe_ramp
     time, position, force = series["time_s"], series["position_m"], series["iso_force_y_N"]
@@ -148,15 +154,18 @@ def figures(rows):
     out = []
 
     def add(tire, quantity, value, interval, unit, how):
-        out.append({"tire": tire, "quantity": quantity, "value": f"{value:.5g}", "interval": f"{interval:.2g}", "unit": unit, "how": how})
+        out.append({"tire": tire, "quantity": quantity, "value": f"{value:.5g}",
+                    "interval": f"{interval:.2g}", "unit": unit, "how": how})
 
     def chord(rows, angle, size, force):
-        """Mean of |force|/|angle| at ±size, with half the difference of the two sides and of the fits as its interval."""
+        """Mean of |force|/|angle| at ±size, with half the difference of the two sides and of the fits as its
+        interval."""
         these = [r for r in rows if abs(abs(float(r[angle])) - size) < 1e-4]
         values = [abs(float(r[f"steady_{force}"])) / size for r in these]
         if not values:
             return math.nan, math.nan
-        return np.mean(values), 0.5 * (max(values) - min(values)) + max(float(r[f"steady_interval_{force}"]) for r in these) / size
+        return np.mean(values), 0.5 * (max(values) - min(values)) + max(float(r[f"steady_interval_{force}"])
+                                                                        for r in these) / size
 
     for tire in ("layered", "lumped"):
         side, camber = select(rows, "slip_angle", tire), select(rows, "camber", tire)
@@ -166,10 +175,13 @@ def figures(rows):
             add(tire, f"cornering stiffness, {degrees:g} degrees", stiffness, error, "N/rad", "-Fy/alpha")
             add(tire, f"aligning stiffness, {degrees:g} degrees", aligning, aligning_error, "N m/rad", "Mz/alpha")
             trail = aligning / stiffness
-            add(tire, f"pneumatic trail, {degrees:g} degrees", trail, trail * math.hypot(error / stiffness, aligning_error / aligning), "m", "-Mz/Fy")
-        small = [float(r["sigma_m"]) for r in side if 1e-3 < abs(float(r["slip_angle_rad"])) < LINEAR and not math.isnan(float(r["sigma_m"]))]
+            add(tire, f"pneumatic trail, {degrees:g} degrees", trail,
+                trail * math.hypot(error / stiffness, aligning_error / aligning), "m", "-Mz/Fy")
+        small = [float(r["sigma_m"]) for r in side if 1e-3 < abs(float(r["slip_angle_rad"])) < LINEAR
+                 and not math.isnan(float(r["sigma_m"]))]
         if small:
-            add(tire, "relaxation length, start with a slip angle", np.mean(small), 0.5 * (max(small) - min(small)), "m",
+            add(tire, "relaxation length, start with a slip angle", np.mean(small),
+                0.5 * (max(small) - min(small)), "m",
                 f"fits of the side force of {len(small)} runs up to 1 degree")
         for size, degrees in ((0.04363, 2.5), (0.08727, 5.0)):
             stiffness, error = chord(camber, "camber_angle_rad", size, "Fy_N")
@@ -184,14 +196,18 @@ def figures(rows):
             fits = [relaxation(step, 0.3, 0.01, reach)["sigma"] for reach in (0.9, 1.1, 1.35)]
             add(tire, "relaxation length, step of 1 degree", np.mean(fits), 0.5 * (max(fits) - min(fits)), "m",
                 "fits from 0.12 m to 0.9, 1.1, 1.35 m; half the range")
-        for check, what in (("c_50", "friction scale 50 s/m"), ("half_shear_stiffness", "half the ground's shear stiffness"), ("40x12", "40 x 12 elements"), ("90x24", "90 x 24 elements"),
+        for check, what in (("c_50", "friction scale 50 s/m"),
+                            ("half_shear_stiffness", "half the ground's shear stiffness"),
+                            ("40x12", "40 x 12 elements"), ("90x24", "90 x 24 elements"),
                             ("180x48", "180 x 48 elements")):
             series = series_of(f"{tire}_toe_1_{check}")
             if series is not None and series["time_s"][-1] > 0.5:
-                (force, moment), (later, later_moment) = ([steady(series, source, begin)["end"] for _, source in FITTED] for begin in (0.2, 0.28))
+                (force, moment), (later, later_moment) = ([steady(series, source, begin)["end"] for _, source in FITTED]
+                                                          for begin in (0.2, 0.28))
                 add(tire, f"cornering stiffness, 1 degree, {what}", abs(force) / 0.01745, abs(force - later) / 0.01745,
                     "N/rad", "-Fy/alpha")
-                add(tire, f"pneumatic trail, 1 degree, {what}", -moment / force, abs(moment / force - later_moment / later), "m", "-Mz/Fy")
+                add(tire, f"pneumatic trail, 1 degree, {what}", -moment / force,
+                    abs(moment / force - later_moment / later), "m", "-Mz/Fy")
     return out
 
 
@@ -218,8 +234,10 @@ def draw(rows):
         side, camber, slip = (select(rows, study, tire) for study in ("slip_angle", "camber", "hard_slip"))
         angle = np.degrees(column(side, "slip_angle_rad")) if side else []
         if side:
-            axes[0, 0].errorbar(angle, column(side, "steady_Fy_N") / 1e3, 1e-3 * column(side, "steady_interval_Fy_N"), marker=marker, capsize=2, label=tire)
-            axes[0, 1].errorbar(angle, column(side, "steady_Mz_Nm"), column(side, "steady_interval_Mz_Nm"), marker=marker, capsize=2, label=tire)
+            axes[0, 0].errorbar(angle, column(side, "steady_Fy_N") / 1e3,
+                                1e-3 * column(side, "steady_interval_Fy_N"), marker=marker, capsize=2, label=tire)
+            axes[0, 1].errorbar(angle, column(side, "steady_Mz_Nm"), column(side, "steady_interval_Mz_Nm"),
+                                marker=marker, capsize=2, label=tire)
         if camber:
             axes[0, 2].errorbar(np.degrees(column(camber, "camber_angle_rad")), column(camber, "steady_Fy_N"),
                                 column(camber, "steady_interval_Fy_N"), marker=marker, capsize=2, label=tire)
@@ -233,9 +251,12 @@ def draw(rows):
             axes[1, 1].plot(s, fit["end"] - fit["size"] * np.exp(-s / fit["sigma"]), "--", color=line_.get_color())
         turns = energies(tire)
         if turns:
-            axes[1, 2].plot([k for k, _ in turns], [energy - turns[0][1] for _, energy in turns], marker=marker, label=tire)
-    for axis, x, y in ((axes[0, 0], "slip angle, degrees", "lateral force, kN"), (axes[0, 1], "slip angle, degrees", "aligning moment, N m"),
-                       (axes[0, 2], "camber angle, degrees", "lateral force, N"), (axes[1, 0], "slip (undeformed radius)", "longitudinal force, kN"),
+            axes[1, 2].plot([k for k, _ in turns], [energy - turns[0][1] for _, energy in turns],
+                            marker=marker, label=tire)
+    for axis, x, y in ((axes[0, 0], "slip angle, degrees", "lateral force, kN"),
+                       (axes[0, 1], "slip angle, degrees", "aligning moment, N m"),
+                       (axes[0, 2], "camber angle, degrees", "lateral force, N"),
+                       (axes[1, 0], "slip (undeformed radius)", "longitudinal force, kN"),
                        (axes[1, 1], "distance after a step of 1 degree, m", "lateral force, N"),
                        (axes[1, 2], "revolution at 8 m/s", "mean energy of tire less the first's, J")):
         axis.set(xlabel=x, ylabel=y)

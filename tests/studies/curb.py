@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""A planar tire over the curb of rigs/curb.json, as the wheel of a quarter car and with all the mass on its axle, beside a
-spring and a damper in its place, which know of the road only how high it is under the wheel's centre. Writes curb.csv (both
-over time), curb_figures.csv (what is derived) and curb.png beside this script.
+"""A planar tire over the curb of rigs/curb.json, as the wheel of a quarter car and with all the mass on its axle,
+beside a
+spring and a damper in its place, which know of the road only how high it is under the wheel's centre. Writes curb.csv
+(both over time), curb_figures.csv (what is derived) and curb.png beside this script.
 
-The linear model has the masses and the suspension of the run; its tire spring is the measured radial stiffness of the tire's
-source, its damper 0.13 of the critical damping of the quarter car's wheel. Heights count from rest on the flat before the curb.
+The linear model has the masses and the suspension of the run; its tire spring is the measured radial stiffness of the
+tire's source, its damper 0.13 of the critical damping of the quarter car's wheel. Heights count from rest on the flat
+before the curb.
 
     build/furrow run rigs/curb.json --out results/curb
     build/furrow run rigs/curb.json --set rig.speed=2 --set rig.unsprung_mass=1290 --set rig.body_mass=1 \
@@ -32,7 +34,8 @@ import provenance  # noqa: E402
 
 TIRE_SPRING, TIRE_DAMPER = 639782.0, 3e3  # N/m, N s/m
 GRAVITY = 9.80665
-REST = 0.5  # m before the edge, where the wheel is at rest on the flat: it has been let down, and does not feel the curb yet
+# m before the edge, where the wheel is at rest on the flat: it has been let down, and does not feel the curb yet
+REST = 0.5
 FELT = 0.02  # share of the load by which a force differs when it is felt
 AIR = 0.01  # share of the load below which a wheel is off the ground
 
@@ -73,7 +76,8 @@ def draw_wheel(axis, run, profile, edge):
     for k, rim in enumerate(shown):
         axis.plot(rim[:, 0] - edge, rim[:, 2], color=plt.cm.viridis(k / max(1, len(shown) - 1)), lw=1.2)
     axis.plot([-2.0, *(profile[:, 0] - edge), 2.0], [profile[0, 1], *profile[:, 1], profile[-1, 1]], color="0.3", lw=2)
-    axis.set(xlabel="from the edge, m", ylabel="height, m", xlim=(-1.75, 1.45), ylim=(-0.1, 1.6), aspect="equal", title="deformed tire")
+    axis.set(xlabel="from the edge, m", ylabel="height, m", xlim=(-1.75, 1.45),
+             ylim=(-0.1, 1.6), aspect="equal", title="deformed tire")
 
 
 def stretches(times, flags):
@@ -88,7 +92,8 @@ class Passage:
         scenario = json.loads((run / "scenario.json").read_text(encoding="utf-8"))
         series = np.genfromtxt(run / "timeseries.csv", delimiter=",", names=True)
         rig = scenario["rig"]
-        self.name, self.run, self.speed, self.profile = name, run, rig["speed"], np.array(scenario["terrain"]["profile"])
+        self.name, self.run, self.speed, self.profile = (name, run, rig["speed"],
+                                                         np.array(scenario["terrain"]["profile"]))
         self.edge, self.height = self.profile[1]
         self.time, self.x = series["time_s"], series["position_m"] - self.edge
         self.load = json.loads((run / "summary.json").read_text(encoding="utf-8"))["vertical_load_N"]
@@ -96,14 +101,17 @@ class Passage:
         self.axle = series["axle_height_m"] - series["axle_height_m"][before]
         self.body = series["body_height_m"] - series["body_height_m"][before]
         self.force, self.push = series["force_z_N"], series["force_x_N"]
-        self.simple = linear(self.time, lambda t: self.height if np.interp(t, self.time, self.x) > 0.0 else 0.0, rig["body_mass"],
-                             self.load / GRAVITY - rig["body_mass"], rig["suspension_stiffness"], rig["suspension_damping"])
+        self.simple = linear(self.time, lambda t: self.height if np.interp(t, self.time, self.x) > 0.0 else 0.0,
+                             rig["body_mass"],
+                             self.load / GRAVITY - rig["body_mass"], rig["suspension_stiffness"],
+                             rig["suspension_damping"])
         self.near = (self.x > -1.2) & (self.x < 3.0)
 
     def rows(self):
         for k in np.flatnonzero(self.near)[::2]:
-            yield [self.name, *(f"{value:.5g}" for value in (self.time[k], self.x[k], self.axle[k], self.body[k], self.force[k],
-                                                             *self.simple[k]))]
+            yield [self.name,
+                   *(f"{value:.5g}" for value in (self.time[k], self.x[k], self.axle[k], self.body[k], self.force[k],
+                                                  *self.simple[k]))]
 
     def figures(self):
         """(what, unit, planar tire, spring and damper)"""
@@ -114,39 +122,49 @@ class Passage:
             return -self.x[np.flatnonzero(after & (axle > FELT * self.height))[0]]
 
         return [("contact with the curb begins, before the edge", "m", -self.x[felt], 0.0),
-                ("the centre has risen 2 % of the curb, before the edge", "m", risen(self.axle), risen(self.simple[:, 0])),
-                ("height of the centre over the edge, of the curb's", "-", self.axle[over] / self.height, self.simple[over, 0] / self.height),
-                ("highest centre over the curb", "m", np.max(self.axle[after]) - self.height, np.max(self.simple[after, 0]) - self.height),
-                ("least force of the ground after the edge, of the load", "-", np.min(self.force[self.x > 0.0]) / self.load,
+                ("the centre has risen 2 % of the curb, before the edge",
+                 "m", risen(self.axle), risen(self.simple[:, 0])),
+                ("height of the centre over the edge, of the curb's", "-",
+                 self.axle[over] / self.height, self.simple[over, 0] / self.height),
+                ("highest centre over the curb", "m", np.max(self.axle[after]) - self.height,
+                 np.max(self.simple[after, 0]) - self.height),
+                ("least force of the ground after the edge, of the load",
+                 "-", np.min(self.force[self.x > 0.0]) / self.load,
                  np.min(self.simple[self.x > 0.0, 2]) / self.load),
                 ("time off the ground", "s", stretches(self.time[after], self.force[after] < AIR * self.load), None),
-                ("largest force of the ground, of the load", "-", np.max(self.force[after]) / self.load, np.max(self.simple[after, 2]) / self.load)]
+                ("largest force of the ground, of the load", "-", np.max(self.force[after]) / self.load,
+                 np.max(self.simple[after, 2]) / self.load)]
 
     def draw(self, height, force, wheel):
         draw_wheel(wheel, self.run, self.profile, self.edge)
-        for axis, mine, theirs, factor in ((height, self.axle, self.simple[:, 0], 1e3), (force, self.force, self.simple[:, 2], 1e-3)):
+        for axis, mine, theirs, factor in ((height, self.axle, self.simple[:, 0], 1e3),
+                                           (force, self.force, self.simple[:, 2], 1e-3)):
             axis.plot(self.time[self.near], factor * mine[self.near], color=style.SKY, label="planar finite elements")
-            axis.plot(self.time[self.near], factor * theirs[self.near], "--", color=style.ORANGE, label="spring and damper")
+            axis.plot(self.time[self.near], factor * theirs[self.near],
+                      "--", color=style.ORANGE, label="spring and damper")
             axis.axvline(np.interp(0.0, self.x, self.time), color="0.6", lw=0.8)
             axis.set_xlabel("time, s")
         lifted = self.near & (self.force < AIR * self.load)
         if lifted.any():
             height.plot(self.time[lifted], 1e3 * self.axle[lifted], ".", ms=3, color=style.BLUE, label="off the ground")
-        height.set(ylabel="height of the centre over rest, mm", title=f"{self.name}, {self.speed:g} m/s; grey: centre over the edge")
+        height.set(ylabel="height of the centre over rest, mm",
+                   title=f"{self.name}, {self.speed:g} m/s; grey: centre over the edge")
         force.set(ylabel="force of the ground, kN", title="vertical force")
         height.legend(fontsize=9)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results", help="folder of the runs curb and curb_axle")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results",
+                        help="folder of the runs curb and curb_axle")
     results = parser.parse_args().results
     passages = [Passage("quarter car", results / "curb"), Passage("mass on the axle", results / "curb_axle")]
     made = provenance.made_here(provenance.program())
     with open(HERE / "curb.csv", "w", newline="", encoding="utf-8") as file:
         provenance.write_header(file, made)
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("case", "time_s", "x_from_edge_m", "axle_m", "body_m", "ground_force_N", "simple_axle_m", "simple_body_m",
+        writer.writerow(("case", "time_s", "x_from_edge_m", "axle_m", "body_m",
+                         "ground_force_N", "simple_axle_m", "simple_body_m",
                          "simple_force_N"))
         for passage in passages:
             writer.writerows(passage.rows())
@@ -156,7 +174,8 @@ def main():
         writer.writerow(("case", "what", "unit", "planar_tire", "spring_and_damper"))
         for passage in passages:
             for what, unit, *values in passage.figures():
-                writer.writerow((passage.name, what, unit, *("" if value is None else f"{value:.4g}" for value in values)))
+                writer.writerow((passage.name, what, unit,
+                                 *("" if value is None else f"{value:.4g}" for value in values)))
     figure, grid = plt.subplots(len(passages), 3, figsize=(17, 9.6), layout="constrained", width_ratios=(1, 1, 1.4))
     for passage, row in zip(passages, grid):
         passage.draw(*row)

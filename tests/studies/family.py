@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""Three tires on three grounds: what runs, what it gives, and what a simulated second costs. Writes family.csv beside this script.
+"""Three tires on three grounds: what runs, what it gives, and what a simulated second costs. Writes family.csv beside
+this script.
 
 usage: family.py [--only TEST …] [--tires TIRE …] [--grounds GROUND …] [--seeds N] [--finished]
 
-Tests: plate and cleat (`furrow press`: secant stiffness under 4561.65 N; force 20 mm deep on a cleat 51 mm wide), drawbar (the
-rig of rigs/drawbar_pull_small.json at slip 0.3: pull and sinkage), curb (the wheel of a quarter car over a step of 30 mm at
-2 m/s: largest vertical force). A line is one figure of one tire on one ground. `beds` is the number of seeds of grains behind
-it, `standard_error` that of their mean; grounds without grains have one run. `cpu_s_per_s` is the processor time of all ranks
-for a simulated second, settled bed apart. `beside` is the line's value over that of the reference, less one: of the shell on
-plate, cleat and curb, of the shell on grains for the drawbar. A tire that does not run has a line that says why.
+Tests: plate and cleat (`furrow press`: secant stiffness under 4561.65 N; force 20 mm deep on a cleat 51 mm wide),
+drawbar (the rig of rigs/drawbar_pull_small.json at slip 0.3: pull and sinkage), curb (the wheel of a quarter car over a
+step of 30 mm at 2 m/s: largest vertical force). A line is one figure of one tire on one ground. `beds` is the number of
+seeds of grains behind it, `standard_error` that of their mean; grounds without grains have one run. `cpu_s_per_s` is
+the processor time of all ranks for a simulated second, settled bed apart. `beside` is the line's value over that of the
+reference, less one: of the shell on plate, cleat and curb, of the shell on grains for the drawbar. A tire that does not
+run has a line that says why.
 
 With --finished nothing is computed: the table holds the lines whose runs this build has made.
 """
@@ -31,11 +33,13 @@ OTHERS = ("planar",)  # not the tire of the shell's file: nothing stands beside 
 MESH = ["--set", "tire.elements_circumference=60", "--set", "tire.elements_width=12"]
 GROUNDS = ("rigid", "scm", "dem")
 TESTS = ("plate", "cleat", "drawbar", "curb")
-COLUMNS = ("test", "ground", "tire", "file", "figure", "value", "unit", "beds", "standard_error", "beside", "cpu_s_per_s", "why_not")
+COLUMNS = ("test", "ground", "tire", "file", "figure", "value", "unit",
+           "beds", "standard_error", "beside", "cpu_s_per_s", "why_not")
 WIDE = (1.4, 3.6)  # m: width and length of a bed for the planar tire, which is 1 m wide and rolls farther
 DEEP = 0.02  # m: the deflection on the cleat
 RIGS = {"rigid": "rigid_ground.json", "scm": "drawbar_pull_scm.json", "dem": "drawbar_pull_small.json"}
-CURB = ["--set", "terrain.profile=[[2, 0], [2.0001, 0.03]]", "--set", "rig.speed=2", "--set", "rig.body_mass=415", "--set",
+CURB = ["--set", "terrain.profile=[[2, 0], [2.0001, 0.03]]", "--set", "rig.speed=2",
+        "--set", "rig.body_mass=415", "--set",
         "rig.unsprung_mass=36", "--set", "rig.suspension_stiffness=80e3", "--set", "rig.suspension_damping=4e3",
         "--set", "run.end=1.6", "--set", "run.average_from=1.4", "--set", "output.frame_interval=0"]
 
@@ -44,13 +48,15 @@ def furrow(folder, *words):
     """Runs the program once for each build and words. @returns what it said last where it failed, or None"""
     record, told = read_json(folder / provenance.RECORD), list(map(str, words))
     if (record.get("build"), record.get("words")) != (provenance.build_of(provenance.program()), told):
-        done = subprocess.run([provenance.program(), *told, "--out", str(folder), "--overwrite"], stdout=subprocess.DEVNULL,
+        done = subprocess.run([provenance.program(), *told, "--out", str(folder), "--overwrite"],
+                              stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, text=True)
         print(f"{folder.name}: exit {done.returncode}", file=sys.stderr, flush=True)
         said = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines()[-1:]
         folder.mkdir(parents=True, exist_ok=True)
         provenance.record_run(folder)
-        record = read_json(folder / provenance.RECORD) | {"failed": said[0].strip() if done.returncode else "", "words": told}
+        record = read_json(folder / provenance.RECORD) | {"failed": said[0].strip() if done.returncode else "",
+                                                          "words": told}
         (folder / provenance.RECORD).write_text(json.dumps(record) + "\n", encoding="utf-8")
     return read_json(folder / provenance.RECORD)["failed"] or None
 
@@ -60,12 +66,14 @@ def table(file):
 
 
 def tire_words(tire):
-    return ["--set", f"tire.file={TIRES[tire]}", *(MESH if tire == "shell" else ["--set", "tire.contact_tangent=false"])]
+    return ["--set", f"tire.file={TIRES[tire]}",
+            *(MESH if tire == "shell" else ["--set", "tire.contact_tangent=false"])]
 
 
 def press(folder, obstacle, tire):
     cleat = ["--cleat-width", "0.051", "--cleat-height", "0.1"] if obstacle == "cleat" else []
-    return furrow(folder, "press", ROOT / "rigs" / "rigid_ground.json", *tire_words(tire), "--set", "tire.pressure=null", "--on", obstacle,
+    return furrow(folder, "press", ROOT / "rigs" / "rigid_ground.json",
+                  *tire_words(tire), "--set", "tire.pressure=null", "--on", obstacle,
                   "--deflection", DEEP, "--points", 8, *cleat)
 
 
@@ -81,8 +89,10 @@ def press_figures(folder, obstacle):
 def drawbar(folder, ground, tire, seed):
     more = ["--set", "rig.slip=0.3", "--set", "rig.angular_speed=4.28"] if ground == "rigid" else []
     if tire == "planar" and ground != "rigid":
-        more = ["--set", f"terrain.width={WIDE[0]}", "--set", f"terrain.length={WIDE[1]}", "--set", "run.step=6e-5"]  # explicit: not 5e-4 s
-    return furrow(folder, "run", ROOT / "rigs" / RIGS[ground], *tire_words(tire), "--set", "tire.pressure=null", "--set", f"run.seed={seed}",
+        # explicit: not 5e-4 s
+        more = ["--set", f"terrain.width={WIDE[0]}", "--set", f"terrain.length={WIDE[1]}", "--set", "run.step=6e-5"]
+    return furrow(folder, "run", ROOT / "rigs" / RIGS[ground], *tire_words(tire),
+                  "--set", "tire.pressure=null", "--set", f"run.seed={seed}",
                   "--set", "output.frame_interval=0", *more, "--no-plots")
 
 
@@ -135,7 +145,8 @@ def runs_of(test, ground, tire, arguments):
 
 
 def figures_of(test, folder):
-    return press_figures(folder, test) if test in ("plate", "cleat") else drawbar_figures(folder) if test == "drawbar" else curb_figures(folder)
+    return press_figures(folder, test) if test in ("plate",
+                                                   "cleat") else drawbar_figures(folder) if test == "drawbar" else curb_figures(folder)
 
 
 def lines(arguments):
@@ -153,11 +164,14 @@ def lines(arguments):
             for name, value, unit in figures_of(test, folder):
                 by_figure.setdefault((name, unit), []).append(value)
         for (name, unit), values in by_figure.items():
-            rows.append(row | {"figure": name, "unit": unit, "value": statistics.mean(values), "beds": len(values) if ground == "dem" else "",
-                               "standard_error": f"{statistics.stdev(values) / len(values) ** 0.5:.3g}" if len(values) > 1 else "",
+            rows.append(row | {"figure": name, "unit": unit, "value": statistics.mean(values),
+                               "beds": len(values) if ground == "dem" else "",
+                               "standard_error": f"{statistics.stdev(values) / len(values) ** 0.5:.3g}"
+                               if len(values) > 1 else "",
                                "cpu_s_per_s": f"{statistics.mean(costs):.3g}" if costs else ""})
     reference = {(r["test"], r["figure"]): r["value"] for r in rows
-                 if "figure" in r and r["tire"] == "shell" and r["ground"] == ("dem" if r["test"] == "drawbar" else "rigid")}
+                 if "figure" in r and r["tire"] == "shell" and r["ground"]
+                 == ("dem" if r["test"] == "drawbar" else "rigid")}
     for row in rows:
         if "figure" not in row:
             continue

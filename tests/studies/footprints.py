@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Static footprints and load–deflection curves of the layered and the lumped tire from folders of `furrow press`:
-footprints.csv (one line a case), footprints_curves.csv, footprints_pressure.csv (pressure maps) and footprints.png beside it.
+footprints.csv (one line a case), footprints_curves.csv, footprints_pressure.csv (pressure maps) and footprints.png
+beside it.
 
 usage: footprints.py [--run]     --run presses first what this build of the program has not pressed yet (see CASES)
 """
@@ -23,8 +24,10 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import plot.style  # noqa: E402, F401  the look of all plots
 import provenance  # noqa: E402
 
-KEYS = ("obstacle", "inflation_growth_m", "runout_m", "load_N", "deflection_m", "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
-        "loading_unloading_difference", "max_residual", "creep_steps", "failed_factorizations", "statically_stable", "wall_s")
+KEYS = ("obstacle", "inflation_growth_m", "runout_m", "load_N", "deflection_m",
+        "secant_stiffness_N_per_m", "tangent_stiffness_N_per_m",
+        "loading_unloading_difference", "max_residual", "creep_steps",
+        "failed_factorizations", "statically_stable", "wall_s")
 FOOT = ("deflection_m", "force_N", "length_m", "width_m", "area_m2", "mean_pressure_Pa", "max_pressure_Pa")
 
 PLATE, FINE = ("--deflection", "0.015", "--points", "5"), ("--deflection", "0.0135", "--points", "9")
@@ -49,8 +52,10 @@ def press(name, words):
         return
     around, across = mesh.split("x")
     subprocess.run([provenance.program(), "press", str(ROOT / "rigs" / "rigid_ground.json"),
-                    "--set", f"tire.file=hmmwv_{tire.split('-')[0]}.json", "--set", f"tire.elements_circumference={around}",
-                    "--set", f"tire.elements_width={across}", "--on", obstacle, "--out", str(folder), "--overwrite", *words], check=True)
+                    "--set", f"tire.file=hmmwv_{tire.split('-')[0]}.json",
+                    "--set", f"tire.elements_circumference={around}",
+                    "--set", f"tire.elements_width={across}", "--on", obstacle,
+                    "--out", str(folder), "--overwrite", *words], check=True)
     provenance.record_run(folder)
 
 
@@ -81,7 +86,8 @@ def draw_footprint(axis, name, s):
     plt.colorbar(points, label="kPa", ax=axis, shrink=0.7)
     axis.set_aspect("equal")
     axis.set(xlabel="across, mm", ylabel="along, mm", xlim=(-115, 115), ylim=(-85, 85))
-    axis.set_title(f"{label(name)}, {1e-3 * s['force_N']:.2f} kN\n{1e3 * s['length_m']:.0f} × {1e3 * s['width_m']:.0f} mm, "
+    axis.set_title(f"{label(name)}, {1e-3 * s['force_N']:.2f} kN\n{1e3 * s['length_m']:.0f} × {1e3 * s['width_m']:.0f} "
+                   f"mm, "
                    f"mean {1e-3 * s['mean_pressure_Pa']:.0f} kPa", fontsize=10)
 
 

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Runs the shipped files and keeps what the gallery shows of each: pictures (scripts/docs/pictures/) and gallery.csv, with the
+"""Runs the shipped files and keeps what the gallery shows of each: pictures (scripts/docs/pictures/) and gallery.csv,
+with the
 figures that the program found, the processor time of all ranks and the wall time.
 
 usage: gallery.py [NAME...]     (needs Debian's python3-pil; FURROW names another program than build/furrow)
 
-NAME is one of CASES without its ending. Without names all are made. A case that this program has made is not run again. The
-rows of other cases stay as they are: the column commit says which program made each row.
+NAME is one of CASES without its ending. Without names all are made. A case that this program has made is not run again.
+The rows of other cases stay as they are: the column commit says which program made each row.
 """
 import json
 import pathlib
@@ -25,7 +26,8 @@ COLUMNS = ("case", "processor_s", "wall_s", "figure", "value", "commit")
 WIDTH, MOST_BYTES = 800, 100_000  # of a picture: pixels, bytes
 TIMES = "time.json"  # in a folder of results: what it took
 
-PULL = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "vertical_load_N", "sinkage_m", "rut_depth_m")
+PULL = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady",
+        "vertical_load_N", "sinkage_m", "rut_depth_m")
 VEHICLE = ("vehicle.distance_m", "vehicle.mean_speed_m_s", "figures.gear_changes", "end_reason", "end_time_s")
 # Simulated time of the two scenarios at full size, which take hours to a steady pull.
 START = ("--set", "run.end=0.5", "--set", "run.average_from=0.4")
@@ -42,8 +44,10 @@ CASES = {
     "rough_road": ("run", "ride", ()),
     "half_car": ("run", "ride", ()),
     "cleat_roll": ("run", "forces", ("vertical_load_N",)),
-    "cleat_press": ("press", "load_deflection", ("load_N", "deflection_m", "secant_stiffness_N_per_m", "footprint.length_m", "footprint.width_m")),
-    "four_wheels": ("run", None,  # its scene.png shows one wheel; the picture is the playback of its page (report_pictures.py)
+    "cleat_press": ("press", "load_deflection",
+                    ("load_N", "deflection_m", "secant_stiffness_N_per_m", "footprint.length_m", "footprint.width_m")),
+    # its scene.png shows one wheel; the picture is the playback of its page (report_pictures.py)
+    "four_wheels": ("run", None,
                     ("wheels.0.sinkage_m", "wheels.1.sinkage_m", "wheels.2.sinkage_m", "wheels.3.sinkage_m")),
     "hmmwv_turn": ("run", "scene", VEHICLE),
     "rover_small": ("run", "scene", VEHICLE),
@@ -70,7 +74,8 @@ def made(name):
     RESULTS.mkdir(parents=True, exist_ok=True)
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     later = [] if command == "press" else ["--no-plots"]
-    subprocess.run([provenance.program(), command, f"{name}.json", *options, "--out", folder, "--overwrite", "--quiet", *later], check=True,
+    subprocess.run([provenance.program(), command, f"{name}.json", *options,
+                    "--out", folder, "--overwrite", "--quiet", *later], check=True,
                    stdout=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -95,8 +100,10 @@ def figures_of(folder, keys):
     fitted = provenance.read_json(folder / "calibration.json")
     found = [(f"{name} fitted", entry["value"]) for name, entry in fitted.get("parameters", {}).items()]
     for what, key in (("fitted", "targets"), ("predicted", "held_out_targets")):
-        found += [(f"{what} {entry['name']}: R²", entry["r_squared"]) for entry in fitted.get(key, []) if entry.get("r_squared") is not None]
-        found += [(f"{what} {entry['name']}", entry["figures"][0]["surrogate"]["value"]) for entry in fitted.get(key, [])
+        found += [(f"{what} {entry['name']}: R²", entry["r_squared"])
+                  for entry in fitted.get(key, []) if entry.get("r_squared") is not None]
+        found += [(f"{what} {entry['name']}", entry["figures"][0]["surrogate"]["value"])
+                  for entry in fitted.get(key, [])
                   if entry["points"] == 1 and "surrogate" in entry["figures"][0]]
     summary = provenance.read_json(folder / "summary.json")
     return found + [(key, value_of(summary, key)) for key in keys]
@@ -120,7 +127,8 @@ def picture_of(folder, name, plot):
 def rows_of(name, folder):
     times = provenance.read_json(folder / TIMES)
     rows = figures_of(folder, CASES[name][2]) or [("", "")]
-    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"], "figure": figure, "value": value,
+    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"],
+             "figure": figure, "value": value,
              "commit": times["commit"]} for figure, value in rows]
 
 
@@ -133,8 +141,10 @@ def kept_rows(name):
 
 def origin(rows):
     """Of the table."""
-    return {"commit": ", ".join(sorted({row["commit"] for row in rows})), "compiler": provenance.compiler_of(provenance.program()),
-            "processor": provenance.processor(), "command": "gallery.py", "note": "wall times of a machine that ran other programs too"}
+    return {"commit": ", ".join(sorted({row["commit"] for row in rows})),
+            "compiler": provenance.compiler_of(provenance.program()),
+            "processor": provenance.processor(), "command": "gallery.py",
+            "note": "wall times of a machine that ran other programs too"}
 
 
 def main():

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""The tables that handling tires are fitted to (`furrow calibrate rigs/calibrate_handling.json`), in the layout of sweep.csv, in tire/data:
+"""The tables that handling tires are fitted to (`furrow calibrate rigs/calibrate_handling.json`), in the layout of
+sweep.csv, in tire/data:
 
 sweep_lumped.csv      the finished runs of rigs/study_handling.json, in results/study_handling or the folder given
-cornering_lumped.csv  the lumped tire's rows of cornering.csv, with the steady side force and aligning moment of that table
+cornering_lumped.csv  the lumped tire's rows of cornering.csv, with the steady side force and aligning moment of that
+table
 
     build/furrow sweep rigs/study_handling.json --jobs 2
     /usr/bin/python3 tests/studies/handling.py [FOLDER] [--commit COMMIT]
@@ -17,7 +19,8 @@ import pathlib
 import provenance
 
 HERE = pathlib.Path(__file__).resolve().parent
-RESULTS = {"iso_w.force_N.0": "Fx_N", "iso_w.force_N.1": "steady_Fy_N", "iso_w.force_N.2": "Fz_N", "iso_w.moment_Nm.0": "Mx_Nm",
+RESULTS = {"iso_w.force_N.0": "Fx_N", "iso_w.force_N.1": "steady_Fy_N",
+           "iso_w.force_N.2": "Fz_N", "iso_w.moment_Nm.0": "Mx_Nm",
            "iso_w.moment_Nm.1": "My_Nm", "iso_w.moment_Nm.2": "steady_Mz_Nm", "iso_w.slip_angle_rad": "slip_angle_rad",
            "iso_w.camber_angle_rad": "camber_angle_rad", "iso_w.loaded_radius_m": "loaded_radius_m",
            "effective_rolling_radius_m": "effective_rolling_radius_m"}
@@ -36,7 +39,8 @@ def short(value):
 
 def write(name, rows, made):
     rows.sort(key=lambda row: tuple(row.values()))
-    provenance.write_table(provenance.ROOT / "tire/data" / name, list(rows[0]), [{key: short(value) for key, value in row.items()} for row in rows], made)
+    provenance.write_table(provenance.ROOT / "tire/data" / name, list(rows[0]),
+                           [{key: short(value) for key, value in row.items()} for row in rows], made)
 
 
 def sweep(folder, commit):
@@ -45,7 +49,8 @@ def sweep(folder, commit):
     for run in runs:
         if not (run / provenance.RECORD).exists():
             provenance.record_run(run, commit)
-        summary, scenario = (json.loads((run / name).read_text(encoding="utf-8")) for name in ("summary.json", "scenario.json"))
+        summary, scenario = (json.loads((run / name).read_text(encoding="utf-8"))
+                             for name in ("summary.json", "scenario.json"))
         row = {key: value_of(scenario, key) for key in KEYS}
         row = {key: float(value) if not isinstance(value, str) else value for key, value in row.items()}
         rows.append(row | {name: float(value_of(summary, name)) for name in RESULTS})

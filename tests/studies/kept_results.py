@@ -7,7 +7,8 @@ import provenance
 
 def furrow(*arguments):
     """What the program prints."""
-    return subprocess.run([provenance.program(), *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+    return subprocess.run([provenance.program(), *map(str, arguments)],
+                          check=True, capture_output=True, text=True).stdout
 
 
 class KeptResults:

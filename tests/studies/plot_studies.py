@@ -42,7 +42,8 @@ def step_size():
     for (law, points), marker in zip(lines.items(), "os^"):
         step, pull, bar = zip(*sorted(points))
         axes.errorbar(step, pull, bar, marker=marker, capsize=3, label=names[law])
-    axes.set(xscale="log", xlabel="step in µs", ylabel="drawbar pull in N", title="Rigid wheel, slip 0.3, bed of 10 mm grains")
+    axes.set(xscale="log", xlabel="step in µs", ylabel="drawbar pull in N",
+             title="Rigid wheel, slip 0.3, bed of 10 mm grains")
     axes.set_xticks([15, 30, 60], ["15", "30", "60"])
     axes.minorticks_off()
     axes.axhline(0.0, color="0.8", zorder=0)
@@ -52,7 +53,8 @@ def step_size():
 
 
 def tire_step():
-    """Drawbar pull, and energy lost or gained at the interface, over the communication step, one line per damping time."""
+    """Drawbar pull, and energy lost or gained at the interface, over the communication step, one line per damping
+    time."""
     lines, all_points = {}, []
     for row in table("tire_step"):
         found = re.fullmatch(r"tau_([\d.]+)ms_step_([\de-]+)_seed_(\d+)", row["case"])
@@ -70,7 +72,8 @@ def tire_step():
         pull.errorbar(step, mean, bar, marker=markers[tau], capsize=3, label=label)
         error.plot(step, share, marker=markers[tau], label=label)
     pull.set(xlabel="step in µs", ylabel="drawbar pull in N", title="Small rig, slip 0.3, 4.6 kN")
-    error.set(xlabel="step in µs", ylabel="Σ|energy error| / spindle work in %", yscale="log", title="Interface of tire and soil")
+    error.set(xlabel="step in µs", ylabel="Σ|energy error| / spindle work in %",
+              yscale="log", title="Interface of tire and soil")
     for axes in (pull, error):
         axes.set(xscale="log")
         axes.set_xticks([40, 100, 200, 400], ["40", "100", "200", "400"])
@@ -103,7 +106,8 @@ def rigid_ground():
 
 
 def budget():
-    """What every variant of the small rig changes in pull and sinkage, of those of its reference, with 95 % intervals over beds."""
+    """What every variant of the small rig changes in pull and sinkage, of those of its reference, with 95 % intervals
+    over beds."""
     rows = table("budget")
     mean = {row["variant"]: row for row in rows}
     rows = [row for row in rows if row["variant"] != row["reference"]][::-1]

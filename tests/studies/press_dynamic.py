@@ -1,17 +1,18 @@
 #!/usr/bin/python3
-"""The static press beside the tire in motion: both shell tires are lowered slowly onto hard ground by a damper and stand there
+"""The static press beside the tire in motion: both shell tires are lowered slowly onto hard ground by a damper and
+stand there
 until they rest; nothing of `furrow press` takes part. Writes press_dynamic.csv beside this script.
 
 usage: press_dynamic.py [--meshes 60x12 …] [--only TIRE …] [--finished]
 
 With --finished nothing is computed: the table holds the lines whose runs this build has made.
 
-A line is one tire, pressure, mesh and load. Dynamic: the axle's height at the end of a run under that load, without friction,
-on ground of the stiffness (pressure per depth) of the plate of the press; the deflection is counted from the height at which
-the inflated tire would touch, radius and growth by inflation. `rest_N` is the mean force of the ground over the last 10 ms
-less the load, `moved_um` how far the axle moved in that time. `half_speed_mm` is the deflection when the tire is lowered half
-as fast, less the other. Static: deflection of `furrow press --load` on the same mesh. `force_error` is the static force at
-the dynamic deflection over the load, less one.
+A line is one tire, pressure, mesh and load. Dynamic: the axle's height at the end of a run under that load, without
+friction, on ground of the stiffness (pressure per depth) of the plate of the press; the deflection is counted from the
+height at which the inflated tire would touch, radius and growth by inflation. `rest_N` is the mean force of the ground
+over the last 10 ms less the load, `moved_um` how far the axle moved in that time. `half_speed_mm` is the deflection
+when the tire is lowered half as fast, less the other. Static: deflection of `furrow press --load` on the same mesh.
+`force_error` is the static force at the dynamic deflection over the load, less one.
 """
 import argparse
 import csv
@@ -44,7 +45,8 @@ def scenario(tire, pressure, mesh, load, speed):
     return {
         "format_version": 1,
         "rig": {"type": "drawbar", "load": load, "slip": 0, "move_from": 2 * end, "lowering_speed": speed},
-        "tire": {"file": tire, "rigid": False, "pressure": pressure, "elements_circumference": around, "elements_width": across},
+        "tire": {"file": tire, "rigid": False, "pressure": pressure, "elements_circumference": around,
+                 "elements_width": across},
         "terrain": {"engine": "rigid", "ground_stiffness": STIFFNESS, "friction": 0},
         "run": {"step": STEP, "end": end, "average_from": 0.8 * end},
         "output": {"series_interval": 2e-3, "frame_interval": 0},
@@ -87,9 +89,11 @@ def pressed(tire, pressure, mesh, load):
     """The summary of the press and its curve (deflection, m; force, N)."""
     name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_press"
     made = scenario(tire, pressure, mesh, load, SPEED)
-    folder = folder_of(name, made, "press", "--load", load, "--deflection", 0.016 if pressure > 1e5 else 0.02, "--points", 16)
+    folder = folder_of(name, made, "press", "--load", load, "--deflection",
+                       0.016 if pressure > 1e5 else 0.02, "--points", 16)
     with open(folder / "press.csv", newline="") as file:
-        curve = [(float(line["deflection_m"]), float(line["force_N"])) for line in csv.DictReader(file) if line["unloading"] == "0"]
+        curve = [(float(line["deflection_m"]), float(line["force_N"]))
+                 for line in csv.DictReader(file) if line["unloading"] == "0"]
     summary = json.loads((folder / "summary.json").read_text())
     radius = json.loads((ROOT / "tire" / "data" / tire).read_text())["radius"]
     return summary, np.array(curve), radius + summary["inflation_growth_m"]
@@ -115,11 +119,14 @@ def main():
                     except Unfinished:
                         continue
                     dynamic = touching - height
-                    row = {"tire": tire, "pressure_kPa": pressure / 1e3, "mesh": mesh, "load_N": load, "rest_N": f"{rest:.2g}",
+                    row = {"tire": tire, "pressure_kPa": pressure / 1e3,
+                           "mesh": mesh, "load_N": load, "rest_N": f"{rest:.2g}",
                            "moved_um": f"{1e6 * moved:.2g}",
                            "dynamic_mm": f"{1e3 * dynamic:.4g}", "static_mm": f"{1e3 * summary['deflection_m']:.4g}",
-                           "force_error": f"{np.interp(dynamic, curve[:, 0], curve[:, 1]) / load - 1:.4f}", "half_speed_mm": "",
-                           "failed_factorizations": summary["failed_factorizations"], "statically_stable": summary["statically_stable"],
+                           "force_error": f"{np.interp(dynamic, curve[:, 0], curve[:, 1]) / load - 1:.4f}",
+                           "half_speed_mm": "",
+                           "failed_factorizations": summary["failed_factorizations"],
+                           "statically_stable": summary["statically_stable"],
                            "runout_mm": f"{1e3 * summary['runout_m']:.3g}",
                            "loading_unloading": f"{summary['loading_unloading_difference']:.2g}"}
                     if mesh == MESHES[0] and load == loads[-1]:

@@ -1,12 +1,13 @@
-"""Where the numbers of a table come from: a committed CSV file begins with comment lines that name the program, its compiler,
+"""Where the numbers of a table come from: a committed CSV file begins with comment lines that name the program, its
+compiler,
 the processor and the command that makes the table anew. Readers of these tables skip them: read_table().
 
     # commit: 1a2b3c4d
     # compiler: g++ 12.2.0
     # processor: AMD EPYC 7763 64-Core Processor
     # command: run_study.py behaviour.json
-    # made before: ffb94a1, what sleeps follows the load          (only where the program of today would give other bits)
-    # note: what else has to be known
+    # made before: ffb94a1, what sleeps follows the load          (only where the program of today would give other
+    bits) # note: what else has to be known
 
 A committed JSON file of results has an object `made` with the same keys. scripts/check_docs.py checks both.
 """
@@ -57,8 +58,10 @@ def compiler_of(file):
     for folder in pathlib.Path(file).resolve().parents:
         cache = folder / "CMakeCache.txt"
         if cache.exists():
-            found = next(line.split("=", 1)[1] for line in cache.read_text().splitlines() if line.startswith("CMAKE_CXX_COMPILER:"))
-            version = subprocess.run([found, "-dumpfullversion", "-dumpversion"], capture_output=True, text=True, check=True)
+            found = next(line.split("=", 1)[1] for line in cache.read_text().splitlines()
+                         if line.startswith("CMAKE_CXX_COMPILER:"))
+            version = subprocess.run([found, "-dumpfullversion", "-dumpversion"],
+                                     capture_output=True, text=True, check=True)
             return f"{pathlib.Path(found).name} {version.stdout.strip()}".replace("c++ ", "g++ ")
     sys.exit(f"{file}: lies in no build folder of CMake, expected one: a table names the compiler of its program")
 
@@ -84,7 +87,8 @@ def read_json(path):
 
 
 def record_run(folder, made_at=None):
-    """Notes in the folder of a run which program has made it, just now. `made_at`: the commit, of the present files if None; a
+    """Notes in the folder of a run which program has made it, just now. `made_at`: the commit, of the present files if
+    None; a
     script that writes its table between runs names the one at its start, for its table makes the checkout dirty."""
     record = {"build": build_of(program()), "commit": made_at or commit()}
     if "compiler" not in read_json(folder / "summary.json"):  # of `furrow press`
@@ -104,14 +108,16 @@ def origin_of_runs(folders):
         for folder, value in zip(folders, values):
             groups.setdefault(value, []).append(folder.name)
         if None in groups:
-            sys.exit(f"{groups[None][0]}: names no {what}, expected the {RECORD} and summary.json of a run by the scripts here")
+            sys.exit(f"{groups[None][0]}: names no {what}, expected the {RECORD} and summary.json of a run by the "
+                     f"scripts here")
         if len(groups) > 1:
             told = "; ".join(f"{value}: {', '.join(names)}" for value, names in groups.items())
             sys.exit(f"a table holds runs of one {what}, these are of {len(groups)}: {told}")
         return next(iter(groups))
 
     one("build of the program", [record.get("build") for record in records])
-    return {"commit": ", ".join(sorted({record["commit"] for record in records})),  # one build, whatever else was committed
+    # one build, whatever else was committed
+    return {"commit": ", ".join(sorted({record["commit"] for record in records})),
             "compiler": one("compiler", [summary.get("compiler") for summary in summaries]),
             "processor": one("processor", [summary.get("cpu") for summary in summaries]),
             "command": command()}

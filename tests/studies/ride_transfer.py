@@ -1,19 +1,20 @@
 #!/usr/bin/python3
-"""Quarter car and half car on a road of random heights beside the closed forms of vehicle/analysis/quarter_car.hpp and half_car.hpp on
-the very same heights. Writes ride_transfer.csv (transfer functions), ride_transfer_figures.csv (errors) and ride_transfer.png
-beside this script.
+"""Quarter car and half car on a road of random heights beside the closed forms of vehicle/analysis/quarter_car.hpp and
+half_car.hpp on
+the very same heights. Writes ride_transfer.csv (transfer functions), ride_transfer_figures.csv (errors) and
+ride_transfer.png beside this script.
 
 usage: ride_transfer.py [--finished]
 
 With --finished nothing is computed but what is derived of runs that are there.
 
-The road has the density of class B of ISO 8608, waves from 0.35 to 30 m, corners every 50 mm. The tire is the planar one of
-rigs/rough_road.json, once held rigid (`tire.rigid`) and once as it is. The linear model of the rigid wheel has no value that is
-fitted: on ground of the stiffness κ and damping d per area, with the radius R and the width b,
+The road has the density of class B of ISO 8608, waves from 0.35 to 30 m, corners every 50 mm. The tire is the planar
+one of rigs/rough_road.json, once held rigid (`tire.rigid`) and once as it is. The linear model of the rigid wheel has
+no value that is fitted: on ground of the stiffness κ and damping d per area, with the radius R and the width b,
     F = (4/3) κ b √(2R) δ^1.5,   k_t = 3 F/(2 δ),   c_t = d b 2a,   a = √(2 R δ),
-and its road is the mean height over the contact patch, from −a to a: each point of the patch bears κ times its depth. The model
-of the elastic tire has its static stiffness at the load (`furrow press` on a plate) and the damper of curb.py; its road is taken under the
-centre, and as the mean over the static footprint.
+and its road is the mean height over the contact patch, from −a to a: each point of the patch bears κ times its depth.
+The model of the elastic tire has its static stiffness at the load (`furrow press` on a plate) and the damper of
+curb.py; its road is taken under the centre, and as the mean over the static footprint.
 
 Two ways lead from (1) of the closed form to the body's acceleration: the heights' Fourier transform times the transfer
 function, and integration in time (Runge and Kutta). Errors are the rms difference of run and model over the rms of the
@@ -47,7 +48,8 @@ SPEED, ROAD_FROM, ROAD_LENGTH, SPACING = 10.0, 8.0, 60.0, 0.05  # m/s, m
 END = (ROAD_FROM + ROAD_LENGTH + 3.3 + 4.0) / SPEED  # s
 BODY, UNSPRUNG, RIM, SUSPENSION, DAMPER = 1290.0, 1.0, 150.0, 115e3, 7.5e3  # of a quarter: kg, N/m, N s/m
 WHEELBASE, PITCH_INERTIA = 3.3, 4200.0  # m, kg m²
-RADIUS, WIDTH, STIFFNESS, DAMPING = 0.522, 1.0, 2e7, 1e4  # of tire and the ground under the rigid wheel: m, N/m³, N s/m³
+# of tire and the ground under the rigid wheel: m, N/m³, N s/m³
+RADIUS, WIDTH, STIFFNESS, DAMPING = 0.522, 1.0, 2e7, 1e4
 TIRE_DAMPER = 3e3  # N s/m, of the elastic tire
 BAND = 20.0  # Hz
 SETTLED = 1.5  # s on the road, by when the body has forgotten that it was let down
@@ -66,16 +68,20 @@ def road():
 
 
 def scenario(kind, rigid):
-    rig = {"type": kind, "speed": SPEED, "ramp": 0, "touchdown_time": 0.45, "suspension_stiffness": SUSPENSION, "suspension_damping": DAMPER,
+    rig = {"type": kind, "speed": SPEED, "ramp": 0, "touchdown_time": 0.45,
+           "suspension_stiffness": SUSPENSION, "suspension_damping": DAMPER,
            "unsprung_mass": UNSPRUNG, "rim_mass": RIM}
-    rig |= {"body_mass": BODY} if kind == "quarter_car" else {"body_mass": 2 * BODY, "wheelbase": WHEELBASE, "pitch_inertia": PITCH_INERTIA}
+    rig |= {"body_mass": BODY} if kind == "quarter_car" else {"body_mass": 2 * BODY,
+                                                              "wheelbase": WHEELBASE, "pitch_inertia": PITCH_INERTIA}
     tire = {"file": "aligator_planar.json", "rigid": rigid}
     if rigid:
         tire |= {"elements_circumference": 240}
     return {
         "format_version": 1, "rig": rig, "tire": tire,
-        "terrain": {"engine": "rigid", "friction": 0.8, "friction_velocity_scale": 20, "profile_file": str(RESULTS / "road.csv"),
-                    "ground_stiffness": STIFFNESS if rigid else 1e8, "ground_shear_stiffness": 5e6 if rigid else 2.5e7, "ground_damping": DAMPING},
+        "terrain": {"engine": "rigid", "friction": 0.8, "friction_velocity_scale": 20,
+                    "profile_file": str(RESULTS / "road.csv"),
+                    "ground_stiffness": STIFFNESS if rigid else 1e8, "ground_shear_stiffness": 5e6 if rigid else 2.5e7,
+                    "ground_damping": DAMPING},
         "run": {"step": 1e-4 if rigid else 4e-5, "end": round(END, 3), "average_from": 0.75},
         "output": {"series_interval": 1e-3, "frame_interval": 0},
     }
@@ -107,7 +113,8 @@ class Linear:
         """q of each wheel's road of amplitude 1, frequency × coordinate × wheel."""
         omega = 2.0 * np.pi * np.asarray(frequency)[:, None, None]
         dynamic = self.spring - omega ** 2 * self.mass + 1j * omega * self.damper
-        return np.linalg.solve(dynamic, np.broadcast_to(self.push, (len(omega), *self.push.shape)) * (self.tire[0] + 1j * omega * self.tire[1]))
+        return np.linalg.solve(dynamic, np.broadcast_to(self.push, (len(omega), *self.push.shape))
+                               * (self.tire[0] + 1j * omega * self.tire[1]))
 
     def by_frequency(self, step, heights):
         """q̈ over time on heights[wheel, time], which begin and end at 0."""
@@ -123,7 +130,8 @@ class Linear:
         state, out = np.zeros(2 * size), np.zeros((size, heights.shape[1]))
 
         def slope(s, r, rate):
-            return np.concatenate([s[size:], inverse @ (self.push @ (self.tire[0] * r + self.tire[1] * rate) - self.damper @ s[size:] - self.spring @ s[:size])])
+            return np.concatenate([s[size:], inverse @ (self.push @ (self.tire[0] * r + self.tire[1] * rate)
+                                                        - self.damper @ s[size:] - self.spring @ s[:size])])
         for k in range(heights.shape[1] - 1):
             rate = (heights[:, k + 1] - heights[:, k]) / step
             before = state[size:].copy()
@@ -159,7 +167,8 @@ def cross(step, road_heights, response, segments=6):
     length = 2 * (len(response) // (segments + 1))
     window, above, under = np.hanning(length + 1)[:-1], 0.0, 0.0
     for begin in range(0, len(response) - length + 1, length // 2):
-        r, a = (np.fft.rfft(window * (v[begin:begin + length] - np.mean(v[begin:begin + length]))) for v in (road_heights, response))
+        r, a = (np.fft.rfft(window * (v[begin:begin + length] - np.mean(v[begin:begin + length])))
+                for v in (road_heights, response))
         above, under = above + np.conj(r) * a, under + np.abs(r) ** 2
     return np.fft.rfftfreq(length, step), above / under
 
@@ -180,7 +189,8 @@ class Case:
         if kind == "half_car":
             self.found["pitch"] = column(folder, body, "pitch_acceleration_rad_per_s2")
         places = [place] if kind == "quarter_car" else [place, place - WHEELBASE]
-        self.heights = {key: np.array([patch_mean(x, z, width)(p) for p in places]) for key, width in (("point", 0.0), ("patch", half))}
+        self.heights = {key: np.array([patch_mean(x, z, width)(p) for p in places]) for key,
+                        width in (("point", 0.0), ("patch", half))}
         self.on_road = (self.time > ROAD_FROM / SPEED + SETTLED) & (self.time < (ROAD_FROM + ROAD_LENGTH) / SPEED + 0.5)
         self.predicted = {(key, way): model_way(self.step, heights) for key, heights in self.heights.items()
                           for way, model_way in (("frequency", model.by_frequency), ("time", model.by_time))}
@@ -192,7 +202,8 @@ class Case:
         found = below(self.step, self.found[what])[self.on_road]
         wanted = below(self.step, self.predicted[key, way][self.row(what)])[self.on_road]
         if way == "frequency":  # instants at the ends of intervals; the run's are means over them
-            shifted = below(self.step, 0.5 * (self.predicted[key, way][self.row(what)] + np.roll(self.predicted[key, way][self.row(what)], 1)))
+            shifted = below(self.step, 0.5 * (self.predicted[key, way][self.row(what)]
+                                              + np.roll(self.predicted[key, way][self.row(what)], 1)))
             wanted = shifted[self.on_road]
         return float(np.sqrt(np.mean((found - wanted) ** 2)) / np.sqrt(np.mean(found ** 2)))
 
@@ -210,7 +221,8 @@ class Case:
 def plate():
     """Static stiffness of the elastic tire at its load, N/m, and half the length of its footprint there, m."""
     load = (BODY + UNSPRUNG + RIM + 60.0) * GRAVITY
-    folder = KEPT.folder_of("plate", scenario("quarter_car", False), "press", "--on", "plate", "--deflection", 0.04, "--points", 10, "--load", f"{load:.0f}")
+    folder = KEPT.folder_of("plate", scenario("quarter_car", False), "press",
+                            "--on", "plate", "--deflection", 0.04, "--points", 10, "--load", f"{load:.0f}")
     if folder is None:
         return None
     rows = [row for row in csv.DictReader(open(folder / "press.csv", newline="")) if row["unloading"] == "0"]
@@ -231,9 +243,12 @@ def draw(cases):
     figure, axes = plt.subplots(2, len(cases), figsize=(6.2 * len(cases), 8.5), layout="constrained", squeeze=False)
     for (top, bottom), case in zip(axes.T, cases):
         shown = case.on_road & (case.time < ROAD_FROM / SPEED + SETTLED + 2.0)
-        top.plot(case.time[shown], below(case.step, case.found["body's centre"])[shown], color=style.BLUE, lw=1.6, label="run")
-        top.plot(case.time[shown], below(case.step, case.predicted["patch", "time"][0])[shown], "--", color=style.ORANGE, lw=1.1, label="closed form")
-        top.set(xlabel="time, s", ylabel="acceleration of the body, m/s²", title=f"{case.name}; error {100 * case.error(list(case.found)[0], 'patch', 'time'):.1f} %")
+        top.plot(case.time[shown], below(case.step, case.found["body's centre"])[shown],
+                 color=style.BLUE, lw=1.6, label="run")
+        top.plot(case.time[shown], below(case.step, case.predicted["patch", "time"][0])[shown],
+                 "--", color=style.ORANGE, lw=1.1, label="closed form")
+        top.set(xlabel="time, s", ylabel="acceleration of the body, m/s²",
+                title=f"{case.name}; error {100 * case.error(list(case.found)[0], 'patch', 'time'):.1f} %")
         top.legend(fontsize=8)
         for what, colour in zip(case.found, (style.BLUE, style.GREEN)):
             frequency, found, exact = case.transfer(what)
@@ -243,7 +258,8 @@ def draw(cases):
             q = case.model.transfer(fine)
             late = np.exp(-2j * np.pi * fine * WHEELBASE / SPEED)
             whole = q[:, case.row(what), 0] + (q[:, case.row(what), 1] * late if case.kind == "half_car" else 0.0)
-            bottom.loglog(fine, np.abs((2 * np.pi * fine) ** 2 * whole), "--", color=style.ORANGE, lw=1.0, label=f"{what}, closed form")
+            bottom.loglog(fine, np.abs((2 * np.pi * fine) ** 2 * whole),
+                          "--", color=style.ORANGE, lw=1.0, label=f"{what}, closed form")
         bottom.set(xlabel="frequency, Hz", ylabel="acceleration per height of the road, 1/s² and rad/(s² m)")
         bottom.legend(fontsize=8)
     figure.savefig(HERE / "ride_transfer.png", dpi=62)
@@ -258,7 +274,8 @@ def main():
     x, z = road()
     (RESULTS / "road.csv").write_text("x_m,z_m\n" + "".join(f"{a:.3f},{b:.9f}\n" for a, b in zip(x, z)))
     cases = []
-    for name, kind, rigid in (("quarter car, rigid wheel", "quarter_car", True), ("half car, rigid wheels", "half_car", True),
+    for name, kind, rigid in (("quarter car, rigid wheel", "quarter_car", True),
+                              ("half car, rigid wheels", "half_car", True),
                               ("quarter car, planar tire", "quarter_car", False)):
         folder = KEPT.folder_of(f"{kind}_{'rigid' if rigid else 'planar'}", scenario(kind, rigid), "run", "--no-plots")
         if folder is None:
@@ -289,7 +306,8 @@ def main():
                 band = (frequency >= low) & (frequency < high)
                 add(f"{what}, transfer function, rms error from {low:g} to {high:g} Hz", "-",
                     np.sqrt(np.sum(np.abs(found - exact)[band] ** 2) / np.sum(np.abs(exact)[band] ** 2)))
-            curves += [{"case": case.name, "what": what, "frequency_Hz": f"{f:.4g}", "run": f"{abs(a):.5g}", "closed_form": f"{abs(b):.5g}"}
+            curves += [{"case": case.name, "what": what, "frequency_Hz": f"{f:.4g}",
+                        "run": f"{abs(a):.5g}", "closed_form": f"{abs(b):.5g}"}
                        for f, a, b in zip(frequency, found, exact) if 0.5 < f < 25.0]
         run = ride_values(case.time[case.on_road], case.found["body's centre"][case.on_road])["weighted_rms"]
         model = ride_values(case.time[case.on_road], case.predicted["patch", "time"][0][case.on_road])["weighted_rms"]

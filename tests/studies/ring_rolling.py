@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""The damping of the shipped ring from the rolling moment of the lumped shell, and that moment at other loads and speeds.
+"""The damping of the shipped ring from the rolling moment of the lumped shell, and that moment at other loads and
+speeds.
 
     /usr/bin/python3 tests/studies/ring_rolling.py [--fit]
 
-Both roll on hard ground by `furrow bench tire`, which ends with the moment about the axle, N m, of a tire that is not driven.
-The shell is hmmwv_lumped.json of 90 × 24 elements, to which hmmwv_ring.json was fitted at rest. With --fit the structural_damping
-of the ring is printed that has the moment of the shell under TARGET, by linear interpolation between two runs. Writes
-ring_rolling.csv beside this script, of the file as it is shipped: `used` marks the row that the damping was fitted to, the others
-were held out.
+Both roll on hard ground by `furrow bench tire`, which ends with the moment about the axle, N m, of a tire that is not
+driven. The shell is hmmwv_lumped.json of 90 × 24 elements, to which hmmwv_ring.json was fitted at rest. With --fit the
+structural_damping of the ring is printed that has the moment of the shell under TARGET, by linear interpolation between
+two runs. Writes ring_rolling.csv beside this script, of the file as it is shipped: `used` marks the row that the
+damping was fitted to, the others were held out.
 """
 import argparse
 import json
@@ -29,7 +30,8 @@ TRIED = (1.5e-3, 3e-3)  # s
 
 
 def moment(load, speed, *words):
-    done = subprocess.run([provenance.program(), "bench", "tire", "--step", "1e-4", "--warm", "0.6", "--steps", "3000", "--load", str(load),
+    done = subprocess.run([provenance.program(), "bench", "tire", "--step",
+                           "1e-4", "--warm", "0.6", "--steps", "3000", "--load", str(load),
                            "--speed", str(speed), *map(str, words)], check=True, stdout=subprocess.PIPE, text=True,
                           env={**os.environ, "FURROW_HOME": str(ROOT)})
     return -json.loads(done.stdout)["rolling_moment_Nm"]
@@ -56,8 +58,10 @@ def main():
     made, rows = provenance.made_here(), []
     for load, speed in CASES:
         shell, ring = moment(load, speed, *SHELL), moment(load, speed, "--tire", RING)
-        rows.append({"load_kg": load, "speed_rad_s": speed, "shell_Nm": f"{shell:.4g}", "ring_Nm": f"{ring:.4g}", "beside": f"{ring / shell - 1.0:.3f}",
-                     "used": (load, speed) == TARGET, "structural_damping_s": json.loads(RING.read_text())["structural_damping"]})
+        rows.append({"load_kg": load, "speed_rad_s": speed, "shell_Nm": f"{shell:.4g}",
+                     "ring_Nm": f"{ring:.4g}", "beside": f"{ring / shell - 1.0:.3f}",
+                     "used": (load, speed) == TARGET,
+                     "structural_damping_s": json.loads(RING.read_text())["structural_damping"]})
         print(rows[-1], file=sys.stderr, flush=True)
     provenance.write_table(pathlib.Path(__file__).with_suffix(".csv"), list(rows[0]), rows, made)
 

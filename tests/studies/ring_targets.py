@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Load–deflection curves of a shell tire on a plate and on cleats, to which rigs/calibrate_ring.json fits the flexible ring and
+"""Load–deflection curves of a shell tire on a plate and on cleats, to which rigs/calibrate_ring.json fits the flexible
+ring and
 which it predicts: tire/data/press_<tire>_<case>.csv, and the contact pressure along the shell's centre line,
 ring_targets_pressure.csv beside this script.
 
@@ -27,7 +28,8 @@ LOAD = 4561.65     # N, of the centre line
 
 
 def cleat(width, *words):
-    return ("--on", "cleat", "--cleat-height", "0.1", "--cleat-width", str(width), "--deflection", "0.04", "--points", "10", *words)
+    return ("--on", "cleat", "--cleat-height", "0.1", "--cleat-width",
+            str(width), "--deflection", "0.04", "--points", "10", *words)
 
 
 PLATE = ("--on", "plate", "--deflection", "0.032", "--points", "8", "--load", str(LOAD))
@@ -49,7 +51,8 @@ def folder_of(tire, mesh, case):
 
 def words_of(tire, mesh, case):
     around, across = mesh.split("x")
-    return ["press", "rigs/cleat_press.json", "--set", f"tire.file=hmmwv_{tire}.json", "--set", f"tire.elements_circumference={around}",
+    return ["press", "rigs/cleat_press.json", "--set", f"tire.file=hmmwv_{tire}.json",
+            "--set", f"tire.elements_circumference={around}",
             "--set", f"tire.elements_width={across}", *CASES[case]]
 
 
@@ -58,7 +61,8 @@ def press(tire, mesh, case, made_at):
     folder = folder_of(tire, mesh, case)
     if provenance.read_json(folder / provenance.RECORD).get("build") == provenance.build_of(provenance.program()):
         return
-    subprocess.run([provenance.program(), *words_of(tire, mesh, case), "--out", str(folder), "--overwrite"], check=True, cwd=ROOT)
+    subprocess.run([provenance.program(), *words_of(tire, mesh, case), "--out", str(folder), "--overwrite"],
+                   check=True, cwd=ROOT)
     provenance.record_run(folder, made_at)
 
 

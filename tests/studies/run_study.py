@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Runs the cases of a study one after another and collects their summaries in one CSV file.
 
-A finished case is used again only if this build of the program made it from the same scenario; otherwise it is run again."""
+A finished case is used again only if this build of the program made it from the same scenario; otherwise it is run
+again."""
 import argparse
 import json
 import pathlib
@@ -83,7 +84,8 @@ def main():
     parser.add_argument("study", type=pathlib.Path)
     parser.add_argument("--only", nargs="*", help="names of the cases to run")
     parser.add_argument("--force", action="store_true", help="run finished cases again")
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies", help="where the folders of studies are")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies",
+                        help="where the folders of studies are")
     arguments = parser.parse_args()
     study = json.loads(arguments.study.read_text())
     results = arguments.results / arguments.study.stem

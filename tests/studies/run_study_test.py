@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""run_study.py uses a finished case again only where program and scenario are those that made it, and its tables say who made them."""
+"""run_study.py uses a finished case again only where program and scenario are those that made it, and its tables say
+who made them."""
 import json
 import os
 import pathlib
@@ -48,16 +49,20 @@ class RunStudy(unittest.TestCase):
 
     def study(self, slip):
         cases = {"first": {"set": {"rig.slip": slip}}, "second": {"set": {"rig.slip": 0.5}}}
-        (self.folder / "small.json").write_text(json.dumps({"scenario": "rigs/first_look.json", "cases": cases, "columns": ["pull"]}))
+        (self.folder / "small.json").write_text(json.dumps({"scenario": "rigs/first_look.json",
+                                                            "cases": cases, "columns": ["pull"]}))
 
     def run_study(self, *arguments):
-        done = subprocess.run([sys.executable, HERE / "run_study.py", self.folder / "small.json", "--results", self.folder / "results",
-                               *arguments], capture_output=True, text=True, env={**os.environ, "FURROW": str(self.folder / "furrow")})
+        done = subprocess.run([sys.executable, HERE / "run_study.py", self.folder / "small.json",
+                               "--results", self.folder / "results",
+                               *arguments], capture_output=True, text=True,
+                              env={**os.environ, "FURROW": str(self.folder / "furrow")})
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stderr
 
     def runs(self):
-        return {name: len((self.folder / "results" / "small" / name / "runs").read_text().split()) for name in ("first", "second")}
+        return {name: len((self.folder / "results" / "small" / name / "runs").read_text().split())
+                for name in ("first", "second")}
 
     def pulls(self):
         return {row["case"]: row["pull"] for row in provenance.read_table(self.folder / "small.csv")}
@@ -128,7 +133,8 @@ class Tables(unittest.TestCase):
             for file, key, value in ((provenance.RECORD, "build", "another"), ("summary.json", "cpu", "another"),
                                      ("summary.json", "compiler", None), (provenance.RECORD, "build", None)):
                 before = (runs[1] / file).read_text()
-                (runs[1] / file).write_text(json.dumps({k: v for k, v in {**json.loads(before), key: value}.items() if v}))
+                (runs[1] / file).write_text(json.dumps({k: v for k,
+                                                        v in {**json.loads(before), key: value}.items() if v}))
                 with self.assertRaises(SystemExit) as refused:
                     provenance.origin_of_runs(runs)
                 self.assertIn("second", str(refused.exception))

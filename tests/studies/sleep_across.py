@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""One rigid wheel on one side of a bed 3 m wide: what sleeps when whole strips do and when parcels do, and what else changes.
+"""One rigid wheel on one side of a bed 3 m wide: what sleeps when whole strips do and when parcels do, and what else
+changes.
 
 usage: sleep_across.py --before PROGRAM COMMIT [--seeds 1 2 3] [--core N]     writes sleep_across.csv beside this script
 
 PROGRAM: of COMMIT, the last whose grains sleep by whole strips. Per seed it runs with sleep, and the present program
-($FURROW, or build/furrow) with and without, one after another on one thread. The table has a line for each: drawbar pull
-and its standard error over the averaging window, sinkage and rut of the run, the rut's mean depth along the whole track,
-0.24 m wide, share of the grains that are awake, wall time of the run without its bed, processor time of all of it (the bed is made beforehand), and that beside the run of whole strips.
-Lines without a seed are means over the seeds, with the standard deviation between them.
+($FURROW, or build/furrow) with and without, one after another on one thread. The table has a line for each: drawbar
+pull and its standard error over the averaging window, sinkage and rut of the run, the rut's mean depth along the whole
+track, 0.24 m wide, share of the grains that are awake, wall time of the run without its bed, processor time of all of
+it (the bed is made beforehand), and that beside the run of whole strips. Lines without a seed are means over the seeds,
+with the standard deviation between them.
 """
 import argparse
 import os
@@ -23,10 +25,13 @@ import provenance
 from provenance import ROOT
 
 HERE = pathlib.Path(__file__).resolve().parent
-SCENARIO = [str(ROOT / "rigs" / "drawbar_pull_small.json"), "--set", "terrain.width=3", "--set", "terrain.radius=0.015", "--set",
-            "terrain.layers=8", "--set", "terrain.length=3", "--set", "tire.rigid=true", "--set", 'rig.wheels=[{"lateral":-1.0}]',
+SCENARIO = [str(ROOT / "rigs" / "drawbar_pull_small.json"), "--set", "terrain.width=3",
+            "--set", "terrain.radius=0.015", "--set",
+            "terrain.layers=8", "--set", "terrain.length=3", "--set", "tire.rigid=true",
+            "--set", 'rig.wheels=[{"lateral":-1.0}]',
             "--set", "run.step=1e-4", "--set", "output.frame_interval=0", "--threads", "1"]
-FIGURES = {"pull_N": "drawbar_pull_N", "sinkage_mm": "sinkage_m", "rut_depth_mm": "rut_depth_m", "rut_width_mm": "rut_width_m",
+FIGURES = {"pull_N": "drawbar_pull_N", "sinkage_mm": "sinkage_m", "rut_depth_mm": "rut_depth_m",
+           "rut_width_mm": "rut_width_m",
            "rut_track_mm": "rut_track_m",
            "active_share": "active_share_mean"}
 SLEEP = ("strips", "parcels", "none")  # what sleeps as a whole
@@ -34,12 +39,15 @@ SLEEP = ("strips", "parcels", "none")  # what sleeps as a whole
 
 def run(program, seed, sleep, core):
     out = ROOT / "results" / "studies" / "sleep_across" / f"{sleep}_{seed}"
-    words = [program, "run", *SCENARIO, "--set", f"run.seed={seed}", "--set", f"terrain.activity={json_bool(sleep != 'none')}",
+    words = [program, "run", *SCENARIO, "--set", f"run.seed={seed}", "--set",
+             f"terrain.activity={json_bool(sleep != 'none')}",
              "--out", str(out), "--overwrite", "--no-plots"]
     pinned = ["taskset", "-c", str(core)] if core is not None else []
     begin = processor_time()
-    subprocess.run([*pinned, *words], check=True, stdout=subprocess.DEVNULL, env=dict(os.environ, FURROW_HOME=str(ROOT)))
-    return provenance.read_json(out / "summary.json") | {"cpu_s": processor_time() - begin, "rut_track_m": rut_along(out)}
+    subprocess.run([*pinned, *words], check=True, stdout=subprocess.DEVNULL,
+                   env=dict(os.environ, FURROW_HOME=str(ROOT)))
+    return provenance.read_json(out / "summary.json") | {"cpu_s": processor_time() - begin,
+                                                         "rut_track_m": rut_along(out)}
 
 
 def rut_along(folder):
@@ -87,7 +95,8 @@ def pooled(rows, sleep):
         if column in out:
             continue
         values = [row[column] for row in mine]
-        out[column] = f"{statistics.mean(values):.4g} ± {statistics.stdev(values):.2g}" if len(values) > 1 else f"{values[0]:.4g}"
+        out[column] = (f"{statistics.mean(values):.4g} ± {statistics.stdev(values):.2g}"
+                       if len(values) > 1 else f"{values[0]:.4g}")
     return out
 
 
@@ -102,11 +111,13 @@ def main():
     rows = []
     for seed in arguments.seeds:
         make_bed(seed)
-        of = {sleep: run(arguments.before[0] if sleep == "strips" else provenance.program(), seed, sleep, arguments.core)
+        of = {sleep: run(arguments.before[0] if sleep == "strips" else provenance.program(),
+                         seed, sleep, arguments.core)
               for sleep in SLEEP}
         rows += [row_of(of[sleep], seed, sleep, of["strips"]) for sleep in SLEEP]
         print(*rows[-3:], sep="\n", flush=True)
-        text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()} for row in rows]
+        text = [{key: f"{value:.4g}" if isinstance(value, float) else value for key, value in row.items()}
+                for row in rows]
         text += [pooled(rows, sleep) for sleep in SLEEP]
         provenance.write_table(HERE / "sleep_across.csv", list(text[0]), text, made)
 

@@ -9,8 +9,8 @@ wheels  64 wheels on the cores that there are
 frames  100,000 frames in one folder
 runs    a study of 1,000 runs
 
-`--scale 0.01` makes a case that much shorter. Prints JSON, and writes it with its commit, processor and command to FILE;
-exits with 1 when memory or open files grew, or a step came to take more than twice as long.
+`--scale 0.01` makes a case that much shorter. Prints JSON, and writes it with its commit, processor and command to
+FILE; exits with 1 when memory or open files grew, or a step came to take more than twice as long.
 """
 import argparse
 import json
@@ -100,7 +100,8 @@ def newest_step(out):
 
 
 def watch(command, mark, out, every):
-    """Runs the command. @returns (samples (wall time, memory, open files) by process, [(wall time, step)], wall time)"""
+    """Runs the command. @returns (samples (wall time, memory, open files) by process, [(wall time, step)], wall
+    time)"""
     samples, steps, begin = {}, [], time.monotonic()
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while True:
@@ -123,7 +124,8 @@ def watch(command, mark, out, every):
 
 
 def early_and_late(series):
-    """Of the second and the last quarter: least memory, fewest open files. They are what stays: what is there only while a
+    """Of the second and the last quarter: least memory, fewest open files. They are what stays: what is there only
+    while a
     checkpoint or a frame is written does not count."""
     later = series[len(series) // 4:]
     parts = later[: max(1, len(later) // 3)], later[-max(1, len(later) // 3):]
@@ -148,14 +150,16 @@ def series_size(out):
 
 def judge(report, samples, what, ends, begin=0.0, series_MB=0.0):
     """@param ends: [(wall time in s, number done)] of each `what`, which is a step or a run
-    @param begin: wall time in s at which the steps began; what a process holds before, while a bed settles, does not count
+    @param begin: wall time in s at which the steps began; what a process holds before, while a bed settles, does not
+    count
     @param series_MB: that the memory of rank 0 may grow by"""
     grew = False
     for name, seen in sorted(samples.items()):
         (memory, files), (memory_late, files_late) = early_and_late([s for s in seen if s[0] >= begin])
         allowed = GROWN_SHARE * memory + GROWN_MB + (series_MB if name == "rank 0" else 0.0)
         grew |= memory_late - memory > allowed or files_late > files
-        report["processes"].append({"process": name, "samples": len(seen), "most_memory_MB": round(max(s[1] for s in seen), 1),
+        report["processes"].append({"process": name, "samples": len(seen),
+                                    "most_memory_MB": round(max(s[1] for s in seen), 1),
                                     "memory_MB_early": round(memory, 2), "memory_MB_late": round(memory_late, 2),
                                     "open_files_early": files, "open_files_late": files_late})
     if len(ends) >= 8:
@@ -172,11 +176,14 @@ def run_case(scenario, folder, every):
     summary = json.loads((out / "summary.json").read_text())
     report = {"steps": round(summary["simulated_s"] / scenario["run"]["step"]), "wall_s": round(wall, 1),
               "settle_wall_s": round(summary["settle_wall_s"], 1), "run_wall_s": round(summary["wall_s"], 1),
-              "grains": summary["grains"], "active_share_mean": summary["active_share_mean"], "series_MB": round(series_size(out), 2),
+              "grains": summary["grains"], "active_share_mean": summary["active_share_mean"],
+              "series_MB": round(series_size(out), 2),
               "compiler": summary["compiler"], "processor": summary["cpu"], "cores": os.cpu_count(),
               "files": sum(len(files) for _, _, files in os.walk(out)),
-              "bytes": sum(os.path.getsize(os.path.join(top, name)) for top, _, files in os.walk(out) for name in files),
-              "said_before": [line for line in check.stdout.splitlines() if "core" in line or "memory" in line], "processes": []}
+              "bytes": sum(os.path.getsize(os.path.join(top, name)) for top,
+                           _, files in os.walk(out) for name in files),
+              "said_before": [line for line in check.stdout.splitlines() if "core" in line or "memory" in line],
+              "processes": []}
     judge(report, samples, "step", steps, wall - summary["wall_s"], report["series_MB"])
     return report
 
@@ -210,7 +217,8 @@ def main():
     parser.add_argument("case", choices=CASES)
     parser.add_argument("--scale", type=float, default=1.0)
     parser.add_argument("--every", type=float, default=2.0, help="wall seconds between samples")
-    parser.add_argument("--json", type=pathlib.Path, help="file that holds the reports of all cases; this one's is replaced")
+    parser.add_argument("--json", type=pathlib.Path,
+                        help="file that holds the reports of all cases; this one's is replaced")
     parser.add_argument("--keep", type=pathlib.Path, help="work here and leave the results")
     arguments = parser.parse_args()
     folder = (arguments.keep or pathlib.Path(tempfile.mkdtemp(prefix="furrow_soak_"))).resolve()
@@ -224,8 +232,10 @@ def main():
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
     report["scale"] = arguments.scale
-    report["made"] = {"commit": provenance.commit(), "compiler": report.pop("compiler"), "processor": report.pop("processor"),
-                      "command": f"soak.py {arguments.case}" + (f" --scale {arguments.scale:g}" if arguments.scale != 1.0 else "")}
+    report["made"] = {"commit": provenance.commit(), "compiler": report.pop("compiler"),
+                      "processor": report.pop("processor"),
+                      "command": f"soak.py {arguments.case}"
+                      + (f" --scale {arguments.scale:g}" if arguments.scale != 1.0 else "")}
     print(json.dumps(report, indent=1))
     if arguments.json:
         reports = json.loads(arguments.json.read_text()) if arguments.json.exists() else {}

@@ -12,7 +12,8 @@ from provenance import ROOT
 
 HERE = pathlib.Path(__file__).resolve().parent
 # (column, key of soil.json, factor)
-FIGURES = (("cohesion_kPa", "cohesion_Pa", 1e-3), ("friction_angle_deg", "friction_angle_deg", 1.0), ("janosi_K_mm", "janosi_K_m", 1e3),
+FIGURES = (("cohesion_kPa", "cohesion_Pa", 1e-3), ("friction_angle_deg", "friction_angle_deg", 1.0),
+           ("janosi_K_mm", "janosi_K_m", 1e3),
            ("n", "n", 1.0), ("k_c_kN_per_m_n1", "k_c", 1e-3), ("k_phi_kN_per_m_n2", "k_phi", 1e-3))
 
 
@@ -23,7 +24,8 @@ def main():
     rows = []
     for speed in speeds:
         out = ROOT / "results" / "studies" / "soil_speed" / f"{speed:g}"
-        subprocess.run([provenance.program(), "soil", str(ROOT / "rigs" / "drawbar_pull_small.json"), "--only", "plate", "--only",
+        subprocess.run([provenance.program(), "soil", str(ROOT / "rigs" / "drawbar_pull_small.json"),
+                        "--only", "plate", "--only",
                         "shear", "--speed", str(speed), "--out", str(out), "--overwrite"], check=True)
         soil = provenance.read_json(out / "soil.json")
         rows.append({"speed_m_s": f"{speed:g}"})

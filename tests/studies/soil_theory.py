@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Soil theory beside the small rig: what `furrow report --soil` expects of a rigid wheel of the rig's size, load and slip on
+"""Soil theory beside the small rig: what `furrow report --soil` expects of a rigid wheel of the rig's size, load and
+slip on
 soil with the strength that soil_speed.csv holds (0.1 m/s), and what the simulated tire does. Writes soil_theory.csv.
 
-The equations at the head of terrain/soil/bekker_wong.hpp are integrated here a second time, by other means; the script stops
-where the program differs by more than 1e-3. Figures of the simulation: means of five beds in budget.csv with half of their 95 %
-intervals.
+The equations at the head of terrain/soil/bekker_wong.hpp are integrated here a second time, by other means; the script
+stops where the program differs by more than 1e-3. Figures of the simulation: means of five beds in budget.csv with half
+of their 95 % intervals.
 """
 import argparse
 import json
@@ -27,7 +28,8 @@ COLUMNS = ["quantity", "unit", "theory", "standard_error", "simulated", "half_wi
 def strength():
     """(value, standard error) by key of soil.json"""
     row = next(row for row in provenance.read_table(HERE / "soil_speed.csv") if row["speed_m_s"] == "0.1")
-    keys = {"cohesion_Pa": ("cohesion_kPa", 1e3), "friction_angle_deg": ("friction_angle_deg", 1.0), "janosi_K_m": ("janosi_K_mm", 1e-3),
+    keys = {"cohesion_Pa": ("cohesion_kPa", 1e3), "friction_angle_deg": ("friction_angle_deg", 1.0),
+            "janosi_K_m": ("janosi_K_mm", 1e-3),
             "n": ("n", 1.0), "k_c": ("k_c_kN_per_m_n1", 1e3), "k_phi": ("k_phi_kN_per_m_n2", 1e3)}
     return ({key: factor * float(row[column]) for key, (column, factor) in keys.items()},
             {key: factor * float(row[f"{column}_se"]) for key, (column, factor) in keys.items()})
@@ -40,7 +42,8 @@ def by_the_program(soil, errors, load):
         (run / "summary.json").write_text(json.dumps({"format_version": 1, "vertical_load_N": load, **WHEEL}))
         (run / "soil.json").write_text(json.dumps({"format_version": 1, **soil, "standard_error": errors}))
         # The folder holds nothing to plot, so the command ends with an error after it has written the estimate.
-        subprocess.run([provenance.program(), "report", str(run), "--soil", str(run / "soil.json")], stdout=subprocess.DEVNULL,
+        subprocess.run([provenance.program(), "report", str(run), "--soil", str(run / "soil.json")],
+                       stdout=subprocess.DEVNULL,
                        stderr=subprocess.DEVNULL)
         return json.loads((run / "soil_estimate.json").read_text())
 
@@ -55,13 +58,15 @@ def by_quadrature(soil, load):
         middle = (C1 + C2 * slip) * entry
         total = np.zeros(3)
         for low, high in ((0.0, middle), (middle, entry)):
-            # Substituted so that the points crowd at the upper end, where the pressure has a vertical tangent for n < 1.
+            # Substituted so that the points crowd at the upper end, where the pressure has a vertical tangent for n <
+            # 1.
             s = 0.5 * (points + 1.0)
             angle, share = high - (high - low) * (1.0 - s) ** 3, 1.5 * (high - low) * (1.0 - s) ** 2 * weights
             front = np.where(angle >= middle, angle, entry - angle * (entry - middle) / middle)
             sigma = stiffness * np.maximum(radius * (np.cos(front) - math.cos(entry)), 0.0) ** soil["n"]
             j = radius * (entry - angle - (1.0 - slip) * (math.sin(entry) - np.sin(angle)))
-            tau = (soil["cohesion_Pa"] + sigma * math.tan(math.radians(soil["friction_angle_deg"]))) * (1.0 - np.exp(-j / soil["janosi_K_m"]))
+            tau = (soil["cohesion_Pa"] + sigma
+                   * math.tan(math.radians(soil["friction_angle_deg"]))) * (1.0 - np.exp(-j / soil["janosi_K_m"]))
             area = width * radius * share
             total += [np.sum(area * (sigma * np.cos(angle) + tau * np.sin(angle))), np.sum(area * tau * np.cos(angle)),
                       np.sum(area * sigma * np.sin(angle))]
@@ -100,7 +105,8 @@ def main():
             line("thrust, tractive effort", "N", "thrust_N", 1.0, "tractive_effort_N"),
             line("resistance", "N", "compaction_resistance_N", 1.0, "resistance_N"),
             line("resistance, bed twice as deep", "N", None, 1.0, "resistance_N", "depth 226 mm"),
-            {**dict.fromkeys(COLUMNS, ""), "quantity": "largest pressure", "unit": "kPa", "theory": digits(theory["largest_pressure_Pa"], 1e-3)}]
+            {**dict.fromkeys(COLUMNS, ""), "quantity": "largest pressure",
+             "unit": "kPa", "theory": digits(theory["largest_pressure_Pa"], 1e-3)}]
     provenance.write_table(HERE / "soil_theory.csv", COLUMNS, rows, provenance.made_here())
     print(*rows, sep="\n")
 

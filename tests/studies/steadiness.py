@@ -29,7 +29,8 @@ def main():
     done = subprocess.run([arguments.program, str(arguments.trials)], check=True, capture_output=True, text=True)
     compiler, *lines = done.stdout.splitlines()
     rows = list(csv.DictReader(lines))
-    made = {"commit": provenance.commit(), "compiler": compiler.split(": ", 1)[1], "processor": processor(), "command": provenance.command()}
+    made = {"commit": provenance.commit(), "compiler": compiler.split(": ", 1)[1],
+            "processor": processor(), "command": provenance.command()}
     provenance.write_table(HERE / "steadiness.csv", list(rows[0]), rows, made)
 
 

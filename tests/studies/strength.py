@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Strength of the soils of budget.json: direct shear (`furrow soil --only shear`, three seeds) on the small rig's grains in other
+"""Strength of the soils of budget.json: direct shear (`furrow soil --only shear`, three seeds) on the small rig's
+grains in other
 sizes and with stiffer contacts; writes strength.csv beside this script. Fifteen minutes on two cores.
 """
 import argparse
@@ -12,9 +13,11 @@ from provenance import ROOT
 
 HERE = pathlib.Path(__file__).resolve().parent
 VARIANTS = ("base", "grains 12 mm", "grains 8 mm", "grains 6 mm", "stiffness x 2", "stiffness x 4")
-KEYS = ("terrain.radius", "terrain.young_modulus", "terrain.substeps")  # of a variant; depth and the like are the test's own
+# of a variant; depth and the like are the test's own
+KEYS = ("terrain.radius", "terrain.young_modulus", "terrain.substeps")
 # (column, key of soil.json, factor)
-FIGURES = (("cohesion_kPa", "cohesion_Pa", 1e-3), ("friction_angle_deg", "friction_angle_deg", 1.0), ("janosi_K_mm", "janosi_K_m", 1e3))
+FIGURES = (("cohesion_kPa", "cohesion_Pa", 1e-3), ("friction_angle_deg", "friction_angle_deg", 1.0),
+           ("janosi_K_mm", "janosi_K_m", 1e3))
 
 
 def main():
@@ -24,7 +27,8 @@ def main():
     for variant in VARIANTS:
         settings = [f"{key}={value}" for key, value in study["cases"][variant]["set"].items() if key in KEYS]
         out = ROOT / "results" / "studies" / "strength" / variant.replace(" ", "_")
-        subprocess.run([provenance.program(), "soil", str(ROOT / study["scenario"]), "--only", "shear", "--out", str(out), "--overwrite",
+        subprocess.run([provenance.program(), "soil", str(ROOT / study["scenario"]),
+                        "--only", "shear", "--out", str(out), "--overwrite",
                         *(word for setting in settings for word in ("--set", setting))], check=True)
         soil = provenance.read_json(out / "soil.json")
         row = {"variant": variant}

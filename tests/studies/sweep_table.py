@@ -3,8 +3,8 @@
 
 usage: sweep_table.py STUDY [TABLE] [--jobs N] [--out FOLDER]
 
-The runs lie in FOLDER (results/<name of the study>); those of another build of the program are refused, not mixed in. Without
-TABLE the runs are only made, for scripts that read them (cornering.py).
+The runs lie in FOLDER (results/<name of the study>); those of another build of the program are refused, not mixed in.
+Without TABLE the runs are only made, for scripts that read them (cornering.py).
 """
 import argparse
 import pathlib
@@ -26,8 +26,10 @@ def main():
     for folder in (out / "runs").glob("*"):
         build = provenance.read_json(folder / RECORD).get("build")
         if (folder / "summary.json").exists() and build != provenance.build_of(provenance.program()):
-            sys.exit(f"{folder}: was made by another build of the program, expected none or this one's: move {out} away")
-    done = subprocess.run([provenance.program(), "sweep", str(arguments.study), "--out", str(out), "--jobs", arguments.jobs])
+            sys.exit(f"{folder}: was made by another build of the program, expected none or this one's: move {out} "
+                     f"away")
+    done = subprocess.run([provenance.program(), "sweep", str(arguments.study),
+                           "--out", str(out), "--jobs", arguments.jobs])
     runs = [summary.parent for summary in sorted((out / "runs").glob("*/summary.json"))]
     for run in runs:
         if not (run / RECORD).exists():

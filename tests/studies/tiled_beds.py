@@ -1,16 +1,21 @@
 #!/usr/bin/python3
-"""Tiled beds (terrain.tile) beside beds settled as a whole: are seams seen, and what does it save? Writes tiled_beds.csv,
+"""Tiled beds (terrain.tile) beside beds settled as a whole: are seams seen, and what does it save? Writes
+tiled_beds.csv,
 tiled_beds_wheel.csv and tiled_beds_cost.csv beside this script.
 
 usage: tiled_beds.py [--parts beds wheel cost] [--seeds N] [--soils cohesive loose_sand]
 
-beds   Grains of the small rig, cohesive and as loose sand, 3 x 0.6 m, pieces of 1 m. By slices of 50 mm along x: share of solid
-       in the middle half of the depth, contacts per grain, height and roughness of the surface (standard deviation of the highest
-       grain tops over cells of 2 r). `seam`: the slices on either side of x = 1 m and x = 2 m; `away`: those in between, 0.2 m from
-       seams and walls. In the bed that was settled as a whole the same places are compared.
-wheel  A rigid wheel on such beds. `stands`: let down on a seam (x = 1 m) or away from it (x = 1.5 m), sinkage after 0.6 s.
+beds   Grains of the small rig, cohesive and as loose sand, 3 x 0.6 m, pieces of 1 m. By slices of 50 mm along x: share
+of solid
+       in the middle half of the depth, contacts per grain, height and roughness of the surface (standard deviation of
+       the highest grain tops over cells of 2 r). `seam`: the slices on either side of x = 1 m and x = 2 m; `away`:
+       those in between, 0.2 m from seams and walls. In the bed that was settled as a whole the same places are
+       compared.
+wheel  A rigid wheel on such beds. `stands`: let down on a seam (x = 1 m) or away from it (x = 1.5 m), sinkage after 0.6
+s.
        `rolls`: the small rig's run at slip 0.3, whose averaging window holds the seam at x = 2 m: pull and sinkage.
-cost   Processor time and wall time of `furrow bed`, tiled and as a whole: the small rig's grains on 12 x 0.6 m, pieces of 1 m.
+cost   Processor time and wall time of `furrow bed`, tiled and as a whole: the small rig's grains on 12 x 0.6 m, pieces
+of 1 m.
        --full: also the bed for a vehicle, 20 x 3 m, r = 12 mm, 15 layers, 100 kPa, pieces of 3 m (a million grains).
 """
 import argparse
@@ -37,11 +42,13 @@ from provenance import ROOT  # noqa: E402
 
 RIG = str(ROOT / "rigs" / "drawbar_pull_small.json")
 OUT = ROOT / "results" / "studies" / "tiled_beds"
-SOILS = {"cohesive": {}, "loose_sand": {"terrain.material": "loose_sand.json", "terrain.cohesion": 0, "terrain.layers": 14}}
+SOILS = {"cohesive": {}, "loose_sand": {"terrain.material": "loose_sand.json",
+                                        "terrain.cohesion": 0, "terrain.layers": 14}}
 KINDS = {"tiled": {"terrain.tile": 1.0}, "whole": {}}
 SLICE = 0.05  # m
 LONG = {"terrain.length": 12.0}
-FULL = {"terrain.radius": 0.012, "terrain.layers": 15, "terrain.cohesion": 100e3, "terrain.length": 20.0, "terrain.width": 3.0}
+FULL = {"terrain.radius": 0.012, "terrain.layers": 15, "terrain.cohesion": 100e3,
+        "terrain.length": 20.0, "terrain.width": 3.0}
 
 
 def flags(*groups):
@@ -57,7 +64,8 @@ def bed(settings):
         sys.exit(done.stderr[-2000:])
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     told = json.loads(done.stdout)
-    told["processor_s"], told["elapsed_s"] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, time.time() - begin
+    told["processor_s"], told["elapsed_s"] = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+                                              time.time() - begin)
     return told
 
 
@@ -135,14 +143,16 @@ def study_beds(seeds, soils, made):
                 for name, key in (("grains", "grains"), ("max_overlap_mm", "max_overlap_m")):
                     figures.setdefault((kind, "all", name), []).append(told[key] * (1e3 if name.endswith("mm") else 1))
         for (kind, place, name), values in figures.items():
-            rows.append({"soil": soil, "bed": kind, "where": place, "what": name, "beds": len(values), "mean": f"{statistics.mean(values):.5g}",
+            rows.append({"soil": soil, "bed": kind, "where": place, "what": name,
+                         "beds": len(values), "mean": f"{statistics.mean(values):.5g}",
                          "half_width_95": f"{half_interval(values):.2g}"})
         for kind in KINDS:
             for name in ("solid_fraction", "contacts_per_grain", "surface_height_mm", "roughness_mm"):
                 values = [a - b for a, b in zip(figures[kind, "seam", name], figures[kind, "away", name])]
                 rows.append({"soil": soil, "bed": kind, "where": "seam - away", "what": name, "beds": len(values),
                              "mean": f"{statistics.mean(values):.3g}", "half_width_95": f"{half_interval(values):.2g}"})
-    provenance.write_table(HERE / f"tiled_beds{'' if len(soils) > 1 else '_' + soils[0]}.csv", list(rows[0]), rows, made)
+    provenance.write_table(HERE / f"tiled_beds{'' if len(soils) > 1 else '_' + soils[0]}.csv",
+                           list(rows[0]), rows, made)
 
 
 def run(name, settings):
@@ -157,7 +167,8 @@ def study_wheel(seeds, made):
     rows = []
     common = {"tire.rigid": True, "output.frame_interval": 0, "checkpoint.at_end": False}
     stands = {"rig.mode": "fixed_speed", "rig.speed": 0.0, "rig.slip": 0.0, "run.end": 0.6, "run.average_from": 0.55}
-    cases = [("stands, seam", "tiled", {**stands, "rig.start": 1.0}), ("stands, away", "tiled", {**stands, "rig.start": 1.5}),
+    cases = [("stands, seam", "tiled", {**stands, "rig.start": 1.0}),
+             ("stands, away", "tiled", {**stands, "rig.start": 1.5}),
              ("stands", "whole", {**stands, "rig.start": 1.0}), ("rolls", "tiled", {}), ("rolls", "whole", {})]
     for case, kind, settings in cases:
         sums = [run(f"{case.replace(', ', '_')}_{kind}_{seed}", {**common, **settings, **KINDS[kind], "run.seed": seed})
@@ -167,8 +178,10 @@ def study_wheel(seeds, made):
             figures["pull_N"] = [s["drawbar_pull_N"]["mean"] for s in sums]
             figures["tractive_effort_N"] = [s["tractive_effort_N"] for s in sums]
         for name, values in figures.items():
-            rows.append({"case": case, "bed": kind, "what": name, "beds": len(values), "mean": f"{statistics.mean(values):.5g}",
-                         "half_width_95": f"{half_interval(values):.2g}", "values": " ".join(f"{v:.5g}" for v in values)})
+            rows.append({"case": case, "bed": kind, "what": name, "beds": len(values),
+                         "mean": f"{statistics.mean(values):.5g}",
+                         "half_width_95": f"{half_interval(values):.2g}",
+                         "values": " ".join(f"{v:.5g}" for v in values)})
             print(rows[-1], flush=True)
     provenance.write_table(HERE / "tiled_beds_wheel.csv", list(rows[0]), rows, made)
 
@@ -183,8 +196,10 @@ def study_cost(full, made):
             os.environ["XDG_CACHE_HOME"] = cache
             told = bed(settings)
         rows.append({"size_m": size, "bed": kind, "grains": told["grains"], "settled": told["settled"],
-                     "simulated_s": f"{told['settling_time_s']:.3g}", "solid_fraction_bulk": f"{told['solid_fraction_bulk']:.4f}",
-                     "contacts_per_grain": f"{told['coordination_number']:.4f}", "depth_mm": f"{1e3 * told['depth_m']:.4g}",
+                     "simulated_s": f"{told['settling_time_s']:.3g}",
+                     "solid_fraction_bulk": f"{told['solid_fraction_bulk']:.4f}",
+                     "contacts_per_grain": f"{told['coordination_number']:.4f}",
+                     "depth_mm": f"{1e3 * told['depth_m']:.4g}",
                      "max_overlap_mm": f"{1e3 * told['max_overlap_m']:.3g}", "threads": told["threads"],
                      "processor_s": f"{told['processor_s']:.0f}", "wall_s": f"{told['elapsed_s']:.0f}"})
         print(rows[-1], flush=True)

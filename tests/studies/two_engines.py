@@ -2,15 +2,17 @@
 """The small rig on both engines of grains, from the same beds: engine dem in double precision without sleep, and engine
 liggghts on 1, 2 and 4 ranks.
 
-usage: two_engines.py [--seeds 1 2 3 4 5] [--ranks 1 2 4] [--keep]     writes two_engines.csv beside this script, line by line
+usage: two_engines.py [--seeds 1 2 3 4 5] [--ranks 1 2 4] [--keep]     writes two_engines.csv beside this script, line
+by line
 
 --keep: the table's lines of other numbers of ranks stay; the column commit says which program made each line.
 
 A line for each run: drawbar pull with its standard error over the averaging window, resistance of the terrain, sinkage,
-residuals, and how long the forces on the tire are those of engine dem from the same bed: largest difference over the load in
-the first 0.1 s after the first contact, and the time after the first contact at which it exceeds 1e-9 and 1e-3. Chaos multiplies the round-off by which the
-two programs differ. Lines without a seed are means over the beds with half the width of their 95 % interval (Student), and of
-the difference to engine dem of the same bed. processor_s is that of all processes; other work may have run beside.
+residuals, and how long the forces on the tire are those of engine dem from the same bed: largest difference over the
+load in the first 0.1 s after the first contact, and the time after the first contact at which it exceeds 1e-9 and 1e-3.
+Chaos multiplies the round-off by which the two programs differ. Lines without a seed are means over the beds with half
+the width of their 95 % interval (Student), and of the difference to engine dem of the same bed. processor_s is that of
+all processes; other work may have run beside.
 """
 import argparse
 import math
@@ -30,10 +32,12 @@ from plot.student import half_interval  # noqa: E402
 from provenance import ROOT  # noqa: E402
 
 RIG = str(ROOT / "rigs" / "drawbar_pull_small.json")
-FIGURES = {"pull_N": ("drawbar_pull_N", 1.0), "resistance_N": ("terrain_resistance_N", 1.0), "sinkage_mm": ("sinkage_m", 1e3)}
+FIGURES = {"pull_N": ("drawbar_pull_N", 1.0), "resistance_N": ("terrain_resistance_N", 1.0),
+           "sinkage_mm": ("sinkage_m", 1e3)}
 EARLY = 0.1  # s after the first contact
 COLUMNS = ["engine", "ranks", "seed", "pull_N", "pull_sem_N", "resistance_N", "sinkage_mm", "steady", "energy_residual",
-           "momentum_residual", "transfer_force_residual", "transfer_moment_residual", "early_difference", "above_1e-9_s",
+           "momentum_residual", "transfer_force_residual", "transfer_moment_residual",
+           "early_difference", "above_1e-9_s",
            "above_1e-3_s", "wall_s", "processor_s", "commit"]
 TABLE = HERE / "two_engines.csv"
 
@@ -74,7 +78,8 @@ def row_of(engine, ranks, seed, processor_s, commit):
     out = folder(engine, ranks, seed)
     summary = provenance.read_json(out / "summary.json")
     row = {"engine": engine, "ranks": ranks, "seed": seed, "pull_sem_N": summary["drawbar_pull_N"]["sem"],
-           "steady": summary["drawbar_pull_N"].get("steady", ""), "wall_s": summary["wall_s"], "processor_s": processor_s,
+           "steady": summary["drawbar_pull_N"].get("steady", ""), "wall_s": summary["wall_s"],
+           "processor_s": processor_s,
            "commit": commit}
     for column, (key, factor) in FIGURES.items():
         row[column] = factor * mean_of(summary[key])
@@ -100,7 +105,8 @@ def kept_rows(cases):
     rows = []
     for line in provenance.read_table(TABLE):
         if line["seed"].isdigit() and (line["engine"], int(line["ranks"])) not in cases:
-            numbers = {key: float(value) for key, value in line.items() if value and key in (*FIGURES, "wall_s", "processor_s")}
+            numbers = {key: float(value) for key, value in line.items()
+                       if value and key in (*FIGURES, "wall_s", "processor_s")}
             rows.append({"commit": commit, **{key: value for key, value in line.items() if value}, **numbers,
                          "ranks": int(line["ranks"]), "seed": int(line["seed"])})
     return rows
@@ -111,7 +117,8 @@ def pooled(rows, engine, ranks):
     dem = {row["seed"]: row for row in rows if row["engine"] == "dem"}
     out = []
     for what, beds, value in (("beds", mine.keys(), lambda bed, column: mine[bed][column]),
-                              ("less dem", mine.keys() & dem.keys(), lambda bed, column: mine[bed][column] - dem[bed][column])):
+                              ("less dem", mine.keys() & dem.keys(), lambda bed,
+                               column: mine[bed][column] - dem[bed][column])):
         if (what == "less dem" and engine == "dem") or len(beds) < 2:
             continue
         line = {"engine": engine, "ranks": ranks, "seed": f"{len(beds)} {what}"}

@@ -1,18 +1,22 @@
 #!/usr/bin/python3
-"""What the HMMWV does on hard ground, from the runs of vehicle_hard_ground.json, beside what its engine map, its gears and
+"""What the HMMWV does on hard ground, from the runs of vehicle_hard_ground.json, beside what its engine map, its gears
+and
 the ground's friction alone say. Writes vehicle_hard_ground_figures.csv.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_hard_ground.json
     /usr/bin/python3 tests/studies/vehicle_hard_ground.py
 
 Expected, each from the vehicle's file and as little as possible of the run:
-  top speed     engine T_e(u) = converter T_i = (u/K(R))², T_t = T(R) T_i = i F r, v = R u i r: u speed of the crank, R of the
-                turbine over it, i speed of the wheels over the turbine's in the highest gear, r rolling radius, F what rolling
-                takes, not below 0, both of the run. Near R = 1 the converter's torque is a straight line (torque_converter.hpp).
-                `speed at the end` likewise, F the force that the wheels gave then
+  top speed     engine T_e(u) = converter T_i = (u/K(R))², T_t = T(R) T_i = i F r, v = R u i r: u speed of the crank, R
+  of the
+                turbine over it, i speed of the wheels over the turbine's in the highest gear, r rolling radius, F what
+                rolling takes, not below 0, both of the run. Near R = 1 the converter's torque is a straight line
+                (torque_converter.hpp). `speed at the end` likewise, F the force that the wheels gave then
   braking       v²/(2 μ g) from the speed at which the pedal is touched
-  energy        none of the residual: every entry comes from its own mechanism, none is a difference; sums since the start
-  cornering     L/tan δ to the middle of the rear axle, cot δ the mean of the steered wheels' cotangents; the understeer gradient
+  energy        none of the residual: every entry comes from its own mechanism, none is a difference; sums since the
+  start
+  cornering     L/tan δ to the middle of the rear axle, cot δ the mean of the steered wheels' cotangents; the understeer
+  gradient
                 is the slope of δ − L/R against v²/R
 """
 import argparse
@@ -48,7 +52,8 @@ class Runs:
         self.rows = []
 
     def add(self, case, quantity, value, expected, unit, how):
-        self.rows.append({"case": case, "quantity": quantity, "value": number(value), "expected": number(expected), "unit": unit, "how": how})
+        self.rows.append({"case": case, "quantity": quantity, "value": number(value),
+                          "expected": number(expected), "unit": unit, "how": how})
 
 
 def number(value):
@@ -115,15 +120,20 @@ def acceleration(runs, line):
         name = f"gear {v['gear'][k - 1]:.0f} to {v['gear'][k]:.0f}"
         runs.add("acceleration", f"{name}, time", time[k] - begin, None, "s", "column gear")
         runs.add("acceleration", f"{name}, speed", speed[k], None, "m/s", "column gear")
-        runs.add("acceleration", f"{name}, turbine", v["turbine_speed_rpm"][k - 1], line["gearbox"]["up_rpm"], "1/min", "gearbox.up_rpm")
+        runs.add("acceleration", f"{name}, turbine", v["turbine_speed_rpm"][k - 1],
+                 line["gearbox"]["up_rpm"], "1/min", "gearbox.up_rpm")
     last = time > time[-1] - LAST
     force = np.mean(v["soil_power_W"][last]) / np.mean(speed[last])
     radius = np.mean([np.mean(w["speed_m_per_s"][last]) / np.mean(w["spin_rad_per_s"][last]) for w in wheels])
     given = np.mean(v["wheel_power_W"][last]) / np.mean(speed[last])
-    runs.add("acceleration", "rolling loss at the end", force, None, "N", "soil_power_W over speed; below 0: late forces drive, see the energy")
-    runs.add("acceleration", "acceleration at the end", np.mean(v["acceleration_m_per_s2"][last]), 0.0, "m/s2", "0 at top speed")
-    runs.add("acceleration", "speed at the end", np.mean(speed[last]), top_speed(line, given, radius), "m/s", "map, converter, gears, wheel_power_W")
-    runs.add("acceleration", "top speed", np.mean(speed[last]), top_speed(line, max(force, 0.0), radius), "m/s", "map, converter, gears, rolling loss")
+    runs.add("acceleration", "rolling loss at the end", force, None, "N",
+             "soil_power_W over speed; below 0: late forces drive, see the energy")
+    runs.add("acceleration", "acceleration at the end", np.mean(v["acceleration_m_per_s2"][last]),
+             0.0, "m/s2", "0 at top speed")
+    runs.add("acceleration", "speed at the end", np.mean(speed[last]),
+             top_speed(line, given, radius), "m/s", "map, converter, gears, wheel_power_W")
+    runs.add("acceleration", "top speed", np.mean(speed[last]), top_speed(line, max(force, 0.0), radius),
+             "m/s", "map, converter, gears, rolling loss")
 
 
 def braking(runs):
@@ -140,7 +150,8 @@ def braking(runs):
         return
     end = after[0]
     runs.add("braking_from_15", "speed", speed, 15.0, "m/s", "when the pedal is touched")
-    runs.add("braking_from_15", "distance", v["distance_m"][end] - start, speed ** 2 / (2.0 * friction * GRAVITY), "m", "v2/(2 mu g)")
+    runs.add("braking_from_15", "distance", v["distance_m"][end] - start,
+             speed ** 2 / (2.0 * friction * GRAVITY), "m", "v2/(2 mu g)")
     runs.add("braking_from_15", "deceleration", speed / (v["time_s"][end] - begin), friction * GRAVITY, "m/s2", "mu g")
 
 
@@ -153,17 +164,22 @@ def energy(runs):
         vehicle, accounts = summary["vehicle"]["energy_J"], summary["accounts"]["energy"]
         lost, stored = accounts["lost"], accounts["stored"]
         entries = {
-            "work of the engine": accounts["work"]["drive_work"], "gained: vehicle, motion and height": stored["rig_kinetic_and_potential"],
+            "work of the engine": accounts["work"]["drive_work"],
+            "gained: vehicle, motion and height": stored["rig_kinetic_and_potential"],
             "gained: tires": sum(value for name, value in stored.items() if name.startswith("tire_")),
-            "gained: springs of the ground": sum(value for name, value in stored.items() if name.startswith("terrain_")),
-            **{f"lost: {name}": vehicle[name] for name in ("converter", "clutch", "shift", "brake", "shock", "lowering")},
+            "gained: springs of the ground": sum(value for name,
+                                                 value in stored.items() if name.startswith("terrain_")),
+            **{f"lost: {name}": vehicle[name] for name in ("converter",
+                                                           "clutch", "shift", "brake", "shock", "lowering")},
             "lost: tires, viscous": lost["tire_viscous_loss"], "lost: sliding": lost["sliding_loss"],
-            "lost: dampers of the ground": lost["normal_damping_loss"] + lost["tangential_damping_loss"] + lost["opening_loss"],
+            "lost: dampers of the ground": lost["normal_damping_loss"]
+            + lost["tangential_damping_loss"] + lost["opening_loss"],
             "lost: numerical, of tires": lost["tire_numerical_loss"] + lost["tire_solver_loss"],
             "lost: numerical, one step late": lost["surface_lag_loss"] + lost["rim_lag_loss"]}
         for name, value in entries.items():
             runs.add(case, name, value, None, "J", "accounts")
-        runs.add(case, "residual", accounts["residual"], 0.0, "J", f"{100.0 * accounts['residual_share']:.2g} % of the turnover")
+        runs.add(case, "residual", accounts["residual"], 0.0, "J",
+                 f"{100.0 * accounts['residual_share']:.2g} % of the turnover")
 
 
 def wheelbase(vehicle):
@@ -188,12 +204,14 @@ def cornering(runs, base):
         runs.add(case, "lateral acceleration", lateral[-1], None, "m/s2", "speed times yaw rate")
     if len(lateral) > 1:
         slope = np.polyfit(lateral, excess, 1)[0]
-        runs.add("cornering", "understeer gradient", math.degrees(slope) * GRAVITY, None, "degrees per g", f"line through {len(lateral)} speeds")
+        runs.add("cornering", "understeer gradient", math.degrees(slope) * GRAVITY,
+                 None, "degrees per g", f"line through {len(lateral)} speeds")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / STUDY.stem, help="folder of the cases")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / STUDY.stem,
+                        help="folder of the cases")
     arguments = parser.parse_args()
     runs, vehicle = Runs(arguments.results), read_json(ROOT / "vehicle" / "data" / "hmmwv.json")
     if not runs.folders:
@@ -203,7 +221,8 @@ def main():
     energy(runs)
     cornering(runs, wheelbase(vehicle))
     for row in runs.rows:
-        print(f"{row['case']:<16} {row['quantity']:<36} {row['value']:>8} {row['unit']:<14} expected {row['expected'] or '-':>8}  {row['how']}")
+        print(f"{row['case']:<16} {row['quantity']:<36} {row['value']:>8} {row['unit']:<14} expected "
+              f"{row['expected'] or '-':>8}  {row['how']}")
     provenance.write_table(TABLE, COLUMNS, runs.rows, provenance.origin_of_runs(runs.folders.values()))
 
 

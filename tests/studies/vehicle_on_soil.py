@@ -1,15 +1,16 @@
 #!/usr/bin/python3
-"""What wheels and axles do on soil, from the runs of vehicle_on_soil.json or of another study of vehicles on several beds.
+"""What wheels and axles do on soil, from the runs of vehicle_on_soil.json or of another study of vehicles on several
+beds.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_on_soil.json
     /usr/bin/python3 tests/studies/vehicle_on_soil.py
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_turn_and_rover.json
     /usr/bin/python3 tests/studies/vehicle_on_soil.py tests/studies/vehicle_turn_and_rover.json --wheels
 
-Writes beside the study, named after it: ..._wheels.csv, the means of every wheel of every run over its averaging window, and
-..._figures.csv: the vehicle and its axles over the beds, of each variant with half of the 95 % interval of the mean over the beds
-[Student's t] and, of other tires, the difference from flexible ones at 200 kPa, bed by bed. With --wheels also every wheel, and
-every axle less the front one, bed by bed.
+Writes beside the study, named after it: ..._wheels.csv, the means of every wheel of every run over its averaging
+window, and ..._figures.csv: the vehicle and its axles over the beds, of each variant with half of the 95 % interval of
+the mean over the beds [Student's t] and, of other tires, the difference from flexible ones at 200 kPa, bed by bed. With
+--wheels also every wheel, and every axle less the front one, bed by bed.
 """
 import argparse
 import json
@@ -28,9 +29,11 @@ from plot.student import half_interval  # noqa: E402
 STUDY = pathlib.Path(__file__).with_suffix(".json")  # unless another is named
 REFERENCE = "flexible_200_kPa"
 # column of a wheel's table, name in the tables here, factor, whether an axle has the sum of its wheels
-WHEEL = [("iso_force_x_N", "force_x_N", 1.0, True), ("iso_force_y_N", "force_y_N", 1.0, True), ("iso_force_z_N", "force_z_N", 1.0, True),
+WHEEL = [("iso_force_x_N", "force_x_N", 1.0, True), ("iso_force_y_N", "force_y_N", 1.0, True),
+         ("iso_force_z_N", "force_z_N", 1.0, True),
          ("tractive_effort_N", "tractive_effort_N", 1.0, True), ("terrain_resistance_N", "resistance_N", 1.0, True),
-         ("spindle_torque_Nm", "torque_Nm", 1.0, True), ("slip", "slip", 1.0, False), ("slip_angle_rad", "slip_angle_deg", 180.0 / np.pi, False),
+         ("spindle_torque_Nm", "torque_Nm", 1.0, True), ("slip", "slip", 1.0, False),
+         ("slip_angle_rad", "slip_angle_deg", 180.0 / np.pi, False),
          ("sinkage_m", "sinkage_mm", 1e3, False), ("sinkage_in_rut_m", "sinkage_in_rut_mm", 1e3, False),
          ("suspension_travel_m", "travel_mm", 1e3, False)]
 NAMES = [name for _, name, _, _ in WHEEL]
@@ -88,7 +91,8 @@ def short(value):
 
 
 def figures_of_beds(runs, wheels):
-    """Lines of the variants that were run on several beds; `runs`: {case: Run}, cases named variant-seed; `wheels`: of every wheel too."""
+    """Lines of the variants that were run on several beds; `runs`: {case: Run}, cases named variant-seed; `wheels`: of
+    every wheel too."""
     variants = {}
     for case, run in runs.items():
         if "-" in case:
@@ -113,8 +117,10 @@ def figures_of_beds(runs, wheels):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("study", type=pathlib.Path, nargs="?", default=STUDY, help="study file whose runs are finished")
-    parser.add_argument("--wheels", action="store_true", help="figures of every wheel, and of the axles against the front one")
-    parser.add_argument("--results", type=pathlib.Path, help="folder of the cases; default: results/studies/NAME_OF_THE_STUDY")
+    parser.add_argument("--wheels", action="store_true",
+                        help="figures of every wheel, and of the axles against the front one")
+    parser.add_argument("--results", type=pathlib.Path,
+                        help="folder of the cases; default: results/studies/NAME_OF_THE_STUDY")
     arguments = parser.parse_args()
     study, results = arguments.study, arguments.results or ROOT / "results" / "studies" / arguments.study.stem
     cases = json.loads(study.read_text())["cases"]
@@ -128,7 +134,8 @@ def main():
             for case, run in runs.items() for wheel, means in zip(run.wheels, run.means)]
     provenance.write_table(study.with_name(f"{study.stem}_wheels.csv"), ["case", "wheel", *NAMES], rows, origin)
     figures = figures_of_beds(runs, arguments.wheels)
-    provenance.write_table(study.with_name(f"{study.stem}_figures.csv"), ["tires", "figure", "beds", "mean", "half_95", "change", "change_half_95"],
+    provenance.write_table(study.with_name(f"{study.stem}_figures.csv"),
+                           ["tires", "figure", "beds", "mean", "half_95", "change", "change_half_95"],
                            figures, origin)
     for row in figures:
         change = f"change {row['change']:>8} ± {row['change_half_95']}" if row.get("change") else ""

@@ -3,10 +3,10 @@
 
 usage: vehicle_slopes.py [--results DIR] [--jobs N]      writes vehicle_slopes.csv beside this script
 
-rigs/hmmwv_slope.json on rigid wheels: held by its brakes until 0.5 s, then full throttle to the end. Speed made good is the way
-uphill from then on over the time; `speed at the end` is a mean over the last 0.5 s. It goes where it is further up at the end
-than 1 s before; otherwise it stands with spinning wheels, or slides. Between the last slope that it climbs and the first that
-it does not, bisection comes to 1 %.
+rigs/hmmwv_slope.json on rigid wheels: held by its brakes until 0.5 s, then full throttle to the end. Speed made good is
+the way uphill from then on over the time; `speed at the end` is a mean over the last 0.5 s. It goes where it is further
+up at the end than 1 s before; otherwise it stands with spinning wheels, or slides. Between the last slope that it
+climbs and the first that it does not, bisection comes to 1 %.
 """
 import argparse
 import concurrent.futures
@@ -21,13 +21,15 @@ import run_study
 from provenance import ROOT
 
 TABLE = pathlib.Path(__file__).with_suffix(".csv")
-COLUMNS = ("slope_percent", "go", "speed_made_good_m_s", "speed_at_the_end_m_s", "gear_at_the_end", "slip_front", "slip_rear", "found_by")
+COLUMNS = ("slope_percent", "go", "speed_made_good_m_s", "speed_at_the_end_m_s",
+           "gear_at_the_end", "slip_front", "slip_rear", "found_by")
 GRID = (0, 10, 20, 30, 40, 50, 60, 70, 80)  # per cent
 BEGIN, END = 0.5, 5.0  # s
 STUDY = {"scenario": "rigs/hmmwv_slope.json"}
 SET = {"tire.rigid": True, "run.step": 4e-4, "output.frame_interval": 0, "output.series_interval": 0.01, "run.end": END,
        "run.average_from": END - 1.0,
-       "rig.driver": {"inputs": {"throttle": [[0, 0], [BEGIN, 0], [BEGIN + 0.2, 1]], "brake": [[0, 1], [BEGIN, 1], [BEGIN + 0.2, 0]]}}}
+       "rig.driver": {"inputs": {"throttle": [[0, 0], [BEGIN, 0], [BEGIN + 0.2, 1]],
+                                 "brake": [[0, 1], [BEGIN, 1], [BEGIN + 0.2, 0]]}}}
 FINEST = 1.0  # per cent
 
 
@@ -52,19 +54,22 @@ def line_of(folder, percent, how):
     made_good = (x[-1] - np.interp(BEGIN, time, x)) / (time[-1] - BEGIN)
     return {"slope_percent": f"{percent:g}", "go": "yes" if x[-1] > np.interp(time[-1] - 1.0, time, x) else "no",
             "speed_made_good_m_s": f"{made_good:.3g}", "speed_at_the_end_m_s": f"{np.mean(v['speed_m_s'][last]):.3g}",
-            "gear_at_the_end": f"{v['gear'][-1]:.0f}", "slip_front": f"{slip[0]:.3g}", "slip_rear": f"{slip[1]:.3g}", "found_by": how}
+            "gear_at_the_end": f"{v['gear'][-1]:.0f}", "slip_front": f"{slip[0]:.3g}",
+            "slip_rear": f"{slip[1]:.3g}", "found_by": how}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / "vehicle_slopes", help="folder of the runs")
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / "vehicle_slopes",
+                        help="folder of the runs")
     parser.add_argument("--jobs", type=int, default=1, help="runs of the grid at a time")
     arguments = parser.parse_args()
     arguments.results.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         folders = dict(zip(GRID, pool.map(lambda percent: finished(arguments.results, percent), GRID)))
     lines = {percent: line_of(folder, percent, "grid") for percent, folder in folders.items()}
-    goes, stays = (pick(percent for percent in GRID if lines[percent]["go"] == word) for pick, word in ((max, "yes"), (min, "no")))
+    goes, stays = (pick(percent for percent in GRID if lines[percent]["go"] == word) for pick,
+                   word in ((max, "yes"), (min, "no")))
     if goes > stays:
         sys.exit(f"it climbs {goes} % and not {stays} %, expected one limit")
     while stays - goes > FINEST:

@@ -5,9 +5,10 @@
     /usr/bin/python3 tests/studies/vehicle_straight_beds.py
 
 Bed 1 is the case `lumped` of vehicle_straight.json, from its committed tables, vehicle_straight_axles.csv and
-vehicle_straight_events.csv; the commit of each bed stands beside it. Writes beside this script vehicle_straight_beds_axles.csv: of
-every axle, and of the rear less the front one, the mean of each bed over its own steady stretch, and over the beds the mean and
-half of its 95 % interval [Student's t]; and vehicle_straight_beds_events.csv: when the events that every bed has came, likewise.
+vehicle_straight_events.csv; the commit of each bed stands beside it. Writes beside this script
+vehicle_straight_beds_axles.csv: of every axle, and of the rear less the front one, the mean of each bed over its own
+steady stretch, and over the beds the mean and half of its 95 % interval [Student's t]; and
+vehicle_straight_beds_events.csv: when the events that every bed has came, likewise.
 """
 import json
 import pathlib
@@ -40,7 +41,8 @@ def first_bed():
         unit = row["unit"]
         for axle, column in (("front", "front"), ("rear", "rear"), ("rear less front", "rear_less_the_one_before")):
             means[axle, row["quantity"], unit] = float(row[column])
-    return window, means, {row["event"]: float(row["time_s"]) for row in read_table(FIRST[1]) if row["case"] == CASE and row["event"] in EVENTS}
+    return window, means, {row["event"]: float(row["time_s"]) for row in read_table(FIRST[1])
+                           if row["case"] == CASE and row["event"] in EVENTS}
 
 
 def of_run(folder):
@@ -61,7 +63,8 @@ def over_beds(values):
 
 def main():
     results = ROOT / "results" / "studies" / STUDY.stem
-    folders = [results / case for case in json.loads(STUDY.read_text())["cases"] if (results / case / "summary.json").exists()]
+    folders = [results / case for case in json.loads(STUDY.read_text())["cases"]
+               if (results / case / "summary.json").exists()]
     if not folders:
         raise SystemExit(f"{results}: holds no finished case, expected those of run_study.py {STUDY.name}")
     beds = [first_bed(), *map(of_run, folders)]
@@ -69,7 +72,8 @@ def main():
     first = read_origin(FIRST[0])
     origin["note"] = f"bed 1 is of {first['commit']}; steady from " + "; ".join(
         f"{window[0]:.3g} to {window[1]:.3g} s{'' if window[2] else ' (not steady)'}" for window, _, _ in beds)
-    rows = [{"axle": key[0], "quantity": key[1], "unit": key[2], **over_beds([means[key] for _, means, _ in beds])} for key in beds[0][1]]
+    rows = [{"axle": key[0], "quantity": key[1], "unit": key[2], **over_beds([means[key] for _, means, _ in beds])}
+            for key in beds[0][1]]
     provenance.write_table(STUDY.with_name(f"{STUDY.stem}_axles.csv"), list(rows[0]), rows, origin)
     rows = [{"event": what, "unit": "s", **over_beds([times[what] for _, _, times in beds])} for what in EVENTS
             if all(what in times for _, _, times in beds)]

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The accounts of a run: they close on grains and on hard ground, better with a smaller step, survive a resume, and are told."""
+"""The accounts of a run: they close on grains and on hard ground, better with a smaller step, survive a resume, and are
+told."""
 import csv
 import json
 
@@ -8,7 +9,8 @@ from program import SystemTest, changed, furrow, main, write_scenario
 FLEXIBLE = changed(tire={"rigid": False, "elements_circumference": 30, "elements_width": 6},
                    terrain={"radius": 0.03, "cohesion": 20e3, "layers": 3, "length": 1.4, "width": 0.4},
                    rig={"carrier_mass": 200, "touchdown_damping": 3000, "touchdown_time": 0.1},
-                   run={"step": 1e-4, "end": 0.12, "average_from": 0.06}, output={"series_interval": 2e-3, "frame_interval": 0})
+                   run={"step": 1e-4, "end": 0.12, "average_from": 0.06},
+                   output={"series_interval": 2e-3, "frame_interval": 0})
 
 
 class Accounts(SystemTest):
@@ -37,7 +39,9 @@ class Accounts(SystemTest):
         lost = accounts["energy"]["lost"]
         for entry in ("sliding_loss", "normal_damping_loss", "tire_viscous_loss", "tire_numerical_loss", "damper_loss"):
             self.assertGreater(lost[entry], 0.0, entry)
-        self.assertRegex(told, r"furrow: accounts: energy residual -?[\d.e+-]+ % of [\d.]+ J turned over, momentum residual [\d.e-]+ of")
+        self.assertRegex(told,
+                         r"furrow: accounts: energy residual -?[\d.e+-]+ % of [\d.]+ J turned over, momentum residual "
+                         r"[\d.e-]+ of")
         self.assertNotIn("does not close", told)
         with open(self.folder / "run/timeseries_accounts.csv", newline="") as file:
             last = list(csv.DictReader(file))[-1]
@@ -56,23 +60,28 @@ class Accounts(SystemTest):
         self.check(fine)
         for part in ("tires", "rig"):
             rounding = 1e-8 * fine["energy"]["turnover"]
-            self.assertLess(abs(fine["energy"]["residual_of"][part]), 0.6 * abs(coarse["energy"]["residual_of"][part]) + rounding, part)
-        self.assertLess(abs(fine["energy"]["lost"]["surface_lag_loss"]), 0.75 * abs(coarse["energy"]["lost"]["surface_lag_loss"]))
+            self.assertLess(abs(fine["energy"]["residual_of"][part]),
+                            0.6 * abs(coarse["energy"]["residual_of"][part]) + rounding, part)
+        self.assertLess(abs(fine["energy"]["lost"]["surface_lag_loss"]),
+                        0.75 * abs(coarse["energy"]["lost"]["surface_lag_loss"]))
 
     def test_two_wheels_and_sums(self):
         wheels = [{"start": 0.6, "lateral": -0.4}, {"start": 0.9, "lateral": 0.4}]
-        scenario = dict(FLEXIBLE, rig={**FLEXIBLE["rig"], "wheels": wheels}, tire={"file": "hmmwv_layered.json", "rigid": True},
+        scenario = dict(FLEXIBLE, rig={**FLEXIBLE["rig"], "wheels": wheels},
+                        tire={"file": "hmmwv_layered.json", "rigid": True},
                         terrain={"engine": "rigid"})
         accounts, _ = self.accounts("two", scenario=scenario)
         self.check(accounts)
         self.assertEqual(len(accounts["energy"]["each_tire"]), 2)
-        self.assertAlmostEqual(sum(t["residual"] for t in accounts["energy"]["each_tire"]), accounts["energy"]["residual_of"]["tires"],
+        self.assertAlmostEqual(sum(t["residual"] for t in accounts["energy"]["each_tire"]),
+                               accounts["energy"]["residual_of"]["tires"],
                                delta=1e-9 * accounts["energy"]["turnover"])
 
     def test_a_resumed_run_has_the_same_accounts_bit_for_bit(self):
         whole, _ = self.accounts("whole")
         path = write_scenario(self.folder, dict(FLEXIBLE, checkpoint={"at_end": True}))
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "part", "--set", "run.end=0.08", cwd=self.folder)
+        done = furrow("run", path, "--no-plots", "--out", self.folder / "part",
+                      "--set", "run.end=0.08", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         done = furrow("resume", self.folder / "part", "--until", "0.12", "--no-plots", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -29,7 +29,8 @@ class Beds(SystemTest):
     def check_means(self, run, names):
         """Against the summaries of the beds themselves."""
         beds, together = [self.summary(f"{run}/{name}") for name in names], self.summary(run)
-        for key, of in (("drawbar_pull_N", lambda bed: bed["drawbar_pull_N"]["mean"]), ("sinkage_m", lambda bed: bed["sinkage_m"]),
+        for key, of in (("drawbar_pull_N", lambda bed: bed["drawbar_pull_N"]["mean"]),
+                        ("sinkage_m", lambda bed: bed["sinkage_m"]),
                         ("drive_torque_Nm", lambda bed: bed["drive_torque_Nm"])):
             values, n = [of(bed) for bed in beds], len(beds)
             found, sd = together[key], statistics.stdev(values)
@@ -39,7 +40,8 @@ class Beds(SystemTest):
             self.assertEqual(found["beds"], {"n": n, "mean": found["mean"], "half_width_95": found["half_width_95"]})
         self.assertEqual(together["beds"], together["drawbar_pull_N"]["beds"])
         self.assertEqual(together["wheels"][0]["sinkage_m"], together["sinkage_m"])
-        self.assertEqual([run["drawbar_pull_N"]["mean"] for run in together["runs"]], [bed["drawbar_pull_N"]["mean"] for bed in beds])
+        self.assertEqual([run["drawbar_pull_N"]["mean"] for run in together["runs"]],
+                         [bed["drawbar_pull_N"]["mean"] for bed in beds])
         self.assertEqual(len({bed["state_hash"] for bed in beds}), len(beds))
 
     def test_beds_are_run_averaged_kept_and_extended(self):
@@ -66,11 +68,14 @@ class Beds(SystemTest):
         self.assertEqual(furrow("report", run, cwd=self.folder).stdout, f"{run}/beds.png\n{run}/report.html\n")
 
         other = self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set", "rig.slip=0.2", code=2)
-        self.assertIn("holds beds of another scenario or other settings, expected a new folder or --overwrite", other.stderr)
+        self.assertIn("holds beds of another scenario or other settings, expected a new folder or --overwrite",
+                      other.stderr)
         (run / "notes.txt").write_text("mine")
-        self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set", "rig.slip=0.2", "--set", "run.seed=7", "--overwrite")
+        self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set",
+                  "rig.slip=0.2", "--set", "run.seed=7", "--overwrite")
         self.assertEqual(sorted(path.name for path in run.iterdir()),
-                         [".furrow-run", "notes.txt", "seed1", "seed1.log", "seed2", "seed2.log", "summary.json", "sweep.csv", "sweep.json"])
+                         [".furrow-run", "notes.txt", "seed1", "seed1.log",
+                          "seed2", "seed2.log", "summary.json", "sweep.csv", "sweep.json"])
         self.assertEqual([bed["seed"] for bed in self.summary(run)["runs"]], [7, 8])
         self.assertEqual(json.loads((run / "seed2" / "scenario.json").read_text())["run"]["seed"], 8)
 
@@ -108,7 +113,8 @@ class Beds(SystemTest):
         self.assertIn("not every bed finished: seed2: ", done.stderr)
         self.assertFalse((self.folder / "beds" / "summary.json").exists())
         failed = self.summary("beds", "summary_failed.json")
-        self.assertEqual((failed["failed"]["beds"], failed["failed"]["exit_code"], failed["beds"]["n"]), (["seed2"], 2, 2))
+        self.assertEqual((failed["failed"]["beds"], failed["failed"]["exit_code"], failed["beds"]["n"]),
+                         (["seed2"], 2, 2))
         self.assertEqual([bed["done"] for bed in failed["runs"]], [True, False, True])
         (self.folder / "beds" / "seed2" / "mine.txt").unlink()
         (self.folder / "beds" / "seed2").rmdir()
@@ -118,7 +124,8 @@ class Beds(SystemTest):
 
     def test_mistakes_are_told_before_anything_runs(self):
         (self.folder / "bed.csv").write_text("x_m,y_m,z_m\n0.1,0.0,0.1\n")
-        (self.folder / "study.json").write_text(json.dumps({"scenario": "small.json", "list": [{"rig.slip": 0.1}], "set": {"run.end": 0.01}}))
+        (self.folder / "study.json").write_text(json.dumps({"scenario": "small.json",
+                                                            "list": [{"rig.slip": 0.1}], "set": {"run.end": 0.01}}))
         for flags, words in ((["--seeds", "0"], "--seeds': is 0, expected 2 to 1000 beds"),
                              (["--seeds", "1"], "--seeds': is 1, expected 2 to 1000 beds"),
                              (["--seeds", "-3"], "--seeds': is -3, expected 2 to 1000 beds"),
@@ -126,9 +133,12 @@ class Beds(SystemTest):
                              (["--seeds", "3", "--jobs", "0"], "--jobs': is 0, expected 1 to 1024"),
                              (["--jobs", "2"], "--jobs': is given without --seeds"),
                              (["--seeds", "3", "--profile"], "--profile': is given with --seeds"),
-                             (["--seeds", "3", "--set", "terrain.engine=rigid"], "key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts': --seeds makes beds"),
-                             (["--seeds", "3", "--set", "terrain.bed=bed.csv"], "expected none with --seeds: every bed would be this one"),
-                             (["--seeds", "3", "--set", "run.seed=9007199254740990"], "key 'run.seed': is 9007199254740990, expected at most"),
+                             (["--seeds", "3", "--set", "terrain.engine=rigid"],
+                              "key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts': --seeds makes beds"),
+                             (["--seeds", "3", "--set", "terrain.bed=bed.csv"],
+                              "expected none with --seeds: every bed would be this one"),
+                             (["--seeds", "3", "--set", "run.seed=9007199254740990"],
+                              "key 'run.seed': is 9007199254740990, expected at most"),
                              (["--seeds", "3", "--set", "rig.slip=3"], "key 'rig.slip': is 3, expected")):
             done = self.beds(*flags, code=2)
             self.assertIn(words, done.stderr)
@@ -142,7 +152,8 @@ class Beds(SystemTest):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("holds the beds of 'furrow run --seeds'", done.stderr)
         self.assertEqual(furrow("sweep", study, "--out", "study", cwd=self.folder).returncode, 0)
-        self.assertIn("holds a study, expected a new folder or that of beds", self.beds("--seeds", "2", "--out", "study", "--overwrite", code=2).stderr)
+        self.assertIn("holds a study, expected a new folder or that of beds",
+                      self.beds("--seeds", "2", "--out", "study", "--overwrite", code=2).stderr)
         self.assertIn("holds a run", self.beds("--seeds", "2", "--out", "beds/seed1", "--overwrite", code=2).stderr)
 
 

@@ -11,7 +11,8 @@ SCENARIO = {
     "terrain": {"engine": "rigid"},
     "run": {"step": 1e-4, "end": 1.0},
 }
-COARSE = ("--elements-circumference", "24", "--elements-width", "6", "--warm", "0.02", "--steps", "60", "--step", "1e-4")
+COARSE = ("--elements-circumference", "24", "--elements-width", "6", "--warm",
+          "0.02", "--steps", "60", "--step", "1e-4")
 
 
 class Bench(SystemTest):
@@ -48,7 +49,8 @@ class Bench(SystemTest):
     def test_bad_beds(self):
         bed = self.folder / "bed.csv"
         bed.write_text("x_m,y_m,z_m\n0.1,0.1,0.006\n0.1,0.101,0.006\n")
-        for more, word in ((("--bed", "none.csv"), "none.csv"), (("--bed", bed), "line 3"), (("--law", "glue"), "--law"),
+        for more, word in ((("--bed", "none.csv"), "none.csv"), (("--bed", bed), "line 3"),
+                           (("--law", "glue"), "--law"),
                            (("--bed", bed, "--step", "1e-3"), "stable step")):
             done = furrow("bench", "grains", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
@@ -69,13 +71,16 @@ class Press(SystemTest):
     def press(self, *more, deflection="0.012", points="4"):
         path = self.folder / "pressed.json"
         path.write_text(json.dumps(SCENARIO))
-        return furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points, *more,
+        return furrow("press", path, "--out", self.folder / "out", "--deflection",
+                      deflection, "--points", points, *more,
                       cwd=self.folder)
 
     def test_plate(self):
         # Two rows of nodes or more touch: one alone has no length.
         done = self.press("--load", "2000", "--set", "tire.elements_circumference=60")
-        self.assertRegex(done.stderr, r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, footprint \d[\d.]* mm long, [\d.]+ mm wide")
+        self.assertRegex(done.stderr,
+                         r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, footprint "
+                         r"\d[\d.]* mm long, [\d.]+ mm wide")
         self.assertEqual(done.returncode, 0, done.stderr)
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), str(out))
@@ -100,19 +105,24 @@ class Press(SystemTest):
         self.assertEqual(forces, sorted(forces))
 
     def test_without_a_load_it_is_pressed_by_what_its_wheel_carries(self):
-        done = self.press("--set", "rig.carrier_mass=null", "--set", "rig.load=1500", "--set", "tire.elements_circumference=60")
+        done = self.press("--set", "rig.carrier_mass=null", "--set", "rig.load=1500",
+                          "--set", "tire.elements_circumference=60")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["load_N"], 1500, delta=1e-6)
 
     def test_what_wrinkles_and_what_buckles_on_the_way_is_named(self):
-        done = self.press("--set", "tire.file=hmmwv_layered.json", "--set", "tire.elements_circumference=60", "--set", "tire.elements_width=12")
+        done = self.press("--set", "tire.file=hmmwv_layered.json", "--set",
+                          "tire.elements_circumference=60", "--set", "tire.elements_width=12")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("furrow: warning: this tire wrinkles under its pressure", done.stderr)
-        done = furrow("press", self.folder / "pressed.json", "--out", self.folder / "out", "--overwrite", "--deflection", "0.02",
-                      "--points", "5", "--load", "1000", "--set", "tire.pressure=70000", "--set", "tire.elements_circumference=60",
+        done = furrow("press", self.folder / "pressed.json", "--out", self.folder / "out",
+                      "--overwrite", "--deflection", "0.02",
+                      "--points", "5", "--load", "1000", "--set", "tire.pressure=70000",
+                      "--set", "tire.elements_circumference=60",
                       "--set", "tire.elements_width=12", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stderr, r"furrow: warning: this tire buckles while it is pressed, first on the way to 0\.\d+ m")
+        self.assertRegex(done.stderr,
+                         r"furrow: warning: this tire buckles while it is pressed, first on the way to 0\.\d+ m")
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertEqual((summary["statically_stable"], summary["stable_while_pressed"]), (True, False))
         self.assertLess(summary["director_runout_rad"], 1e-6)
@@ -133,11 +143,13 @@ class Press(SystemTest):
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
 
     def test_a_scenario_says_how_its_tire_is_pressed_and_options_override_it(self):
-        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8", "--points", "2", "--deflection", "0.012",
+        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8",
+                  "--points", "2", "--deflection", "0.012",
                   "--load", "2000")
         deflections = []
         for more in ((), ("--cleat-width", "0.1"), ("--set", "press.cleat_width=0.1")):
-            done = furrow("press", "cleat_press.json", "--out", self.folder / "out", "--overwrite", *coarse, *more, cwd=self.folder)
+            done = furrow("press", "cleat_press.json", "--out", self.folder / "out",
+                          "--overwrite", *coarse, *more, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads((self.folder / "out/summary.json").read_text())
             self.assertEqual((summary["obstacle"], summary["cleat_width_m"], summary["cleat_height_m"]),
@@ -147,9 +159,11 @@ class Press(SystemTest):
         self.assertEqual(deflections[1], deflections[2])
         for setting, said in (("press.on=road", "key 'press.on': is 'road', expected 'plate' or 'cleat'"),
                               ("press.on=profile", "key 'press.on'"), ("press.points=0", "key 'press.points': is 0"),
-                              ("press.deflection=0.3", "key 'press.deflection': is 0.3 m"), ("press.width=1", "key 'press.width'"),
+                              ("press.deflection=0.3", "key 'press.deflection': is 0.3 m"),
+                              ("press.width=1", "key 'press.width'"),
                               ("press.cleat_width=[0.1]", "key 'press.cleat_width'")):
-            done = furrow("press", "cleat_press.json", "--out", self.folder / "other", "--set", setting, cwd=self.folder)
+            done = furrow("press", "cleat_press.json", "--out", self.folder / "other",
+                          "--set", setting, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("cleat_press.json: " + said, done.stderr)
         done = furrow("press", "cleat_press.json", "--out", self.folder / "other", "--set", "tire.file=hmmwv_ring.json",
@@ -165,7 +179,8 @@ class Press(SystemTest):
         profile.write_text("x_m,z_m\n-0.0255,0\n0.0255,0\n")
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.051")),
                            ("profile", ("--on", "profile", "--profile", profile))):
-            done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.03", "--points",
+            done = furrow("press", path, "--out", self.folder / "out",
+                          "--overwrite", "--deflection", "0.03", "--points",
                           "6", "--load", "8000", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads((self.folder / "out/summary.json").read_text())
@@ -175,7 +190,8 @@ class Press(SystemTest):
             self.assertAlmostEqual(summary["footprint"]["force_N"], 8000, delta=8)
             self.assertAlmostEqual(summary["footprint"]["width_m"], 0.24)
             keys.append(sorted(summary) + sorted(summary["sticking_stiffness"]) + sorted(summary["footprint"]))
-            self.assertGreater(summary["sticking_stiffness"]["vertical_N_per_m"], 0.9 * summary["tangent_stiffness_N_per_m"])
+            self.assertGreater(summary["sticking_stiffness"]["vertical_N_per_m"],
+                               0.9 * summary["tangent_stiffness_N_per_m"])
             self.assertGreater(summary["sticking_stiffness"]["longitudinal_N_per_m"], 0)
             self.assertIsNone(summary["sticking_stiffness"]["lateral_N_per_m"])
             self.assertAlmostEqual(summary["rim_force_N"][2], 8000, delta=8)
@@ -185,7 +201,8 @@ class Press(SystemTest):
                        "--out", self.folder / "shell", cwd=self.folder)
         self.assertEqual(shell.returncode, 0, shell.stderr)
         summary = json.loads((self.folder / "shell/summary.json").read_text())
-        self.assertEqual(keys[0], sorted(summary) + sorted(summary["sticking_stiffness"]) + sorted(summary["footprint"]))
+        self.assertEqual(keys[0], sorted(summary) + sorted(summary["sticking_stiffness"])
+                         + sorted(summary["footprint"]))
         self.assertIsNone(summary["stiffness_missing_because"])
         # The patch on a plate is far longer than the bar; up to 3 kN it is not, and the bar is as good as a plate.
         self.assertLess(1.1 * deflections["plate"], deflections["cleat"])
@@ -194,13 +211,15 @@ class Press(SystemTest):
 
     def test_planar_tire(self):
         path = self.folder / "planar.json"
-        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "aligator_planar.json", "elements_circumference": 48}}))
+        path.write_text(json.dumps({**SCENARIO,
+                                    "tire": {"file": "aligator_planar.json", "elements_circumference": 48}}))
         profile = self.folder / "plate.csv"
         profile.write_text("x_m,z_m\n-1,0\n1,0\n")
         deflections = {}
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.05")),
                            ("profile", ("--on", "profile", "--profile", profile))):
-            done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.08", "--points",
+            done = furrow("press", path, "--out", self.folder / "out",
+                          "--overwrite", "--deflection", "0.08", "--points",
                           "4", "--load", "15000", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads((self.folder / "out/summary.json").read_text())
@@ -240,10 +259,12 @@ class Press(SystemTest):
         self.assertAlmostEqual(moment["0.08"], -moment["-0.08"], places=2)
         self.assertLess(moment["0.08"], -1)  # leaning to the right it stands on its right shoulder
         done = self.press("--set", "press.camber=0.08", "--overwrite", "--load", "1500")
-        self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["deflection_m"], force["0.08"], places=12)
+        self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["deflection_m"],
+                               force["0.08"], places=12)
         done = self.press("--set", "press.camber=0.02", "--set", "tire.file=hmmwv_ring.json", "--overwrite")
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("pressed.json: key 'press.camber': is 0.02 rad, expected 0: a flexible ring is alike across its width", done.stderr)
+        self.assertIn("pressed.json: key 'press.camber': is 0.02 rad, expected 0: a flexible ring is alike across its "
+                      "width", done.stderr)
 
     def test_a_curve_that_ends_early_is_written(self):
         done = self.press("--load", "5000", deflection="0.2", points="8")
@@ -269,13 +290,15 @@ class Press(SystemTest):
         for command in ("validate", "run"):
             done = furrow(command, path, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key 'tire.file': is a planar finite-element tire, whose key 'integrator' is 'runge_kutta_4'", done.stderr)
+            self.assertIn("key 'tire.file': is a planar finite-element tire, whose key 'integrator' is 'runge_kutta_4'",
+                          done.stderr)
             self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json", "tire.json"])
         done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_bad_input(self):
-        for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"), (("--load", "inf"), "--load"),
+        for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"),
+                           (("--load", "inf"), "--load"),
                            (("--set", "tire.rigid=true"), "tire.rigid"),
                            (("--on", "profile"), "--profile"), (("--profile", "road.csv"), "--profile"),
                            (("--on", "profile", "--profile", "road.csv"), "road.csv"),

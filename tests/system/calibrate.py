@@ -16,7 +16,9 @@ class Calibrate(SystemTest):
     """Curves of a ring whose first sidewall coefficient is 1e6 N/m, made by `furrow press`."""
 
     def press(self, tire, name, *words):
-        done = furrow("press", ROOT / "rigs" / "cleat_press.json", "--set", f"tire.file={tire}", "--set", "tire.elements_circumference=null", "--set", "tire.elements_width=null", "--points", "8", "--out", name, "--quiet", *words, cwd=self.folder)
+        done = furrow("press", ROOT / "rigs" / "cleat_press.json", "--set",
+                      f"tire.file={tire}", "--set", "tire.elements_circumference=null", "--set",
+                      "tire.elements_width=null", "--points", "8", "--out", name, "--quiet", *words, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def curve(self, name, *words):
@@ -32,7 +34,8 @@ class Calibrate(SystemTest):
         study = {"calibrate": "ring", "start": "soft_ring.json",
                  "parameters": {"sidewall_1": {"lower": 1e5, "upper": 1e7}, "air_share": {"lower": 0.1, "upper": 1}},
                  "targets": [{"data": self.curve("plate", "--on", "plate"), "name": "plate", "on": "plate"},
-                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"), "name": "cleat", "on": "cleat",
+                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"),
+                              "name": "cleat", "on": "cleat",
                               "cleat_width": 0.051, "weight": 2}],
                  "held_out": [{"data": "plate/press.csv", "name": "again", "on": "plate"}], "starts": 3, **more}
         (self.folder / name).write_text(json.dumps(study))
@@ -48,7 +51,8 @@ class Calibrate(SystemTest):
         for number in (signal.SIGTERM, signal.SIGKILL):
             process = start("calibrate", "grains.json", "--out", "out", "--overwrite", cwd=self.folder)
             self.addCleanup(process.kill)
-            wait_for(lambda: all((self.folder / "out" / name).exists() for name in (".furrow-before/evaluations.csv", "evaluations.csv")), 60,
+            wait_for(lambda: all((self.folder / "out" / name).exists()
+                                 for name in (".furrow-before/evaluations.csv", "evaluations.csv")), 60,
                      "they are set aside")
             process.send_signal(number)
             _, err = process.communicate(timeout=60)
@@ -64,9 +68,11 @@ class Calibrate(SystemTest):
         done = furrow("calibrate", self.study(), "--out", "out", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)
         self.assertRegex(done.stderr, r"furrow: sidewall_1 1000000 ± \S+ N/m\n")
-        self.assertRegex(done.stderr, r"furrow: predicted again \(plate\): R² 1\.0000, largest error \S+ N, \S+ % of the peak\n")
+        self.assertRegex(done.stderr,
+                         r"furrow: predicted again \(plate\): R² 1\.0000, largest error \S+ N, \S+ % of the peak\n")
         out = self.folder / "out"
-        self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"}, FILES | {"fit.png", "residual.png", "report.html"})
+        self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"},
+                         FILES | {"fit.png", "residual.png", "report.html"})
         result = json.loads((out / "calibration.json").read_text())
         stiff = result["parameters"]["sidewall_1"]
         self.assertAlmostEqual(stiff["value"] / 1e6, 1, delta=1e-4)
@@ -90,15 +96,20 @@ class Calibrate(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_table_is_told_in_one_line_for_each_quantity(self):
-        study = {"calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKX1": {"lower": 5, "upper": 60}},
-                 "targets": [{"data": "sweep_lumped.csv", "of": of} for of in ("fx", "mz", "fy", "mx", "my")], "starts": 1}
+        study = {"calibrate": "handling", "start": "handling_start.tir",
+                 "parameters": {"PKX1": {"lower": 5, "upper": 60}},
+                 "targets": [{"data": "sweep_lumped.csv", "of": of} for of in ("fx", "mz", "fy", "mx", "my")],
+                 "starts": 1}
         (self.folder / "handling.json").write_text(json.dumps(study))
         done = furrow("calibrate", "handling.json", "--out", "out", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: fitted ")]
         self.assertEqual(len(told), 5, done.stderr)
-        self.assertRegex(told[0], r"fitted sweep_lumped_fx \(fx of 41 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
-        self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the peak$")
+        self.assertRegex(told[0],
+                         r"fitted sweep_lumped_fx \(fx of 41 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
+        self.assertRegex(told[1],
+                         r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the "
+                         r"peak$")
         for plot in ("fit.png", "residual.png"):  # five panels in two rows
             wide, high = struct.unpack(">II", (self.folder / "out" / plot).read_bytes()[16:24])
             self.assertTrue(2 < wide / high < 3, (plot, wide, high))
@@ -111,7 +122,8 @@ class Calibrate(SystemTest):
         stops = 0
         for wait in (0.0, 0.05, 0.2):
             process = start("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder)
-            wait_for(lambda: (self.folder / "often" / "evaluations.csv").exists() or process.poll() is not None, 60, "the table")
+            wait_for(lambda: (self.folder / "often" / "evaluations.csv").exists() or process.poll() is not None,
+                     60, "the table")
             time.sleep(wait)
             process.send_signal(signal.SIGTERM)
             out, err = process.communicate(timeout=60)
@@ -153,7 +165,8 @@ class Calibrate(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         (self.folder / "out" / "notes.json").write_text("mine")
         before = self.text("out")
-        done = furrow("calibrate", self.study("other.json", result="notes.json"), "--out", "out", "--overwrite", cwd=self.folder)
+        done = furrow("calibrate", self.study("other.json", result="notes.json"),
+                      "--out", "out", "--overwrite", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("notes.json: stands where a result is to be written", done.stderr)
         self.assertEqual(self.text("out"), before)
@@ -162,7 +175,8 @@ class Calibrate(SystemTest):
     def test_wrong_studies_leave_nothing(self):
         self.study()
         before = set(self.names())
-        for change, expected in (({"calibrate": "rings"}, "'rings' is unknown, expected 'ring'?"), ({"start": "no.json"}, "key 'start'"),
+        for change, expected in (({"calibrate": "rings"}, "'rings' is unknown, expected 'ring'?"),
+                                 ({"start": "no.json"}, "key 'start'"),
                                  ({"starts": 0}, "key 'starts'")):
             document = {**json.loads((self.folder / "study.json").read_text()), **change}
             (self.folder / "wrong.json").write_text(json.dumps(document))
@@ -187,14 +201,17 @@ class Calibrate(SystemTest):
         self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
         done = furrow("resume", "out", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-        self.assertEqual(done.stderr, "furrow: error: out: holds a calibration, expected a run; the command that began it, 'furrow calibrate' "
+        self.assertEqual(done.stderr,
+                         "furrow: error: out: holds a calibration, expected a run; the command that began it, 'furrow "
+                         "calibrate' "
                                       "with the same study, continues it\n")
         (self.folder / "out" / "calibration.json").unlink()  # as after a signal or kill −9
         before = set(self.names())
         for command in (("report",), ("resume",), ("events",), ("report", "--vtk", "vtk")):
             done = furrow(command[0], "out", *command[1:], cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertEqual(done.stderr, "furrow: error: out: holds a calibration that has not ended; the command that began it, "
+            self.assertEqual(done.stderr,
+                             "furrow: error: out: holds a calibration that has not ended; the command that began it, "
                                           "'furrow calibrate' with the same study, continues it\n")
         self.assertEqual(set(self.names()), before)
         self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
@@ -206,29 +223,39 @@ class Calibrate(SystemTest):
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0], "calibration  study.json, kind ring")
         self.assertIn("parameter    sidewall_1: 100e3 to 1e7 N/m, logarithmic, from 235340", lines)
-        self.assertRegex(done.stdout, r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, force_N \S+ to \S+\n")
+        self.assertRegex(done.stdout,
+                         r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, force_N \S+ to "
+                         r"\S+\n")
         self.assertRegex(done.stdout, r"\nheld out     again \(")
         self.assertIn("starts       3, seed 1", lines)
         self.assertIn("result       soft_ring_fitted.json", lines)
         told = json.loads(furrow("validate", study, "--json", cwd=self.folder).stdout)
-        self.assertEqual(told["parameters"]["air_share"], {"unit": "-", "lower": 0.1, "upper": 1.0, "scale": told["parameters"]["air_share"]["scale"], "start": told["parameters"]["air_share"]["start"]})
+        self.assertEqual(told["parameters"]["air_share"],
+                         {"unit": "-", "lower": 0.1, "upper": 1.0, "scale": told["parameters"]["air_share"]["scale"],
+                          "start": told["parameters"]["air_share"]["start"]})
         self.assertEqual([target["name"] for target in told["targets"]], ["plate", "cleat"])
         done = furrow("validate", study, "--set", "rig.slip=0.1", cwd=self.folder)
-        self.assertEqual(done.stderr, "furrow: error: command line: key '--set': is given with a calibration study, expected a scenario\n")
+        self.assertEqual(done.stderr,
+                         "furrow: error: command line: key '--set': is given with a calibration study, expected a "
+                         "scenario\n")
         self.study("wrong.json", starts=0)
-        self.assertEqual(furrow("validate", "wrong.json", cwd=self.folder).stderr, furrow("calibrate", "wrong.json", cwd=self.folder).stderr)
+        self.assertEqual(furrow("validate", "wrong.json", cwd=self.folder).stderr,
+                         furrow("calibrate", "wrong.json", cwd=self.folder).stderr)
         self.assertNotIn("results", self.names())
 
     def test_validate_sums_up_a_target_of_many_values(self):
         done = furrow("validate", "calibrate_handling.json", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to 5587\.121, each ± 40\n")
+        self.assertRegex(done.stdout,
+                         r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to 5587\.121, each "
+                         r"± 40\n")
 
     def test_commands_for_scenarios_point_to_calibrate(self):
         for command in ("run", "ranks", "press", "bed", "soil"):
             done = furrow(command, "calibrate_ring.json", cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertRegex(done.stderr, r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a scenario "
+            self.assertRegex(done.stderr,
+                             r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a scenario "
                                           r"\('furrow calibrate' takes calibrations\)\n$")
 
     def test_explain_knows_the_keys_of_calibrations(self):
@@ -242,7 +269,8 @@ class Calibrate(SystemTest):
         self.assertRegex(told("calibrate.ring"), r"\nbending +\S+ to \S+")
         self.assertRegex(told("calibrate.ring.softening"), r"\n  default  0 to 1\n")
         for key, what in (("calibrate.ring.bendin", "expected 'bending'?"), ("calibrate.target", "expected 'targets'?"),
-                          ("calibrate_ring.json", "is the name of a file, expected a key; 'furrow validate' checks a file")):
+                          ("calibrate_ring.json",
+                           "is the name of a file, expected a key; 'furrow validate' checks a file")):
             done = furrow("explain", key, cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn(what, done.stderr)
@@ -253,7 +281,8 @@ class Calibrate(SystemTest):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("key '--out': cannot be made", done.stderr)
             # By its name alone, from any folder.
-            self.assertEqual(furrow("calibrate", path.name, "--out", "/proc/furrow", cwd=self.folder).stderr, done.stderr)
+            self.assertEqual(furrow("calibrate", path.name, "--out", "/proc/furrow", cwd=self.folder).stderr,
+                             done.stderr)
             self.assertEqual(furrow("validate", path.name, cwd=self.folder).returncode, 0)
 
 

@@ -8,7 +8,8 @@ from program import ROOT, SystemTest, furrow, main, start, wait_for
 
 
 class CalibrateGrains(SystemTest):
-    """One parameter, one bed, two loads, fast tools, soft grains: as quick as the tests can be, and no result to quote."""
+    """One parameter, one bed, two loads, fast tools, soft grains: as quick as the tests can be, and no result to
+    quote."""
 
     STUDY = {"calibrate": "grains", "start": "drawbar_pull_small.json",
              "set": {"terrain.material": "loose_sand.json", "terrain.young_modulus": 1e6, "terrain.size_spread": 0},
@@ -27,7 +28,8 @@ class CalibrateGrains(SystemTest):
         (self.folder / "study.json").write_text(json.dumps(self.STUDY))
         process = start("calibrate", "study.json", "--out", "out", "--no-plots", cwd=self.folder)
         table = self.folder / "out" / "evaluations.csv"
-        wait_for(lambda: process.poll() is not None or (table.exists() and table.read_text().count("\n") >= 4), 300, "two evaluations")
+        wait_for(lambda: process.poll() is not None or (table.exists() and table.read_text().count("\n") >= 4),
+                 300, "two evaluations")
         process.send_signal(signal.SIGTERM)
         out, err = process.communicate(timeout=120)
         self.assertEqual((process.returncode, out), (75, "out\n"), err)
@@ -46,10 +48,12 @@ class CalibrateGrains(SystemTest):
         result = json.loads((self.folder / "out" / "calibration.json").read_text())
         self.assertEqual(result["evaluations"], len(fitted))
         self.assertAlmostEqual(result["processor_s"], sum(float(row["processor_s"] or 0) for row in rows), places=2)
-        states = {target["name"]: target["figures"][0].get("state") for target in result["targets"] + result["held_out_targets"]}
+        states = {target["name"]: target["figures"][0].get("state")
+                  for target in result["targets"] + result["held_out_targets"]}
         self.assertEqual(states["bulk_density_kg_m3"], "out of range")  # denser than the grains themselves
         self.assertIsNone(states["janosi_K_m"])
-        self.assertTrue(any("bulk_density_kg_m3" in warning and "is not reached" in warning for warning in result["warnings"]))
+        self.assertTrue(any("bulk_density_kg_m3" in warning and "is not reached" in warning
+                            for warning in result["warnings"]))
         place = {row["rolling_friction"] for row in fitted}
         self.assertIn(result["parameters"]["rolling_friction"]["value"], map(float, place))
 
@@ -57,13 +61,15 @@ class CalibrateGrains(SystemTest):
         self.assertEqual(soil["terrain"]["rolling_friction"], result["parameters"]["rolling_friction"]["value"])
         self.assertEqual(soil["measured"]["grain_radius_m"], 0.01)
         self.assertIn("mean", soil["measured"]["bulk_density_kg_m3"])
-        told = furrow("validate", ROOT / "rigs" / "drawbar_pull_small.json", "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}",
+        told = furrow("validate", ROOT / "rigs" / "drawbar_pull_small.json",
+                      "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}",
                       cwd=self.folder)
         self.assertEqual(told.returncode, 0, told.stderr)
         for name in ("fit.png", "residual.png", "report.html"):
             self.assertTrue((self.folder / "out" / name).exists(), name)
         # All is known: the same bits at once.
-        expected = {name: (self.folder / "out" / name).read_bytes() for name in ("calibration.json", "fit.csv", "evaluations.csv", "sand.json")}
+        expected = {name: (self.folder / "out" / name).read_bytes()
+                    for name in ("calibration.json", "fit.csv", "evaluations.csv", "sand.json")}
         done = furrow("calibrate", "study.json", "--out", "out", "--no-plots", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual({name: (self.folder / "out" / name).read_bytes() for name in expected}, expected)

@@ -34,18 +34,22 @@ class Includes(Check):
         for line in ('#include "nodes/scenario/b.hpp"', "#include <nodes/scenario/b.hpp>",
                      '  #  include "nodes/scenario/b.hpp"', '#include "../nodes/scenario/b.hpp"'):
             told = self.told(tire__a_dot_hpp="\n" + line, nodes__scenario__b_dot_hpp="")
-            self.assertIn("tire/a.hpp:2: tire includes nodes/scenario/b.hpp of nodes/scenario, which is not below", told)
+            self.assertIn("tire/a.hpp:2: tire includes nodes/scenario/b.hpp of nodes/scenario, which is not below",
+                          told)
         self.assertIn("expected the path from the root", self.told(tire__a_dot_hpp='#include "../protocol/core/a.hpp"',
                                                                    protocol__core__a_dot_hpp=""))
         self.assertEqual(self.told(tire__a_dot_hpp='#include "protocol/core/a.hpp"', protocol__core__a_dot_hpp=""), "")
 
     def test_lines_that_are_too_wide_are_named(self):
         self.assertEqual(self.told(tire__a_dot_hpp="// " + "·" * 117), "")
-        self.assertIn("tire/a.hpp:2: has 121 columns, expected at most 120", self.told(tire__a_dot_hpp="\n// " + "·" * 118))
+        self.assertIn("tire/a.hpp:2: has 121 columns, expected at most 120",
+                      self.told(tire__a_dot_hpp="\n// " + "·" * 118))
 
     def test_tests_and_mpi_stay_outside(self):
-        self.assertIn("tire includes tests/x.hpp", self.told(tire__a_dot_hpp='#include "tests/x.hpp"', tests__x_dot_hpp=""))
-        self.assertIn("only protocol/ and terrain/liggghts/plugin/ know MPI", self.told(rigs__a_dot_cpp="#include <mpi.h>"))
+        self.assertIn("tire includes tests/x.hpp",
+                      self.told(tire__a_dot_hpp='#include "tests/x.hpp"', tests__x_dot_hpp=""))
+        self.assertIn("only protocol/ and terrain/liggghts/plugin/ know MPI",
+                      self.told(rigs__a_dot_cpp="#include <mpi.h>"))
         self.assertEqual(self.told(protocol__a_dot_cpp="#include <mpi.h>"), "")
 
     def test_new_folders_must_be_named(self):
@@ -56,7 +60,8 @@ class Includes(Check):
     def test_dummies_obey_the_rules_of_the_room_that_they_would_stand_in(self):
         told = self.told(tests__dummies__spring_wheel_dot_hpp='#include "tire/tires.hpp"', tire__tires_dot_hpp="")
         self.assertIn("circle of includes", told)
-        told = self.told(tests__dummies__held_hub_dot_hpp='#include "nodes/scenario/b.hpp"', nodes__scenario__b_dot_hpp="")
+        told = self.told(tests__dummies__held_hub_dot_hpp='#include "nodes/scenario/b.hpp"',
+                         nodes__scenario__b_dot_hpp="")
         self.assertIn("rigs includes nodes/scenario/b.hpp", told)
 
 
@@ -68,11 +73,13 @@ class Headers(Check):
         return self.told(scripts__cmake__FurrowCompiler_dot_cmake=headers, **files)
 
     def test_a_name_needs_its_header(self):
-        self.assertIn("tire/a.cpp:2: uses std::vector without #include <vector>", self.said(tire__a_dot_cpp="\nstd::vector<int> a;"))
+        self.assertIn("tire/a.cpp:2: uses std::vector without #include <vector>",
+                      self.said(tire__a_dot_cpp="\nstd::vector<int> a;"))
         self.assertIn("uses std::ranges::sort without", self.said(tire__a_dot_cpp="std::ranges::sort(a);"))
         self.assertIn("uses TEST without #include <gtest/gtest.h>", self.said(tests__a_dot_cpp="TEST(A, b) {}"))
         self.assertEqual(self.said(tire__a_dot_cpp="#include <vector>\nstd::vector<int> a;"), "")
-        self.assertEqual(self.said(tire__a_dot_cpp="// std::vector\nconst char* a = \"std::vector\"; std::string b;"), "")
+        self.assertEqual(self.said(tire__a_dot_cpp="// std::vector\nconst char* a = \"std::vector\"; std::string b;"),
+                         "")
 
     def test_a_header_of_the_project_brings_what_it_includes(self):
         uses = '#include "tire/b.hpp"\nnlohmann::json a;'
@@ -88,7 +95,8 @@ class Docs(Check):
     script = "check_docs.py"
 
     def test_paths_that_lead_nowhere(self):
-        self.assertIn("names line 999 of 'tire/x.cpp'", self.told(A_dot_md="`tire/x.cpp:999`", tire__x_dot_cpp="1\n2\n"))
+        self.assertIn("names line 999 of 'tire/x.cpp'",
+                      self.told(A_dot_md="`tire/x.cpp:999`", tire__x_dot_cpp="1\n2\n"))
         self.assertEqual(self.told(A_dot_md="`tire/x.cpp:2`, `x.cpp`", tire__x_dot_cpp="1\n2\n"), "")
         self.assertIn("names 'y.hpp'", self.told(A_dot_md="`y.hpp`", tire__x_dot_cpp=""))
         self.assertEqual(self.told(A_dot_md="`shell/x.cpp`", tire__shell__x_dot_cpp=""), "")
@@ -106,7 +114,8 @@ class Docs(Check):
         said = "It pulls 1400 ± 150 N, sinks by 21 ±\n3 mm and leaves a rut of 18 ± 6 mm.\n"
         files = {"rigs__drawbar_pull_small_dot_json": json.dumps({"expected": expected})}
         self.assertEqual(self.told(README_dot_md=said, **files), "")
-        self.assertIn("README.md: does not say '1400 ± 150 N', which rigs/drawbar_pull_small.json expects as drawbar_pull",
+        self.assertIn("README.md: does not say '1400 ± 150 N', which rigs/drawbar_pull_small.json expects as "
+                      "drawbar_pull",
                       self.told(README_dot_md=said.replace("1400", "1500"), **files))
 
     def test_a_sixth_file_within_a_step_of_a_recipe(self):
@@ -137,15 +146,18 @@ class Docs(Check):
 
     def test_commits_that_are_not_in_the_history(self):
         def history(root):
-            for command in (["init", "-q"], ["-c", "user.name=A", "-c", "user.email=a@example", "commit", "-q", "--allow-empty", "-m", "a"]):
+            for command in (["init", "-q"], ["-c", "user.name=A", "-c",
+                                             "user.email=a@example", "commit", "-q", "--allow-empty", "-m", "a"]):
                 subprocess.run(["git", "-C", root, *command], check=True)
-            name = subprocess.run(["git", "-C", root, "rev-parse", "HEAD"], check=True, text=True, capture_output=True).stdout[:8]
+            name = subprocess.run(["git", "-C", root, "rev-parse", "HEAD"],
+                                  check=True, text=True, capture_output=True).stdout[:8]
             page = root / "A.md"
             page.write_text(page.read_text().replace("HEAD", name))
         head = "# commit: 1a2b3c4d and 1a2b3c4e\n# compiler: c\n# processor: p\n# command: x.py\n"
         page = "Mended at 1a2b3c4f. It was 12345678 bytes of a facade at HEAD (`a.csv`).\n\n    1a2b3c4a of code\n"
         self.assertEqual(self.told(A_dot_md=page, tests__a_dot_csv=head), "")  # no repository
-        self.assertEqual(self.told(history, A_dot_md=page.replace("HEAD", "a page"), tests__a_dot_csv=head), "")  # a squashed one
+        # a squashed one
+        self.assertEqual(self.told(history, A_dot_md=page.replace("HEAD", "a page"), tests__a_dot_csv=head), "")
         said = self.told(history, A_dot_md=page, tests__a_dot_csv=head).splitlines()
         self.assertEqual(said, ["A.md:1: names commit 1a2b3c4f, which is not in the history",
                                 "tests/a.csv:1: names commit 1a2b3c4d, which is not in the history",

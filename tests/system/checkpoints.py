@@ -79,7 +79,8 @@ class Resume(CheckpointTest):
     def test_lines_that_means_count_equally_stay_equally_long(self):
         self.run_with_fault("step", 0, 250, "kill")
         self.assertRegex(self.resume("--set", "output.series_interval=0.004", code=2).stderr,
-                         r"key 'output.series_interval': is 0.004 .* 0.002, expected the same: .* means count all lines of a series equally")
+                         r"key 'output.series_interval': is 0.004 .* 0.002, expected the same: .* means count all "
+                         r"lines of a series equally")
 
     def test_a_finished_run_that_has_lost_results_says_so(self):
         run = self.copy_of_whole()
@@ -101,7 +102,8 @@ class Resume(CheckpointTest):
         if subprocess.run([*user, FAULTY, "--version"], capture_output=True).returncode != 0:
             self.skipTest("another user may not run the program where it lies")
         for closed, words in (("checkpoints", "checkpoints: cannot be read: Permission denied"),
-                              ("checkpoints/000000000500", "000000000500/manifest.json: cannot be read: Permission denied"),
+                              ("checkpoints/000000000500",
+                               "000000000500/manifest.json: cannot be read: Permission denied"),
                               ("checkpoints/000000000500/tire0.h5", "tire0.h5: cannot be read: Permission denied"),
                               ("", "out: cannot be read: Permission denied, expected the folder of a run")):
             shutil.rmtree(self.run_folder, ignore_errors=True)
@@ -126,7 +128,8 @@ class Resume(CheckpointTest):
         for name in ("summary.json", "results.h5", "frames/tire0_000002.h5"):
             (run / name).rename(run / "kept")
             os.mkfifo(run / name)
-            self.assertIn(f"{name}: is not a file, expected one that furrow wrote", self.program("report", run, code=2).stderr)
+            self.assertIn(f"{name}: is not a file, expected one that furrow wrote",
+                          self.program("report", run, code=2).stderr)
             (run / "kept").rename(run / name)
 
     def test_a_finished_run_has_nothing_to_do(self):
@@ -138,7 +141,8 @@ class Resume(CheckpointTest):
 
     def test_changed_physics_is_refused_by_its_key(self):
         run = self.copy_of_whole()
-        for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"), ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
+        for setting, key, was in (("rig.slip=0.5", "rig.slip", "0.3"),
+                                  ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
                                   ("run.step=1e-4", "run.step", "0.0002"), ("run.seed=2", "run.seed", "1"),
                                   ("terrain.engine=rigid", "terrain.engine", "'dem'")):
             done = self.resume("--set", setting, code=2)
@@ -154,7 +158,8 @@ class Resume(CheckpointTest):
 
     def test_an_earlier_end_is_refused(self):
         self.copy_of_whole()
-        self.assertIn("key 'run.end': is 0.06 s, but the run has reached 0.1 s", self.resume("--until", "0.06", code=2).stderr)
+        self.assertIn("key 'run.end': is 0.06 s, but the run has reached 0.1 s",
+                      self.resume("--until", "0.06", code=2).stderr)
 
     def test_nothing_goes_on_without_its_checkpoint(self):
         run = self.copy_of_whole()
@@ -165,7 +170,8 @@ class Resume(CheckpointTest):
     def test_a_lost_scenario_is_restored_from_the_checkpoint(self):
         run = self.copy_of_whole()
         (run / "scenario.json").unlink()
-        self.assertRegex(self.resume().stderr, r"warning: \S.*scenario\.json: was missing and is restored from \S.*checkpoints/\d+")
+        self.assertRegex(self.resume().stderr,
+                         r"warning: \S.*scenario\.json: was missing and is restored from \S.*checkpoints/\d+")
         self.same_as_whole()
 
     def test_another_build_is_warned_of(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs under Slurm: a job that is signalled, queued again and continued leaves the files of an undisturbed run, whoever
-queues it again, also with four wheels on two ranks of LIGGGHTS; ranks that srun starts; and what is refused. Needs Debian's
-slurm-wlm and munge; skipped without them."""
+queues it again, also with four wheels on two ranks of LIGGGHTS; ranks that srun starts; and what is refused. Needs
+Debian's slurm-wlm and munge; skipped without them."""
 import csv
 import os
 import subprocess
@@ -31,7 +31,8 @@ class ClusterTest(CheckpointTest):
     def script(self, *flags):
         """The path of what `furrow ranks --slurm` prints."""
         job = ["--cores-per-node", self.CORES, "--partition", "all", "--time", "10"]
-        done = furrow("ranks", "--slurm", *job, *flags, self.path, "--out", self.run_folder, cwd=self.folder, program=FAULTY)
+        done = furrow("ranks", "--slurm", *job, *flags, self.path, "--out",
+                      self.run_folder, cwd=self.folder, program=FAULTY)
         self.assertEqual(done.returncode, 0, done.stderr)
         path = self.folder / "job.sh"
         # the plots of the other run were left out, too
@@ -40,20 +41,24 @@ class ClusterTest(CheckpointTest):
         return path
 
     def srun(self, *arguments, mpi="pmix", count=3):
-        return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none", "--overcommit", "-n", count, FAULTY, *arguments,
+        return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none",
+                                 "--overcommit", "-n", count, FAULTY, *arguments,
                                  cwd=self.folder, check=False)
 
     def requeued_job_ends_as_if_undisturbed(self, **env):
-        number = self.cluster.submit(self.script(), cwd=self.folder, env={**self.fault("step", 0, self.STOPPED_AT, "wait"), **env})
+        number = self.cluster.submit(self.script(), cwd=self.folder,
+                                     env={**self.fault("step", 0, self.STOPPED_AT, "wait"), **env})
         self.addCleanup(self.cluster.call, "scancel", "--quiet", number, check=False)
         wait_for(self.mark.exists, 60, f"the job comes to its step {self.STOPPED_AT}: {self.cluster.job(number)}")
         self.cluster.call("scancel", "--batch", "--signal=USR1", number)
         said = self.folder / f"slurm-{number}.out"
         wait_for(lambda: "stopping" in said.read_text(), 20, "the signal comes")
         self.mark.unlink()
-        self.cluster.wait_for_state(number, lambda job: job["Restarts"] == "1" and job["JobState"] in ("PENDING", "RUNNING"), 60)
+        self.cluster.wait_for_state(number, lambda job: job["Restarts"] == "1"
+                                    and job["JobState"] in ("PENDING", "RUNNING"), 60)
         time.sleep(3)  # Slurm refuses what it began in the same second; on its own it lets two minutes pass
-        wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}", "StartTime=now", check=False).returncode == 0,
+        wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}",
+                                           "StartTime=now", check=False).returncode == 0,
                  30, "the job need not wait for two minutes")
         self.cluster.wait_for_state(number, lambda job: job["JobState"] == "COMPLETED", 240)
         text = said.read_text()
@@ -104,15 +109,18 @@ class QueuedAgainBySlurm(ClusterTest):
 
     def test_a_job_that_never_comes_to_a_checkpoint_ends(self):
         env = {"SLURM_RESTART_COUNT": "3", "SLURM_JOB_ID": "1"}
-        done = subprocess.run(["bash", self.script()], cwd=self.folder, env={**os.environ, **env}, capture_output=True, text=True)
+        done = subprocess.run(["bash", self.script()], cwd=self.folder,
+                              env={**os.environ, **env}, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("ended 3 times before the first checkpoint", done.stderr)
 
 
 # A wheel at each corner of the bed, each under a load of its own, two of them on either rank of the terrain.
 FOUR_WHEELS = on_liggghts(changed(
-    rig={"touchdown_damping": 0, "wheels": [{"start": start, "lateral": lateral, "carrier_mass": mass} for start, lateral, mass in
-                                            ((0.55, -0.23, 300), (0.55, 0.23, 350), (1.65, -0.23, 400), (1.65, 0.23, 450))]},
+    rig={"touchdown_damping": 0, "wheels": [{"start": start, "lateral": lateral, "carrier_mass": mass} for start,
+                                            lateral, mass in
+                                            ((0.55, -0.23, 300), (0.55, 0.23, 350),
+                                             (1.65, -0.23, 400), (1.65, 0.23, 450))]},
     terrain={"layers": 3, "length": 2.4, "width": 0.95},
     run={"step": 2e-4, "end": 0.08, "average_from": 0.02, "peer_timeout": 60},
     output={"series_interval": 1e-3, "frame_interval": 0.01}, checkpoint={"interval": 0.01, "keep": 1000}), 2)
@@ -128,16 +136,20 @@ class FourWheelsOnTwoRanks(ClusterTest):
     def test_job_ends_as_if_undisturbed(self):
         for wheel in range(4):
             with open(self.whole / f"timeseries_wheel{wheel}.csv", newline="") as file:
-                self.assertGreater(max(float(line["vertical_force_N"]) for line in csv.DictReader(file)), 900.0, f"wheel {wheel}")
+                self.assertGreater(max(float(line["vertical_force_N"]) for line in csv.DictReader(file)),
+                                   900.0, f"wheel {wheel}")
         self.requeued_job_ends_as_if_undisturbed()
         signalled = set(steps(self.run_folder)) - set(steps(self.whole))
         self.assertEqual(len(signalled), 1, "the checkpoint of the signal")
         self.assertIn(min(signalled), range(self.STOPPED_AT, self.STOPPED_AT + 20))
         files = [path for path in self.whole.rglob("*") if path.is_file()]
-        equal = [path for path in files if path.read_bytes() == (self.run_folder / path.relative_to(self.whole)).read_bytes()]
+        equal = [path for path in files if path.read_bytes()
+                 == (self.run_folder / path.relative_to(self.whole)).read_bytes()]
         rest = [path.relative_to(self.whole).as_posix() for path in set(files) - set(equal)]
-        self.assertEqual(sorted(path for path in rest if not path.startswith("checkpoints/")), ["run.log", "summary.json"])
-        print(f"signalled before step {min(signalled)} of {steps(self.whole)[-1]}; of {len(files)} files {len(equal)} are equal byte for "
+        self.assertEqual(sorted(path for path in rest if not path.startswith("checkpoints/")),
+                         ["run.log", "summary.json"])
+        print(f"signalled before step {min(signalled)} of {steps(self.whole)[-1]}; of {len(files)} files {len(equal)} "
+              f"are equal byte for "
               f"byte; wall times aside so are summary.json and {len(rest) - 2} files of checkpoints")
 
 

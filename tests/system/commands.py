@@ -7,7 +7,9 @@ import unittest
 
 from program import ROOT, SMALL, SystemTest, changed, furrow, main, on_terminal, write_scenario
 
-STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "study_handling.json", "multipass.json")  # for `furrow sweep`
+# for `furrow sweep`
+STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json",
+           "study_hard_slip.json", "study_handling.json", "multipass.json")
 CALIBRATIONS = sorted(path.name for path in (ROOT / "rigs").glob("calibrate_*.json"))  # for `furrow calibrate`
 SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json")
                  if path.name not in ("scenario.schema.json", *STUDIES, *CALIBRATIONS))
@@ -26,7 +28,8 @@ class Commands(SystemTest):
         text = self.output("--help")
         for command in ("run", "validate", "ranks", "explain", "report", "events", "bed", "soil"):
             self.assertIn(command, text)
-            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command == "explain" else "DIR",
+            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil")
+                          else "KEY" if command == "explain" else "DIR",
                           self.output(command, "--help"))
 
     def test_examples_in_the_help_name_options_and_files_that_there_are(self):
@@ -47,10 +50,12 @@ class Commands(SystemTest):
                         self.assertTrue(name in shipped or name in ("mine.json", "my_tire.json"), name)
 
     def test_texts_for_people_are_as_wide_as_the_terminal_and_no_wider_than_120_columns(self):
-        for command in (*re.findall(r"^  ([a-z]+) {3,}", self.output("--help"), re.MULTILINE), "bench grains", "bench tire", ""):
+        for command in (*re.findall(r"^  ([a-z]+) {3,}", self.output("--help"), re.MULTILINE),
+                        "bench grains", "bench tire", ""):
             for line in self.output(*command.split(), "--help").splitlines():
                 self.assertLessEqual(len(line), 120, command)
-        for arguments in (["press", "--help"], ["explain"], ["explain", "terrain.bed"], ["list"], ["validate", "first_look.json"],
+        for arguments in (["press", "--help"], ["explain"], ["explain", "terrain.bed"],
+                          ["list"], ["validate", "first_look.json"],
                           ["validate", "calibrate_handling.json"]):
             with self.subTest(arguments):
                 code, text = on_terminal(*arguments, cwd=self.folder, columns=90)
@@ -59,7 +64,8 @@ class Commands(SystemTest):
                 self.assertLessEqual(max(len(line) for line in text.splitlines() if len(line.split()) > 1), 90)
                 if arguments[0] != "validate":  # whose times differ
                     self.assertEqual(words, self.output(*arguments).split())
-        self.assertRegex(on_terminal("list", "scenarios", cwd=self.folder, columns=90)[1], r"\n  half_car\.json              Ride: .*\n {29}\S")
+        self.assertRegex(on_terminal("list", "scenarios", cwd=self.folder, columns=90)[1],
+                         r"\n  half_car\.json              Ride: .*\n {29}\S")
 
     def test_shipped_scenarios_are_valid(self):
         self.assertIn("first_look.json", SHIPPED)
@@ -68,7 +74,8 @@ class Commands(SystemTest):
                 report = json.loads(self.output("validate", ROOT / "rigs" / name, "--json"))
                 self.assertEqual(report["scenario"], name[:-5])
                 self.assertGreater(report["steps"], 0)
-                tires = 6 if name.startswith("rover") else 4 if name.startswith(("hmmwv", "four_wheels")) else 2 if name == "half_car.json" else 1
+                tires = 6 if name.startswith("rover") else 4 if name.startswith(("hmmwv",
+                                                                                 "four_wheels")) else 2 if name == "half_car.json" else 1
                 self.assertEqual([rank["node"] for rank in report["ranks"]],
                                  ["rig", *(f"tire {k}" for k in range(tires)), "terrain"])
                 if not name.endswith("_tr.json"):
@@ -85,8 +92,10 @@ class Commands(SystemTest):
 
     def test_validate_tells_people(self):
         text = self.output("validate", write_scenario(self.folder))
-        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius", "memory", "disk", "terrain",
-                     "load         4609 N", "sinkage", "Froude number", "bound by     terrain.radius: the contact is about"):
+        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius",
+                     "memory", "disk", "terrain",
+                     "load         4609 N", "sinkage", "Froude number",
+                     "bound by     terrain.radius: the contact is about"):
             self.assertIn(word, text)
 
     def test_a_wheel_of_a_laboratory_is_bound_by_nothing(self):
@@ -97,16 +106,22 @@ class Commands(SystemTest):
     def test_shipped_scenarios_are_found_by_their_names(self):
         self.assertIn("first_look.json", self.output("validate", "first_look.json"))
         (self.folder / "first_look.json").write_text(json.dumps(changed(run={"end": 0.04})))
-        self.assertIn("0.04 s in 400 steps", self.output("validate", "first_look.json"), "a file that is here comes first")
+        self.assertIn("0.04 s in 400 steps", self.output("validate", "first_look.json"),
+                      "a file that is here comes first")
 
     def test_shipped_files_are_found_by_name_and_taken_for_what_they_are(self):
         for arguments, expected in ((("run", "first_look"), "first_look: does not exist, expected 'first_look.json'?"),
-                                    (("validate", "frist_look.json"), "frist_look.json: does not exist, expected 'first_look.json'?"),
-                                    (("sweep", "study_slop.json"), "study_slop.json: does not exist, expected 'study_slip.json'?"),
+                                    (("validate", "frist_look.json"),
+                                     "frist_look.json: does not exist, expected 'first_look.json'?"),
+                                    (("sweep", "study_slop.json"),
+                                     "study_slop.json: does not exist, expected 'study_slip.json'?"),
                                     (("run", "nothing_like_it.json"), "does not exist, expected a scenario in JSON"),
-                                    (("run", "calibrate_ring.json"), "is a calibration, expected a scenario ('furrow calibrate' takes calibrations)"),
-                                    (("sweep", "calibrate_ring.json"), "is a calibration, expected a study ('furrow calibrate' takes calibrations)"),
-                                    (("calibrate", "study_slip.json"), "is a study, expected a calibration ('furrow sweep' takes studies)"),
+                                    (("run", "calibrate_ring.json"),
+                                     "is a calibration, expected a scenario ('furrow calibrate' takes calibrations)"),
+                                    (("sweep", "calibrate_ring.json"),
+                                     "is a calibration, expected a study ('furrow calibrate' takes calibrations)"),
+                                    (("calibrate", "study_slip.json"),
+                                     "is a study, expected a calibration ('furrow sweep' takes studies)"),
                                     (("sweep", "first_look.json"), "is a scenario, expected a study")):
             done = furrow(*arguments, cwd=self.folder)
             self.assertEqual(done.returncode, 2)
@@ -121,7 +136,8 @@ class Commands(SystemTest):
         for kind, folder in (("tires", "tire/data"), ("soils", "terrain/data"), ("vehicles", "vehicle/data")):
             there = {path.name for path in (ROOT / folder).glob("*.json") if not path.name.endswith(".schema.json")}
             self.assertEqual(set(listed[kind]["files"]), there)
-        self.assertNotIn("", [line for kind in listed.values() for line in kind["files"].values()], "each says what it is")
+        self.assertNotIn("", [line for kind in listed.values() for line in kind["files"].values()],
+                         "each says what it is")
         self.assertTrue(listed["soils"]["files"]["dry_sand.json"].endswith("Wiley 2008"), "an initial ends no sentence")
         self.assertEqual(list(json.loads(self.output("list", "soils", "--json"))), ["soils"])
         self.assertIn("first_look.json", self.output("list", "scenarios"))
@@ -131,8 +147,10 @@ class Commands(SystemTest):
 
     def test_new_scenarios_are_valid_and_fit_their_tires(self):
         reports = {}
-        for name, options in (("truck", []), ("lab", ["--tire", "rigid_drum.json", "--rigid", "--soil", "loose_sand.json", "--load", "24.5"]),
-                              ("car", ["--tire", "passenger_205_55r16.json"]), ("six_wheels", ["--vehicle", "rover.json"])):
+        for name, options in (("truck", []), ("lab", ["--tire", "rigid_drum.json",
+                                                      "--rigid", "--soil", "loose_sand.json", "--load", "24.5"]),
+                              ("car", ["--tire", "passenger_205_55r16.json"]),
+                              ("six_wheels", ["--vehicle", "rover.json"])):
             with self.subTest(name):
                 self.assertEqual(self.output("new", name, *options), f"{name}.json\n")
                 report = reports[name] = json.loads(self.output("validate", f"{name}.json", "--json"))
@@ -155,12 +173,15 @@ class Commands(SystemTest):
                 self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
         done = furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level ground", done.stderr)
+        self.assertIn("--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level ground",
+                      done.stderr)
 
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
-        for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"), (["--soil", "no_such.json"], "no_such.json"),
+        for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"),
+                              (["--soil", "no_such.json"], "no_such.json"),
                               (["--vehicle", "no_such.json"], "no_such.json"),
-                              (["--load", "-1"], "--load: is -1, expected a number above 0, see"), (["--load", "nan"], "--load: is nan"),
+                              (["--load", "-1"], "--load: is -1, expected a number above 0, see"),
+                              (["--load", "nan"], "--load: is nan"),
                               (["--vehicle", "rover.json", "--load", "5"], "excludes")):
             done = furrow("new", "mine", *options, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
@@ -168,7 +189,8 @@ class Commands(SystemTest):
             self.assertEqual(self.names(), [])
         done = furrow("new", "my drum", "--tire", "rigid_drum.json", cwd=self.folder)
         self.assertIn("run it with: furrow run 'my drum.json'", done.stderr)
-        self.assertIn("set tire.rigid if the wheel is rigid", furrow("validate", "my drum.json", cwd=self.folder).stderr)
+        self.assertIn("set tire.rigid if the wheel is rigid",
+                      furrow("validate", "my drum.json", cwd=self.folder).stderr)
         (self.folder / "my drum.json").unlink()
         done = furrow("new", "rover", "--vehicle", "rover.json", cwd=self.folder)
         self.assertIn("NAME': is 'rover.json': beside that scenario", done.stderr)
@@ -259,7 +281,8 @@ class Commands(SystemTest):
             if node.get("type") == "number" or node.get("type") == ["number", "null"]:
                 self.assertIn("unit", node, key)
             if "default" not in node:
-                self.assertIn(key.split(".")[0], ("$schema", "completed_by", "description", "expected", "tire", "tires"), key)
+                self.assertIn(key.split(".")[0],
+                              ("$schema", "completed_by", "description", "expected", "tire", "tires"), key)
 
     def test_skeleton_of_the_contract_is_accepted(self):
         scenario = {
@@ -282,9 +305,12 @@ class Commands(SystemTest):
 class BatchScripts(SystemTest):
     def test_times_and_cores_that_slurm_cannot_give_are_refused(self):
         scenario = ROOT / "rigs" / "first_look.json"
-        for options, told in ((["--time", "4"], "'--time': is '4', expected 8 minutes or more: the run saves its state 6 minutes before"),
-                              (["--time", "25:61:99"], "'--time': is '25:61:99', expected minutes, hh:mm:ss or days-hh:mm:ss"),
-                              (["--nodes", "2", "--cores-per-node", "5"], "'--cores-per-node': is 5, expected 4 or another multiple of the 2 ranks")):
+        for options, told in ((["--time", "4"],
+                               "'--time': is '4', expected 8 minutes or more: the run saves its state 6 minutes before"),
+                              (["--time", "25:61:99"],
+                               "'--time': is '25:61:99', expected minutes, hh:mm:ss or days-hh:mm:ss"),
+                              (["--nodes", "2", "--cores-per-node", "5"],
+                               "'--cores-per-node': is 5, expected 4 or another multiple of the 2 ranks")):
             with self.subTest(options):
                 done = furrow("ranks", "--slurm", *options, scenario, cwd=self.folder)
                 self.assertEqual(done.returncode, 2, done.stderr)

@@ -19,7 +19,8 @@ _furrow furrow "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"
 
 
 def made(script, *arguments):
-    return subprocess.run([sys.executable, "-B", DOCS / script, *arguments, "--program", PROGRAM], text=True, check=True,
+    return subprocess.run([sys.executable, "-B", DOCS / script, *arguments, "--program", PROGRAM],
+                          text=True, check=True,
                           capture_output=True).stdout
 
 
@@ -32,7 +33,8 @@ class Completion(SystemTest):
     def completed(self, *words):
         script = self.folder / "script"
         script.write_text(self.bash)
-        done = subprocess.run(["bash", "-c", ASK, "bash", script, PROGRAM, *words], cwd=self.folder, text=True, capture_output=True)
+        done = subprocess.run(["bash", "-c", ASK, "bash", script, PROGRAM, *words],
+                              cwd=self.folder, text=True, capture_output=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return done.stdout.split()
 
@@ -55,7 +57,8 @@ class Completion(SystemTest):
     def test_names_of_shipped_files_keys_and_your_own_files(self):
         (self.folder / "first_mine.json").touch()
         (self.folder / "first_results").mkdir()
-        self.assertEqual(sorted(self.completed("run", "first_")), ["first_look.json", "first_mine.json", "first_results"])
+        self.assertEqual(sorted(self.completed("run", "first_")),
+                         ["first_look.json", "first_mine.json", "first_results"])
         self.assertEqual(self.completed("resume", "first_"), ["first_results"])
         self.assertEqual(self.completed("run", "a.json", "--set", "rig.sl"), ["rig.slip=", "rig.slope="])
         self.assertEqual(self.completed("run", "--no-plots", "first_l"), ["first_look.json"], "a flag has no value")
@@ -74,7 +77,8 @@ class Completion(SystemTest):
         if shutil.which("fish"):
             asked = f"source '{self.folder / 'fish'}'; complete -C 'furrow soil --only '"
             done = subprocess.run(["fish", "-c", asked], text=True, capture_output=True, cwd=self.folder)
-            self.assertEqual([line.split("\t")[0] for line in done.stdout.splitlines()], ["cone", "plate", "repose", "shear"])
+            self.assertEqual([line.split("\t")[0] for line in done.stdout.splitlines()],
+                             ["cone", "plate", "repose", "shear"])
 
     def test_the_manual_page_names_every_command_option_and_exit_code(self):
         page = made("manual.py")

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The documentation site: it is built without a warning, all of its links lead somewhere, and none needs the network."""
+"""The documentation site: it is built without a warning, all of its links lead somewhere, and none needs the
+network."""
 import html.parser
 import os
 import pathlib
@@ -35,7 +36,8 @@ class Page(html.parser.HTMLParser):
 
 class Site(SystemTest):
     def test_it_is_built_and_every_link_leads_somewhere(self):
-        done = subprocess.run([ROOT / "scripts" / "docs.sh", "--out", self.folder / "docs"], text=True, capture_output=True,
+        done = subprocess.run([ROOT / "scripts" / "docs.sh", "--out", self.folder / "docs"],
+                              text=True, capture_output=True,
                               env={**os.environ, "FURROW": PROGRAM, "FURROW_NO_SETUP": "1"})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         site = pathlib.Path(done.stdout.strip()).parent
@@ -47,14 +49,16 @@ class Site(SystemTest):
             self.assertIn(site / f"{page.stem}.html", pages)
         self.assertIn("katex.min.js", (site / "theory.html").read_text(), "formulas are drawn")
         self.assertTrue((site / "_static" / "katex" / "fonts").is_dir())
-        self.assertNotRegex((site / "_static" / "scripts" / "furo.js").read_text(), r"(?m)^import ", "a plain script of one piece")
+        self.assertNotRegex((site / "_static" / "scripts" / "furo.js").read_text(),
+                            r"(?m)^import ", "a plain script of one piece")
         for sheet in site.rglob("*.css"):
             self.assertNotRegex(sheet.read_text(), r"""(@import\s+|url\()\s*["']?(/|https?:)""", sheet)
         self.assertIn("prefers-color-scheme: dark", (site / "_static" / "styles" / "furo.css").read_text())
 
     def problems(self, pages, path):
         page = pages[path]
-        yield from (f"loads '{name}' from the network" for name in page.loaded if name.startswith(EXTERNAL[:2]) or name.startswith("//"))
+        yield from (f"loads '{name}' from the network" for name in page.loaded
+                    if name.startswith(EXTERNAL[:2]) or name.startswith("//"))
         for link in page.links | page.loaded:
             if link.startswith(EXTERNAL):
                 continue

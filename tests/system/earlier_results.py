@@ -27,7 +27,8 @@ exec "$REAL" "$@" --no-plots
 
 def contents(folder):
     """{path in the folder: bytes} of all files below it, but for what the folder's list held before."""
-    files = {str(path.relative_to(folder)): path.read_bytes() for path in pathlib.Path(folder).rglob("*") if path.is_file()}
+    files = {str(path.relative_to(folder)): path.read_bytes() for path in pathlib.Path(folder).rglob("*")
+             if path.is_file()}
     files[".furrow-run"] = sorted(set(files[".furrow-run"].decode().split("furrow-run 1\n")[-1].splitlines()))
     return files
 
@@ -35,7 +36,8 @@ def contents(folder):
 def without(stream, *arguments, cwd, **options):
     """Runs the program with that stream closed."""
     return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, timeout=120, text=True, stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=lambda: os.close(stream), **options)
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          preexec_fn=lambda: os.close(stream), **options)
 
 
 class Overwrite(SystemTest):
@@ -64,8 +66,10 @@ class Overwrite(SystemTest):
         """The process, and the file that holds what it says."""
         said = self.folder / "said"
         with open(said, "w") as file:
-            process = subprocess.Popen([PROGRAM, "run", self.slow, "--out", self.out, "--overwrite", "--no-plots"], cwd=self.folder,
-                                       stdin=subprocess.DEVNULL, stdout=file, stderr=file, env={**os.environ, **self.cache})
+            process = subprocess.Popen([PROGRAM, "run", self.slow, "--out", self.out, "--overwrite", "--no-plots"],
+                                       cwd=self.folder,
+                                       stdin=subprocess.DEVNULL, stdout=file,
+                                       stderr=file, env={**os.environ, **self.cache})
         self.addCleanup(process.kill)
         wait_for(lambda: "settling" in said.read_text(), 60, "the bed settles")
         self.assertIsNone(process.poll())
@@ -73,7 +77,8 @@ class Overwrite(SystemTest):
         return process, said
 
     def test_they_come_back_where_no_rank_can_be_started(self):
-        done = furrow("run", self.path, "--out", self.out, "--overwrite", cwd=self.folder, env={"FURROW_MPIRUN": "/bin/false"})
+        done = furrow("run", self.path, "--out", self.out, "--overwrite",
+                      cwd=self.folder, env={"FURROW_MPIRUN": "/bin/false"})
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn("no rank could be started", done.stderr)
         self.assertIn("out holds the earlier results again", done.stderr)
@@ -92,7 +97,8 @@ class Overwrite(SystemTest):
         process.wait(timeout=60)
         told = furrow("report", self.out, cwd=self.folder)
         self.assertEqual(told.returncode, 5, told.stderr)
-        self.assertIn(f"{self.out}/.furrow-before holds earlier results, which 'furrow resume' brings back", told.stderr)
+        self.assertIn(f"{self.out}/.furrow-before holds earlier results, which 'furrow resume' brings back",
+                      told.stderr)
         done = furrow("resume", self.out, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("is finished", done.stderr)
@@ -134,7 +140,8 @@ class OverwrittenBeds(SystemTest):
         holder = tempfile.TemporaryDirectory(prefix="furrow base ")
         cls.addClassCleanup(holder.cleanup)
         cls.base = pathlib.Path(holder.name) / "base"
-        done = furrow("run", write_scenario(holder.name), "--seeds", "2", "--out", cls.base, "--no-plots", cwd=holder.name)
+        done = furrow("run", write_scenario(holder.name), "--seeds", "2",
+                      "--out", cls.base, "--no-plots", cwd=holder.name)
         assert done.returncode == 0, done.stderr
 
     def setUp(self):
@@ -152,16 +159,19 @@ class OverwrittenBeds(SystemTest):
         return {**files, **{name: sorted(set(lines)) for name, lines in lists.items()}}
 
     def overwrite(self, path, **options):
-        return furrow("run", path, "--seeds", "2", "--out", self.beds, "--overwrite", "--no-plots", cwd=self.folder, **options)
+        return furrow("run", path, "--seeds", "2", "--out", self.beds,
+                      "--overwrite", "--no-plots", cwd=self.folder, **options)
 
     def begun_to_settle(self):
         said = self.folder / "said"
         with open(said, "w") as file:
-            process = subprocess.Popen([PROGRAM, "run", self.slow, "--seeds", "2", "--out", self.beds, "--overwrite", "--no-plots"],
+            process = subprocess.Popen([PROGRAM, "run", self.slow, "--seeds",
+                                        "2", "--out", self.beds, "--overwrite", "--no-plots"],
                                        cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
                                        env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
         self.addCleanup(process.kill)
-        wait_for(lambda: (self.beds / "seed1.log").exists() and "settling" in (self.beds / "seed1.log").read_text(), 60, "the bed settles")
+        wait_for(lambda: (self.beds / "seed1.log").exists() and "settling" in (self.beds / "seed1.log").read_text(),
+                 60, "the bed settles")
         self.assertTrue((self.beds / ".furrow-before" / "seed2" / "summary.json").exists())
         return process, said
 
@@ -232,8 +242,9 @@ class ContinuedRun(SystemTest):
 
     def setUp(self):
         super().setUp()
-        self.path = write_scenario(self.folder, changed(terrain={"engine": "rigid", "radius": None, "cohesion": None, "layers": None,
-                                                                 "length": None, "width": None}))
+        self.path = write_scenario(self.folder,
+                                   changed(terrain={"engine": "rigid", "radius": None, "cohesion": None, "layers": None,
+                                                    "length": None, "width": None}))
         scenario = json.loads(self.path.read_text())
         scenario["terrain"] = {"engine": "rigid"}
         self.path.write_text(json.dumps(scenario))
@@ -279,8 +290,10 @@ class UnwritableFiles(SystemTest):
 
     def test_a_bed_that_does_not_fit_into_the_cache(self):
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
-        done = subprocess.run([PROGRAM, "bed", write_scenario(self.folder)], cwd=self.folder, text=True, capture_output=True,
-                              timeout=120, preexec_fn=limit, env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
+        done = subprocess.run([PROGRAM, "bed", write_scenario(self.folder)],
+                              cwd=self.folder, text=True, capture_output=True,
+                              timeout=120, preexec_fn=limit,
+                              env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("bed not cached", done.stderr)
         self.assertIn("grains", json.loads(done.stdout))
@@ -300,7 +313,8 @@ class RetryScript(SystemTest):
         program.chmod(0o755)
         environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}", "REAL": PROGRAM,
                        "XDG_CACHE_HOME": str(self.folder / "cache")}
-        done = subprocess.run(["bash", "-c", script], cwd=self.folder, text=True, capture_output=True, timeout=120, env=environment)
+        done = subprocess.run(["bash", "-c", script], cwd=self.folder,
+                              text=True, capture_output=True, timeout=120, env=environment)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("stopped by a signal", (self.folder / "said").read_text())
         self.assertTrue((self.folder / "out" / "summary.json").exists())

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Empirical soil as a user meets it: a wheel on it, the same with any number of threads, soil files for several engines."""
+"""Empirical soil as a user meets it: a wheel on it, the same with any number of threads, soil files for several
+engines."""
 import csv
 import json
 import math
@@ -10,7 +11,8 @@ from program import SystemTest, changed, furrow, main, write_scenario
 
 # A rigid wheel is let down on dry sand while it starts, and rolls half a metre.
 WHEEL = {
-    **changed(terrain=None, run={"step": 2e-4, "end": 0.5, "average_from": 0.3}, output={"series_interval": 2e-3, "frame_interval": 0.1}),
+    **changed(terrain=None, run={"step": 2e-4, "end": 0.5, "average_from": 0.3},
+              output={"series_interval": 2e-3, "frame_interval": 0.1}),
     "terrain": {"engine": "scm", "material": "dry_sand.json", "length": 2.5, "width": 0.4, "grid_spacing": 0.01},
 }
 
@@ -40,10 +42,16 @@ class EmpiricalSoil(SystemTest):
         self.assertLess(deepest, -0.005)
 
     def test_a_wheel_that_no_ground_bears_or_holds_is_warned_of(self):
-        for stiffness, step, words in (("1e4", 2e-4, r"WARNING: the wheel has sunk in by \S+ radii: the ground does not bear its load"),
-                                       ("1e11", 5e-4, r"WARNING: the wheel is \S+ radii above the ground as it was: it bounces or was thrown off")):
-            _, told = self.run_of(stiffness, "--set", f"terrain.bekker_k_phi={stiffness}", "--set", "terrain.bekker_k_c=0",
-                                  "--set", "run.end=0.8", "--set", "run.average_from=0.7", "--set", "terrain.length=3.5", "--set", f"run.step={step}")
+        for stiffness, step, words in (("1e4", 2e-4,
+                                        r"WARNING: the wheel has sunk in by \S+ radii: the ground does not bear its "
+                                        r"load"),
+                                       ("1e11", 5e-4,
+                                        r"WARNING: the wheel is \S+ radii above the ground as it was: it bounces or "
+                                        r"was thrown off")):
+            _, told = self.run_of(stiffness, "--set", f"terrain.bekker_k_phi={stiffness}",
+                                  "--set", "terrain.bekker_k_c=0",
+                                  "--set", "run.end=0.8", "--set", "run.average_from=0.7",
+                                  "--set", "terrain.length=3.5", "--set", f"run.step={step}")
             self.assertRegex(told, words)
         _, told = self.run_of("usual")
         self.assertNotIn("WARNING", told)
@@ -56,7 +64,8 @@ class EmpiricalSoil(SystemTest):
             self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "two" / name).read_bytes(), name)
 
     def test_one_soil_file_serves_grains_and_empirical_soil(self):
-        scenario = {**WHEEL, "run": {"step": 2e-4, "end": 0.01, "average_from": 0.005}, "terrain": {**WHEEL["terrain"], "material": None}}
+        scenario = {**WHEEL, "run": {"step": 2e-4, "end": 0.01, "average_from": 0.005},
+                    "terrain": {**WHEEL["terrain"], "material": None}}
         _, told = self.run_of("scm", "--set", "terrain.material=loose_sand.json", scenario=scenario)
         terrain = json.loads((self.folder / "scm/scenario.json").read_text())["terrain"]
         self.assertEqual(terrain["bekker_n"], 0.2843)

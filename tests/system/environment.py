@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What surrounds the program: variables of launchers, launchers that hang, limits of the system, signals in long work, odd
+"""What surrounds the program: variables of launchers, launchers that hang, limits of the system, signals in long work,
+odd
 names, the user's Python."""
 import json
 import os
@@ -18,8 +19,10 @@ SHORT = ["--set", "run.end=0.004", "--set", "run.average_from=0", "--set", "terr
 def limited(limits, *arguments, cwd, timeout=120, env=None):
     """The program under a shell's ulimit."""
     command = f'ulimit {limits} && exec "$@"'
-    return subprocess.run(["bash", "-c", command, "bash", PROGRAM, *map(str, arguments)], cwd=cwd, timeout=timeout, text=True,
-                          errors="replace", stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, **(env or {})})
+    return subprocess.run(["bash", "-c", command, "bash", PROGRAM, *map(str, arguments)],
+                          cwd=cwd, timeout=timeout, text=True,
+                          errors="replace", stdin=subprocess.DEVNULL, capture_output=True,
+                          env={**os.environ, **(env or {})})
 
 
 def errors(done):
@@ -47,7 +50,8 @@ class LauncherVariables(EnvironmentTest):
                 env = {variable: "3"}
                 self.assertEqual(furrow("validate", self.path, cwd=self.folder, env=env).returncode, 0)
                 self.assertEqual(furrow("explain", "rig.slip", cwd=self.folder, env=env).returncode, 0)
-                self.assertIn("does not exist", self.one_error(furrow("validate", "no.json", cwd=self.folder, env=env), 2))
+                self.assertIn("does not exist",
+                              self.one_error(furrow("validate", "no.json", cwd=self.folder, env=env), 2))
                 self.assertIn("unknown command", self.one_error(furrow("rnu", cwd=self.folder, env=env), 2))
 
     def test_run_names_the_variable_and_how_to_be_rid_of_it(self):
@@ -70,7 +74,8 @@ class LauncherVariables(EnvironmentTest):
 
     def test_a_finished_run_under_mpirun_says_so(self):
         self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)
-        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", "3", PROGRAM,
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root",
+                               "--oversubscribe", "-n", "3", PROGRAM,
                                "resume", "out"], cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("there is nothing to do"), 1, done.stderr)
@@ -80,7 +85,8 @@ class LauncherVariables(EnvironmentTest):
         study = {"scenario": "small.json", "set": {"run.end": 0.004, "run.average_from": 0, "terrain.engine": "rigid"},
                  "grid": {"rig.slip": [0.2]}}
         (self.folder / "study.json").write_text(json.dumps(study))
-        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "-n", "1", PROGRAM, "sweep", "study.json"],
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root",
+                               "-n", "1", PROGRAM, "sweep", "study.json"],
                               cwd=self.folder, capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -94,7 +100,8 @@ class Launcher(EnvironmentTest):
 
     def check(self, script, words, longest, code=5):
         begin = time.monotonic()
-        line = self.one_error(furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher(script)), code)
+        line = self.one_error(furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher(script)),
+                              code)
         self.assertLess(time.monotonic() - begin, longest)
         self.assertIn("none of 3 ranks began within 1 s (FURROW_START_TIMEOUT sets another time)", line)
         self.assertIn(words, line)
@@ -108,24 +115,31 @@ class Launcher(EnvironmentTest):
         self.check("echo all nodes are busy; sleep 1000\n", "mpirun said: all nodes are busy", 30)
 
     def test_that_has_no_memory_for_its_ranks_is_a_limit(self):
-        self.check("echo 'mmap(2): Cannot allocate memory (errno 12)' >&2; sleep 1000\n", "mpirun said: mmap(2)", 30, code=6)
+        self.check("echo 'mmap(2): Cannot allocate memory (errno 12)' >&2; sleep 1000\n",
+                   "mpirun said: mmap(2)", 30, code=6)
 
     def test_that_fails_where_memory_is_scarce_is_a_limit(self):
         env = self.launcher("echo 'PMIX ERROR: NOT-AVAILABLE in file dstore_segment.c' >&2; exit 1\n")
         line = self.one_error(limited("-v 400000", "run", self.path, "--out", "out", cwd=self.folder, env=env), 6)
-        self.assertRegex(line, r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended with status 1 .*PMIX ERROR")
+        self.assertRegex(line,
+                         r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended with "
+                         r"status 1 .*PMIX ERROR")
 
     def test_that_hands_on_the_death_of_a_rank_is_no_broken_one(self):
-        done = furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher("exit 137\n"))  # Open MPI's, of a rank that it has just started
-        self.assertIn("the ranks were lost while they were being started: mpirun ended with status 137", self.one_error(done, 4))
+        # Open MPI's, of a rank that it has just started
+        done = furrow("run", self.path, "--out", "out", cwd=self.folder, env=self.launcher("exit 137\n"))
+        self.assertIn("the ranks were lost while they were being started: mpirun ended with status 137",
+                      self.one_error(done, 4))
 
     def test_that_hangs_and_will_not_end_is_killed(self):
         self.check("trap '' TERM; while true; do sleep 0.1; done\n", "mpirun said nothing", 40)
 
     def test_what_the_user_has_set_for_it_is_named(self):
-        done = furrow("run", self.path, "--out", "out", cwd=self.folder, env={"OMPI_MCA_btl": "bogus", "OMPI_MCA_orte_jobid": "left over"})
+        done = furrow("run", self.path, "--out", "out", cwd=self.folder,
+                      env={"OMPI_MCA_btl": "bogus", "OMPI_MCA_orte_jobid": "left over"})
         line = self.one_error(done, 5)
-        self.assertIn("no rank could be started (are PATH, TMPDIR, OMPI_MCA_btl right, is FURROW_MPIRUN Open MPI's?): mpirun ended", line)
+        self.assertIn("no rank could be started (are PATH, TMPDIR, OMPI_MCA_btl right, is FURROW_MPIRUN Open MPI's?): "
+                      "mpirun ended", line)
         self.assertIn("Component: bogus", line)
 
     def test_bad_time_out(self):
@@ -135,7 +149,8 @@ class Launcher(EnvironmentTest):
 
     def test_without_ssh_on_path(self):
         (self.folder / "empty").mkdir()
-        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"PATH": str(self.folder / "empty")})
+        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder,
+                      env={"PATH": str(self.folder / "empty")})
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
@@ -156,37 +171,46 @@ class Limits(EnvironmentTest):
 
     def test_a_full_folder_for_temporary_files_is_named(self):
         small = self.small_disk(self.folder / "tmp", "8k")
-        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"TMPDIR": str(small), "FURROW_START_TIMEOUT": "20"})
+        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder,
+                      env={"TMPDIR": str(small), "FURROW_START_TIMEOUT": "20"})
         self.assertIn(done.returncode, (4, 5), done.stderr)
         self.assertIn(f"the folder for temporary files, TMPDIR {small}, has room for", done.stderr)
 
     def test_processor_time(self):
-        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3", "--set", "terrain.radius=0.012", "--set", "terrain.layers=12", "--set", "run.step=2e-5",
+        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3",
+                       "--set", "terrain.radius=0.012", "--set", "terrain.layers=12", "--set", "run.step=2e-5",
                        "--out", "out", cwd=self.folder)
         self.assertIn("a process may use 2 s of processor time (ulimit -t)", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 
     def test_processor_time_of_a_command_without_ranks(self):
         for limits in ("-t 2", "-S -t 2"):
-            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006", "--set", "terrain.layers=30", "--set", "run.step=2e-5",
+            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006",
+                           "--set", "terrain.layers=30", "--set", "run.step=2e-5",
                            cwd=self.folder)
-            self.assertEqual(self.one_error(done, 6), "furrow: error: a process may use 2 s of processor time (ulimit -t), expected a higher limit")
+            self.assertEqual(self.one_error(done, 6),
+                             "furrow: error: a process may use 2 s of processor time (ulimit -t), expected a higher "
+                             "limit")
             self.assertEqual(self.names(), ["small.json"])
 
     def test_a_terrain_that_cannot_fit_is_refused_before_anything_begins(self):
-        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100", "--set", "terrain.width=40",
+        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15",
+                 "--set", "terrain.length=100", "--set", "terrain.width=40",
                  "--set", "run.step=2e-5"]
         for command in ("run", "bed"):
             begin = time.monotonic()
             line = self.one_error(limited("-v 4000000", command, self.path, *large, cwd=self.folder), 6)
-            self.assertRegex(line, r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB \(ulimit -v\)")
+            self.assertRegex(line,
+                             r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB \(ulimit "
+                             r"-v\)")
             self.assertLess(time.monotonic() - begin, 20)
         self.assertEqual(self.names(), ["small.json"])
         self.assertEqual(limited("-v 4000000", "validate", self.path, *large, cwd=self.folder).returncode, 0)
 
     def test_memory_that_runs_out_on_the_way_is_no_failure_of_the_physics(self):
         # About 620,000 grains: half of the estimate is below the limit, so it is tried. MPI itself needs about 0.3 GB.
-        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=13.3", "--set", "terrain.width=0.6",
+        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15",
+                "--set", "terrain.length=13.3", "--set", "terrain.width=0.6",
                 "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
         done = limited("-v 340000", "run", self.path, *many, cwd=self.folder, timeout=300)
         self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
@@ -194,13 +218,17 @@ class Limits(EnvironmentTest):
 
     def test_threads_that_cannot_be_started_are_no_rank_that_does_not_answer(self):
         # Of the 500 stacks of 8 MB a few fit.
-        done = limited("-v 600000", "run", self.path, "--threads", "500", *SHORT, "--set", "terrain.engine=dem", "--out", "out", cwd=self.folder)
-        self.assertIn("threads could not be started (ulimit -u, ulimit -v, or no memory), expected ", self.one_error(done, 6))
+        done = limited("-v 600000", "run", self.path, "--threads", "500",
+                       *SHORT, "--set", "terrain.engine=dem", "--out", "out", cwd=self.folder)
+        self.assertIn("threads could not be started (ulimit -u, ulimit -v, or no memory), expected ",
+                      self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 
     def test_pressing_where_the_solver_would_wait_forever_for_memory(self):
-        done = limited("-v 250000", "press", "cleat_press.json", "--out", "out", "--points", "2", cwd=self.folder, timeout=60)
-        self.assertRegex(self.one_error(done, 6), r"out of memory: the solver needs \d+ MB of address space, limit 256 MB \(ulimit -v\)")
+        done = limited("-v 250000", "press", "cleat_press.json", "--out",
+                       "out", "--points", "2", cwd=self.folder, timeout=60)
+        self.assertRegex(self.one_error(done, 6),
+                         r"out of memory: the solver needs \d+ MB of address space, limit 256 MB \(ulimit -v\)")
 
     def test_plots_that_would_wait_forever_for_memory_are_not_begun(self):
         done = limited("-v 450000", "run", self.path, *SHORT[:-1], "--out", "out", cwd=self.folder)
@@ -214,7 +242,8 @@ class LongWork(EnvironmentTest):
         """The goal is a second; the limit leaves room for a busy machine and a slow build."""
         said = self.folder / "said"
         with open(said, "w") as file:
-            process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
+            process = subprocess.Popen([PROGRAM, *map(str, arguments)],
+                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
         self.addCleanup(process.kill)
         wait_for(lambda: phase in said.read_text(), 60, phase)
         time.sleep(0.3)
@@ -226,11 +255,13 @@ class LongWork(EnvironmentTest):
         said.unlink()
 
     def test_placing_one_huge_layer(self):
-        self.check("bed", self.path, "--set", "terrain.radius=0.006", "--set", "terrain.length=200", "--set", "terrain.width=10",
+        self.check("bed", self.path, "--set", "terrain.radius=0.006", "--set",
+                   "terrain.length=200", "--set", "terrain.width=10",
                    "--set", "terrain.layers=1", "--set", "run.step=2e-5", phase="placing the grains")
 
     def test_settling_many_grains(self):
-        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set", "terrain.length=12", "--set", "terrain.layers=12",
+        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set",
+                   "terrain.length=12", "--set", "terrain.layers=12",
                    "--set", "run.step=2e-5",
                    phase="settling the bed")
 
@@ -267,7 +298,8 @@ class Pause(EnvironmentTest):
 
     def stopped_run(self):
         """A run that Ctrl-Z has stopped, with its ranks."""
-        process = start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid", "--no-plots",
+        process = start("run", self.path, "--set", "run.end=0.3", "--out",
+                        "out", "--set", "terrain.engine=rigid", "--no-plots",
                         "--set", "run.step=1e-6", cwd=self.folder)
         self.addCleanup(process.kill)
         wait_for(lambda: (self.folder / "out" / "timeseries.csv").exists(), 60, "the run begins")
@@ -307,7 +339,8 @@ class Names(EnvironmentTest):
 
     def test_that_are_not_utf_8(self):
         folder = os.fsencode(self.folder) + b"/caf\xe9"
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path), *(word.encode() for word in SHORT), b"--out", folder],
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path),
+                               *(word.encode() for word in SHORT), b"--out", folder],
                               cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         done = subprocess.run([os.fsencode(PROGRAM), b"report", folder], cwd=self.folder, capture_output=True)
@@ -325,7 +358,8 @@ class Names(EnvironmentTest):
             file.write(tire.read_bytes())
         with open(folder + b"/s.json", "w") as file:
             json.dump(changed(tire={"file": "own.json"}), file)
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json", *(word.encode() for word in SHORT), b"--out", b"out"],
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json",
+                               *(word.encode() for word in SHORT), b"--out", b"out"],
                               cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn(b"key 'tire.file': is in a folder with a name that is not UTF-8", done.stderr)
@@ -349,7 +383,8 @@ class Output(EnvironmentTest):
             read, write = os.pipe()
             os.close(read)
             arguments = [*command] if command[0] == "bench" else [*command, str(self.path)]
-            done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=write, stderr=subprocess.PIPE, text=True, timeout=120)
+            done = subprocess.run([PROGRAM, *arguments], cwd=self.folder,
+                                  stdout=write, stderr=subprocess.PIPE, text=True, timeout=120)
             os.close(write)
             self.assertEqual(errors(done), [], done.stderr)
             self.assertEqual(done.returncode, 0)
@@ -364,7 +399,8 @@ class Output(EnvironmentTest):
         self.assertEqual(done.returncode, 2)  # ranks has no --out: the line is completed by hand
         done = furrow("ranks", self.path, *SHORT[:-1], cwd=self.folder)
         line = next(line for line in done.stdout.splitlines() if line.startswith("mpirun "))
-        done = subprocess.run(["bash", "-c", line + " --out out"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(["bash", "-c", line + " --out out"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue((self.folder / "out" / "summary.json").exists())
 

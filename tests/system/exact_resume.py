@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Every file of a run that was continued is that of the run that was not interrupted, also where a frame falls on the step
+"""Every file of a run that was continued is that of the run that was not interrupted, also where a frame falls on the
+step
 of the checkpoint, for every kind of tire. tests/campaign/compare_runs.py compares them."""
 import csv
 import shutil
@@ -56,7 +57,8 @@ class Exact:
     def test_a_finished_run_with_a_later_end(self):
         end = self.SCENARIO["run"]["end"]
         interval = self.SCENARIO["checkpoint"]["interval"]
-        self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--set", f"run.end={interval * self.LOADED:.3g}")
+        self.program("run", self.path, "--out", self.run_folder, "--no-plots",
+                     "--set", f"run.end={interval * self.LOADED:.3g}")
         self.resume("--until", end)
         self.same_as_whole(leave_out=["checkpoints/*/manifest.json"])  # those of the first part hold the earlier end
 
@@ -94,7 +96,8 @@ class EmpiricalSoil(Exact, CheckpointTest):
     """A flexible tire presses, shears and lets rebound the nodes of the soil."""
     SCENARIO = {
         "format_version": 1,
-        "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28, "ramp": 0.01, "carrier_mass": 450, "touchdown_damping": 0},
+        "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28,
+                "ramp": 0.01, "carrier_mass": 450, "touchdown_damping": 0},
         "tire": SHELL,
         "terrain": {"engine": "scm", "material": "dry_sand.json", "length": 1.4, "width": 0.5, "grid_spacing": 0.02},
         "run": {"step": 2e-4, "end": 0.06, "average_from": 0.02, "peer_timeout": 20},
@@ -149,7 +152,8 @@ def on_a_curb(rig, **tire):
         "format_version": 1,
         "rig": {"speed": 4.0, "ramp": 0.01, "rim_mass": 15, "rim_spin_inertia": 0.7, **rig},
         "tire": {"file": "hmmwv_lumped.json", **tire},
-        "terrain": {"engine": "rigid", "profile": [[0.2, 0], [0.2, 0.02]], "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6,
+        "terrain": {"engine": "rigid", "profile": [[0.2, 0], [0.2, 0.02]],
+                    "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6,
                     "ground_damping": 5e3},
         "run": {"step": 2e-4, "end": 0.08, "average_from": 0.04, "peer_timeout": 20},
         "output": {"series_interval": 0.002, "frame_interval": 0.01},
@@ -164,14 +168,16 @@ class QuarterCar(Exact, CheckpointTest):
 
 class HalfCar(Exact, CheckpointTest):
     """The front wheel has met the curb, the rear one has not."""
-    SCENARIO = on_a_curb({"type": "half_car", "body_mass": 800, "wheelbase": 1.5, "front_share": 0.6}, rigid=True, elements_circumference=40)
+    SCENARIO = on_a_curb({"type": "half_car", "body_mass": 800, "wheelbase": 1.5, "front_share": 0.6},
+                         rigid=True, elements_circumference=40)
     WHEELS = 2
     LOADED = 6
 
 
 class CleatStand(Exact, CheckpointTest):
     """The stop takes hold of the axle between two checkpoints."""
-    SCENARIO = on_a_curb({"type": "cleat_stand", "carrier_mass": 400, "hold_axle_from": 0.045}, rigid=True, elements_circumference=40)
+    SCENARIO = on_a_curb({"type": "cleat_stand", "carrier_mass": 400, "hold_axle_from": 0.045},
+                         rigid=True, elements_circumference=40)
     LOADED = 6
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Faults at named points (fault_injection.cpp) and damaged files: what the user sees, the exit code, no process left, and
+"""Faults at named points (fault_injection.cpp) and damaged files: what the user sees, the exit code, no process left,
+and
 the run goes on from the last good checkpoint to the very same result."""
 import contextlib
 import json
@@ -64,14 +65,16 @@ class KilledAtTheStart(CheckpointTest):
     """Before MPI connects the ranks."""
 
     def test_a_rank(self):
-        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", self.run_with_fault("start", 1, 1, "kill").stderr)
+        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9",
+                      self.run_with_fault("start", 1, 1, "kill").stderr)
 
     def test_the_launcher(self):
         process = self.start_waiting("start", 1, 1)
         os.kill(children(process.pid)[0], signal.SIGKILL)
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 4, err)
-        self.assertIn("furrow: error: the ranks were lost while they were being started: mpirun was killed by signal 9", err)
+        self.assertIn("furrow: error: the ranks were lost while they were being started: mpirun was killed by signal 9",
+                      err)
         self.no_process_left()
 
 
@@ -91,8 +94,10 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         """@param then what it does once all is over, in Python"""
         path = self.folder / "launcher"
         path.write_text("#!/usr/bin/python3\nimport signal, subprocess, sys, time\n"
-                        "for number in signal.SIGTERM, signal.SIGUSR1: signal.signal(number, lambda *_: mpirun.send_signal(number))\n"
-                        f"mpirun = subprocess.Popen(['mpirun', *sys.argv[1:]])\nmpirun.wait()\n{then}\ntime.sleep(1000)\n")
+                        "for number in signal.SIGTERM, signal.SIGUSR1: signal.signal(number, lambda *_: "
+                        "mpirun.send_signal(number))\n"
+                        f"mpirun = subprocess.Popen(['mpirun', "
+                        f"*sys.argv[1:]])\nmpirun.wait()\n{then}\ntime.sleep(1000)\n")
         path.chmod(0o755)
         return {"FURROW_MPIRUN": str(path)}
 
@@ -124,13 +129,15 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         process.kill()
         self.mark.unlink()
         process.communicate(timeout=60)
-        self.assertRegex(self.resume().stderr, r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
+        self.assertRegex(self.resume().stderr,
+                         r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
         self.no_process_left()
         self.same_as_whole()
 
     def test_after_a_rank_was_lost_is_killed_and_the_loss_is_told(self):
         begin = time.monotonic()
-        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--set", "run.peer_timeout=2", code=4,
+        done = self.program("run", self.path, "--out", self.run_folder,
+                            "--no-plots", "--set", "run.peer_timeout=2", code=4,
                             env={**self.fault("step", 1, 250, "kill"), **self.launcher("")})
         self.assertGreater(time.monotonic() - begin, 20)
         self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", done.stderr)
@@ -192,7 +199,8 @@ class FullDisk(CheckpointTest):
     def test_in_a_checkpoint_it_is_told_and_the_last_one_stays(self):
         # The terrain waits, so that another rank may be the first to write; a frame of the same step may end the run
         # before the rig tells of the checkpoint.
-        told = r"the checkpoint at t = 0.04 s could not be written: .*\.h5: cannot|error: .*frames/t\w+_000004.h5: cannot"
+        told = (r"the checkpoint at t = 0.04 s could not be written: .*\.h5: cannot|error: .*frames/t\w+_000004.h5: "
+                r"cannot")
         self.check("checkpoint.write", 2, 2, told, 100)
 
     def test_in_a_frame(self):
@@ -284,7 +292,8 @@ class Damaged(CheckpointTest):
         (self.run / "frames" / "terrain_000001.h5").unlink()
         os.truncate(self.run / "frames" / "tire0_000003.h5", 1000)
         told = self.resume().stderr
-        self.assertIn(f"furrow: warning: {self.run}/frames/terrain_000001.h5 is missing or cannot be read: results.xdmf leaves out 2 instants\n",
+        self.assertIn(f"furrow: warning: {self.run}/frames/terrain_000001.h5 is missing or cannot be read: "
+                      f"results.xdmf leaves out 2 instants\n",
                       told)
 
     def test_a_log_that_is_no_file(self):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""HDF5 files and results of strangers: no memory beyond the file's size, no other file, one message; and summaries, frames
+"""HDF5 files and results of strangers: no memory beyond the file's size, no other file, one message; and summaries,
+frames
 and height fields of any content before `furrow report`."""
 import json
 import os
@@ -32,8 +33,10 @@ class Beds(SystemTest):
 
     def refused(self, expected, commands=("validate", "bed", "run")):
         for command in commands:
-            done = subprocess.run([PROGRAM, command, str(self.scenario)], cwd=self.folder, capture_output=True, text=True, timeout=60,
-                                  stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (ENOUGH, ENOUGH)))
+            done = subprocess.run([PROGRAM, command, str(self.scenario)],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=60,
+                                  stdin=subprocess.DEVNULL,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (ENOUGH, ENOUGH)))
             lines = done.stderr.splitlines()
             self.assertIn(done.returncode, (2, 5), done.stderr)
             self.assertEqual(done.stdout, "")
@@ -44,7 +47,8 @@ class Beds(SystemTest):
 
     def test_what_h5py_writes_by_itself_is_a_bed(self):
         with self.made() as file:
-            file.create_dataset("position", data=np.array([[0.1, 0.0, 0.05], [0.3, 0.0, 0.05]]), compression="gzip", shuffle=True)
+            file.create_dataset("position", data=np.array([[0.1, 0.0, 0.05], [0.3, 0.0, 0.05]]),
+                                compression="gzip", shuffle=True)
         done = furrow("validate", self.scenario, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -118,12 +122,14 @@ class Reports(SystemTest):
 
     def summary(self, values):
         usual = {"format_version": 1, "scenario": "small", "terrain_engine": "dem", "law": "mindlin", "slip": 0.3,
-                 "vertical_load_N": 4600.0, "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05, "steady": True},
+                 "vertical_load_N": 4600.0,
+                 "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05, "steady": True},
                  "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1}
         (self.run / "summary.json").write_text(json.dumps({**usual, **values}))
 
     def report(self, *arguments):
-        return subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments], capture_output=True, text=True, timeout=120,
+        return subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments],
+                              capture_output=True, text=True, timeout=120,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 * ENOUGH, 2 * ENOUGH)),
                               env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
 
@@ -136,7 +142,8 @@ class Reports(SystemTest):
 
     def test_wrong_types_in_the_summary_are_named(self):
         for values, expected in (({"drawbar_pull_N": 3}, "key 'drawbar_pull_N': is 3, expected an object"),
-                                 ({"drawbar_pull_N": {"mean": "much"}}, "summary.json: key 'drawbar_pull_N': key 'mean': is \"much\", expected a number"),
+                                 ({"drawbar_pull_N": {"mean": "much"}},
+                                  "summary.json: key 'drawbar_pull_N': key 'mean': is \"much\", expected a number"),
                                  ({"drawbar_pull_N": {"mean": 1.0}}, "lacks from_s and to_s"),
                                  ({"drawbar_pull_N": {"mean": 10 ** 400}}, "expected a number"),
                                  ({"wheels": [3]}, "key 'wheels.0': expected an object"),
@@ -179,11 +186,13 @@ class Reports(SystemTest):
             self.told("summary.json")
 
     def test_nothing_was_measured(self):
-        self.summary({"net_terrain_force_N": [0.0, 0.0, 0.0], "drawbar_pull_N": {"mean": 0.0, "sem": 0.0, "from_s": 0.0, "to_s": 0.01}})
+        self.summary({"net_terrain_force_N": [0.0, 0.0, 0.0],
+                      "drawbar_pull_N": {"mean": 0.0, "sem": 0.0, "from_s": 0.0, "to_s": 0.01}})
         self.assertNotIn("0.0 ± 0.0", self.told("nothing was measured"))
 
     def test_reasons_are_shown_and_not_obeyed(self):
-        self.summary({"drawbar_pull_N": {"mean": 1.0, "from_s": 0.0, "to_s": 0.01, "unsteady_because": ["\x1b]0;owned\x07"]}})
+        self.summary({"drawbar_pull_N": {"mean": 1.0, "from_s": 0.0, "to_s": 0.01,
+                                         "unsteady_because": ["\x1b]0;owned\x07"]}})
         self.assertNotIn("\x1b", self.told("NOT STEADY: \\x1b]0;owned\\x07"))
 
     def test_height_fields_that_are_none(self):
@@ -197,19 +206,25 @@ class Reports(SystemTest):
             self.told("report: no rut.png: " + expected, "--only", "rut")
 
         tell(lambda file, name: file.create_dataset(name, shape=(10 ** 6, 10 ** 6), dtype="f8", chunks=(1, 1024)),
-             "results.h5: the dataset 'terrain/height_before' is said to have 1000000000000 numbers, but 0 bytes are stored")
+             "results.h5: the dataset 'terrain/height_before' is said to have 1000000000000 numbers, but 0 bytes are "
+             "stored")
         tell(lambda file, name: file.create_dataset(name, shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)]),
              "results.h5: the dataset 'terrain/height_before' is stored in another file")
-        tell(lambda file, name: file.__setitem__(name, h5py.SoftLink("/x")), "results.h5: the dataset 'terrain/height_before' is a link")
-        tell(lambda file, name: file.__setitem__(name, ["a", "b"]), "results.h5: the dataset 'terrain/height_before' holds no plain numbers")
+        tell(lambda file, name: file.__setitem__(name, h5py.SoftLink("/x")),
+             "results.h5: the dataset 'terrain/height_before' is a link")
+        tell(lambda file, name: file.__setitem__(name, ["a", "b"]),
+             "results.h5: the dataset 'terrain/height_before' holds no plain numbers")
         tell(lambda file, name: file.__setitem__(name, [1.0, 2.0]), "results.h5 holds no height field")
 
     def test_frames_that_are_none(self):
         triangle = np.array([[0, 1, 2]])
         vertex = np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1]])
-        for content, expected in (({"position": vertex, "triangle": triangle + 7}, "holds no surface that could be drawn"),
-                                  ({"position": vertex * np.nan, "triangle": triangle}, "holds no surface that could be drawn"),
-                                  ({"position": vertex[:, :2], "triangle": triangle}, "has the shape (3, 2), expected N × 3"),
+        for content, expected in (({"position": vertex, "triangle": triangle + 7},
+                                   "holds no surface that could be drawn"),
+                                  ({"position": vertex * np.nan, "triangle": triangle},
+                                   "holds no surface that could be drawn"),
+                                  ({"position": vertex[:, :2], "triangle": triangle},
+                                   "has the shape (3, 2), expected N × 3"),
                                   ({"position": vertex}, "the dataset 'triangle' is missing")):
             with h5py.File(self.run / "frames" / "tire0_000000.h5", "w") as file:
                 file.attrs["time_s"] = 0.0

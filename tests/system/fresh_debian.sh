@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The README's commands, word for word, on a bare Debian 12: debootstrap makes a minimal system in a temporary folder,
 # a clean clone of this repository goes into it, and the commands run there as a new user would run them.
-# Prints a report in JSON. Exit status: 0 all well, 1 a command failed or took longer than its budget, 77 cannot run here.
+# Prints a report in JSON. Exit status: 0 all well, 1 a command failed or took longer than its budget, 77 cannot run
+# here.
 set -euo pipefail
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd -P)
 repository=$(cd -- "$here/../.." && pwd -P)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""A tire property file as a tire on hard ground: what a user gets of it in the rig, under a vehicle, pressed, and refused."""
+"""A tire property file as a tire on hard ground: what a user gets of it in the rig, under a vehicle, pressed, and
+refused."""
 import csv
 import json
 import re
@@ -50,7 +51,8 @@ class Handling(SystemTest):
         for slip, toe, camber in ((0.02, 0.0, 0.0), (-0.03, 0.03, 0.0), (0.06, -0.05, 0.05)):
             with self.subTest(slip=slip, toe=toe, camber=camber):
                 name = f"run{slip}"
-                told = self.run_of(name, "--set", f"rig.slip={slip}", "--set", f"rig.toe_angle={toe}", "--set", f"rig.camber_angle={camber}")
+                told = self.run_of(name, "--set", f"rig.slip={slip}", "--set",
+                                   f"rig.toe_angle={toe}", "--set", f"rig.camber_angle={camber}")
                 said, axes = self.expected(told), told["iso_w"]
                 load = axes["force_N"][2]
                 self.assertAlmostEqual(axes["force_N"][0], said["Fx_N"], delta=0.01 * load)
@@ -63,19 +65,25 @@ class Handling(SystemTest):
 
     def test_runs_give_the_table_that_it_was_fitted_to_within_its_residuals(self):
         text = TIR.read_text()
-        largest = {of: float(re.search(rf"residual of sweep_lumped_{of}: .* largest ([0-9.e+-]+) N", text)[1]) for of in ("fx", "fy")}
+        largest = {of: float(re.search(rf"residual of sweep_lumped_{of}: .* largest ([0-9.e+-]+) N", text)[1])
+                   for of in ("fx", "fy")}
         with open(ROOT / "tire/data/sweep_lumped.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
         radius = evaluate_tir.read(TIR)["UNLOADED_RADIUS"]
-        for mode, slip, toe in (("fixed_speed", 0.01, 0.0), ("fixed_speed", 0.03, 0.0), ("fixed_speed", 0.1, 0.0), ("free_rolling", 0.0, -0.13963)):
+        for mode, slip, toe in (("fixed_speed", 0.01, 0.0), ("fixed_speed", 0.03, 0.0),
+                                ("fixed_speed", 0.1, 0.0), ("free_rolling", 0.0, -0.13963)):
             wanted = {"rig.mode": mode, "rig.slip": slip, "rig.toe_angle": toe, "rig.camber_angle": 0.0}
-            found = [row for row in rows if all(row[key] == value if key == "rig.mode" else float(row[key]) == value for key, value in wanted.items())]
+            found = [row for row in rows if all(row[key] == value if key == "rig.mode"
+                                                else float(row[key]) == value for key, value in wanted.items())]
             row = max(found, key=lambda row: row["rig.carrier_mass"] == "450")
-            turns = 1.0 - SHELL_RADIUS * (1.0 - slip) / radius  # the same spin: rig.slip counts from each tire's own radius
-            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}", "--set", f"rig.slip={turns}", "--set", f"rig.toe_angle={toe}",
+            # the same spin: rig.slip counts from each tire's own radius
+            turns = 1.0 - SHELL_RADIUS * (1.0 - slip) / radius
+            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}",
+                               "--set", f"rig.slip={turns}", "--set", f"rig.toe_angle={toe}",
                                "--set", f"rig.carrier_mass={row['rig.carrier_mass']}")
             for k, of in enumerate(("fx", "fy")):
-                self.assertAlmostEqual(told["iso_w"]["force_N"][k], float(row[f"iso_w.force_N.{k}"]), delta=1.1 * largest[of] + 5.0, msg=(wanted, of))
+                self.assertAlmostEqual(told["iso_w"]["force_N"][k], float(row[f"iso_w.force_N.{k}"]),
+                                       delta=1.1 * largest[of] + 5.0, msg=(wanted, of))
 
     def test_friction_of_the_ground_counts_no_second_time(self):
         one = self.run_of("one", "--set", "terrain.friction=0.9")
@@ -83,7 +91,8 @@ class Handling(SystemTest):
         self.assertEqual(one["iso_w"]["force_N"], two["iso_w"]["force_N"])
 
     def test_a_resumed_run_has_the_same_bits(self):
-        scenario = {**STEADY, "run": {"step": 2e-4, "end": 0.4, "average_from": 0.2}, "checkpoint": {"interval": 0.1, "keep": 10}}
+        scenario = {**STEADY, "run": {"step": 2e-4, "end": 0.4, "average_from": 0.2},
+                    "checkpoint": {"interval": 0.1, "keep": 10}}
         self.run_of("whole", scenario=scenario)
         folder = self.folder / "whole"
         checkpoints = sorted((folder / "checkpoints").iterdir())
@@ -91,7 +100,8 @@ class Handling(SystemTest):
         self.run_of("cut", "--set", "run.end=0.2", "--set", "run.average_from=0.1", scenario=scenario)
         done = furrow("resume", self.folder / "cut", "--until", "0.4", "--no-plots", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        first, second = (json.loads((self.folder / name / "summary.json").read_text())["state_hash"] for name in ("whole", "cut"))
+        first, second = (json.loads((self.folder / name / "summary.json").read_text())["state_hash"]
+                         for name in ("whole", "cut"))
         self.assertEqual(first, second)
         for name in ("whole", "cut"):
             self.assertTrue((self.folder / name / "timeseries.csv").exists())
@@ -99,7 +109,8 @@ class Handling(SystemTest):
 
     def test_under_a_vehicle(self):
         path = ROOT / "rigs/hmmwv_rigid.json"
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "car", "--set", "tire.file=hmmwv_handling.tir", "--set",
+        done = furrow("run", path, "--no-plots", "--out", self.folder / "car",
+                      "--set", "tire.file=hmmwv_handling.tir", "--set",
                       "run.step=5e-4", "--set", "run.end=2", "--set", "output.frame_interval=0", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         told = json.loads((self.folder / "car/summary.json").read_text())
@@ -139,13 +150,16 @@ class Handling(SystemTest):
                   [(0.0, a, 0.0) for a in (-0.1, -0.03, 0.0, 0.01, 0.03, 0.1)] + [(0.0, 0.0, 0.05), (0.0, 0.03, -0.05)]]
         load, kappa, alpha, gamma = (np.array(column) for column in zip(*states))
         forces = evaluate_tir.evaluate(tire, load, kappa, alpha, gamma, 0 * load)
-        lines = ["rig.mode," + ",".join(f"iso_w.force_N.{k}" for k in range(3)) + "," + ",".join(f"iso_w.moment_Nm.{k}" for k in range(3)) +
+        lines = ["rig.mode," + ",".join(f"iso_w.force_N.{k}" for k in range(3))
+                 + "," + ",".join(f"iso_w.moment_Nm.{k}" for k in range(3)) +
                  ",iso_w.slip_angle_rad,iso_w.camber_angle_rad,iso_w.loaded_radius_m,effective_rolling_radius_m"]
         for k, state in enumerate(states):
             rolling = 0.47 / (1.0 + state[1])
             lines.append(("free_rolling" if state[1] == 0.0 else "fixed_speed") + "," +
-                         ",".join(repr(float(x)) for x in (forces["Fx_N"][k], forces["Fy_N"][k], state[0], forces["Mx_Nm"][k],
-                                                            forces["My_Nm"][k], forces["Mz_Nm"][k], *state[2:], 0.46, rolling)))
+                         ",".join(repr(float(x)) for x in (forces["Fx_N"][k],
+                                                           forces["Fy_N"][k], state[0], forces["Mx_Nm"][k],
+                                                            forces["My_Nm"][k],
+                                                           forces["Mz_Nm"][k], *state[2:], 0.46, rolling)))
         (self.folder / "table.csv").write_text("\n".join(lines) + "\n")
         fitted = {"PDX1": 1.1, "PKX1": 0.8, "PDY1": 0.9, "PKY1": 1.2, "PKY2": 1.1, "QDZ1": 0.8, "QSY1": 1.3}
         text = TIR.read_text()
@@ -154,10 +168,12 @@ class Handling(SystemTest):
             text = text.replace(line, f"{name} = {factor * truth[name]!r}")
         (self.folder / "start.tir").write_text(text)
         study = {"format_version": 1, "calibrate": "handling", "start": "start.tir", "starts": 1,
-                 "parameters": {name: dict(zip(("lower", "upper"), sorted((0.5 * truth[name], 1.6 * truth[name])))) for name in fitted},
+                 "parameters": {name: dict(zip(("lower", "upper"), sorted((0.5 * truth[name], 1.6 * truth[name]))))
+                                for name in fitted},
                  "targets": [{"data": "table.csv", "of": of} for of in ("fx", "fy", "my", "mz")]}
         (self.folder / "fit.json").write_text(json.dumps(study))
-        done = furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots", cwd=self.folder)
+        done = furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit",
+                      "--no-plots", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         found = evaluate_tir.read(self.folder / "fit/start_fitted.tir")
         for name in fitted:
@@ -165,7 +181,8 @@ class Handling(SystemTest):
         self.assertEqual(found["FZMIN"], 3000.0)
         self.assertAlmostEqual(found["KPUMAX"], 0.1)
         text = (self.folder / "fit/start_fitted.tir").read_text()
-        self.assertIn("! fitted ranges: slip to 0.1, slip angle to 0.1 rad, camber to 0.05 rad, load 3000 to 6500 N", text)
+        self.assertIn("! fitted ranges: slip to 0.1, slip angle to 0.1 rad, camber to 0.05 rad, load 3000 to 6500 N",
+                      text)
         self.assertIn("! residual of table_fy: root mean square", text)
         table = (self.folder / "fit/start_fitted.tdx").read_text()
         self.assertTrue(table.startswith("**HEADER\nRELEASE   Release of TYDEX-Format"))
@@ -177,14 +194,18 @@ class Handling(SystemTest):
     def test_wrong_calibrations_are_refused_by_key(self):
         good = {"format_version": 1, "calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKY1": {}},
                 "targets": [{"data": "sweep_lumped.csv", "of": "fy"}]}
-        for change, said in (({"start": "hmmwv_ring.json"}, "key 'start': is 'hmmwv_ring.json', expected a tire property file"),
+        for change, said in (({"start": "hmmwv_ring.json"},
+                              "key 'start': is 'hmmwv_ring.json', expected a tire property file"),
                              ({"parameters": {"PKY9": {}}}, "key 'parameters.PKY9'"),
                              ({"targets": [{"data": "sweep_lumped.csv"}]}, "key 'targets[0].of': is missing"),
-                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]}, "key 'targets[0].of': is 'fw', expected"),
+                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]},
+                              "key 'targets[0].of': is 'fw', expected"),
                              ({"targets": [{"data": "no.csv", "of": "fy"}]}, "no.csv"),
-                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]}, "key 'targets[0].on'")):
+                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]},
+                              "key 'targets[0].on'")):
             (self.folder / "fit.json").write_text(json.dumps({**good, **change}))
-            done = furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots", cwd=self.folder)
+            done = furrow("calibrate", self.folder / "fit.json", "--out",
+                          self.folder / "fit", "--no-plots", cwd=self.folder)
             self.assertEqual(done.returncode, 2, (change, done.stderr))
             self.assertIn(said, done.stderr)
 
@@ -192,7 +213,8 @@ class Handling(SystemTest):
         text = TIR.read_text()
         (self.folder / "my.tir").write_text(text)
         scenario = {**STEADY, "tire": {"file": "my.json"}, "run": {"step": 2e-4, "end": 0.02, "average_from": 0.01}}
-        (self.folder / "my.json").write_text(json.dumps({"format_version": 1, "model": "handling", "tir": "my.tir", "mass": 12.0}))
+        (self.folder / "my.json").write_text(json.dumps({"format_version": 1,
+                                                         "model": "handling", "tir": "my.tir", "mass": 12.0}))
         self.run_of("own", scenario=scenario)
         (self.folder / "my.tir").write_text(text.replace("[UNITS]", "! changed\n[UNITS]"))
         done = furrow("resume", self.folder / "own", "--until", "0.04", cwd=self.folder)

@@ -8,9 +8,11 @@ from program import SystemTest, changed, furrow, main, write_scenario
 
 # A rigid disc of a laboratory's single-wheel test: radius 58 mm, width 50 mm, on dry sand.
 DISC = {
-    "format_version": 1, "template": "ancf_shell", "name": "disc", "radius": 0.058, "rim_radius": 0.058, "rim_width": 0.05, "pressure": 1e3,
+    "format_version": 1, "template": "ancf_shell", "name": "disc", "radius": 0.058,
+    "rim_radius": 0.058, "rim_width": 0.05, "pressure": 1e3,
     "structural_damping": 1e-3, "elements_circumference": 60,
-    "contact": {"young_modulus": 5e7, "poisson_ratio": 0.3, "friction": 0.4, "restitution": 0.2, "normal_stiffness": 1e6,
+    "contact": {"young_modulus": 5e7, "poisson_ratio": 0.3, "friction": 0.4,
+                "restitution": 0.2, "normal_stiffness": 1e6,
                 "normal_damping": 10},
     "materials": {"steel": {"density": 1000, "young_modulus": 1e8, "poisson_ratio": 0.3}},
     "sections": {name: {"elements_per_side": 1, "layers": [{"thickness": 2e-3, "angle_deg": 0, "material": "steel"}]}
@@ -19,10 +21,13 @@ DISC = {
 }
 WHEEL = {
     "format_version": 1,
-    "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8.0, "ramp": 0.05, "carrier_mass": 2.0, "chassis_mass": 0.1, "set_toe_mass": 0.1,
-            "rim_mass": 0.4, "rim_spin_inertia": 1e-3, "rim_diametral_inertia": 1e-3, "touchdown_damping": 20, "touchdown_time": 0.05},
+    "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8.0, "ramp": 0.05,
+            "carrier_mass": 2.0, "chassis_mass": 0.1, "set_toe_mass": 0.1,
+            "rim_mass": 0.4, "rim_spin_inertia": 1e-3, "rim_diametral_inertia": 1e-3,
+            "touchdown_damping": 20, "touchdown_time": 0.05},
     "tire": {"file": "disc.json", "rigid": True},
-    "terrain": {"radius": 0.0035, "density": 2420, "young_modulus": 5e6, "friction": 0.5, "rolling_friction": 0.1, "layers": 8,
+    "terrain": {"radius": 0.0035, "density": 2420, "young_modulus": 5e6,
+                "friction": 0.5, "rolling_friction": 0.1, "layers": 8,
                 "length": 0.32, "width": 0.1},
     "run": {"step": 7.8e-5, "end": 0.12, "average_from": 0.06},
     "output": {"frame_interval": 0},
@@ -50,7 +55,8 @@ class SmallWheel(SystemTest):
         self.assertIn(f"the terrain took {found['substeps_added']} more substeps", done.stderr)
         # It continues bit for bit while it is refined, whatever the threads.
         again = self.folder / "again"
-        for arguments in (("run", self.path, "--threads", "1", "--out", again, "--set", "run.end=0.0845", "--set", "run.average_from=0.06"),
+        for arguments in (("run", self.path, "--threads", "1", "--out",
+                           again, "--set", "run.end=0.0845", "--set", "run.average_from=0.06"),
                           ("resume", again, "--until", "0.12")):
             done = furrow(*arguments, "--no-plots", cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -61,7 +67,8 @@ class SmallWheel(SystemTest):
 
 class Failed(SystemTest):
     """Grains so soft that the wheel presses them flat."""
-    SOFT = changed(terrain={"young_modulus": 3e5, "cohesion": 0.0}, run={"step": 1e-4, "end": 0.3, "average_from": 0.01},
+    SOFT = changed(terrain={"young_modulus": 3e5, "cohesion": 0.0},
+                   run={"step": 1e-4, "end": 0.3, "average_from": 0.01},
                    output={"frame_interval": 0}, checkpoint={"interval": 0.01})
 
     def fail(self, scenario, *flags, code=3):
@@ -73,9 +80,13 @@ class Failed(SystemTest):
 
     def test_what_no_step_cures_says_how_many_where_and_what_to_change(self):
         run, told = self.fail(self.SOFT)
-        self.assertRegex(told, r"terrain has contacts that are too hard for its grains at t = .* contacts? (is|are) deeper than 30 % of a "
-                               r"grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) m; expected stiffer grains \(about .* Pa in "
-                               r"terrain.young_modulus, which needs a step of at most .* s\), or less load or speed; a smaller step does not help")
+        self.assertRegex(told,
+                         r"terrain has contacts that are too hard for its grains at t = .* contacts? (is|are) deeper "
+                         r"than 30 % of a "
+                               r"grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) m; expected "
+                               r"stiffer grains \(about .* Pa in "
+                               r"terrain.young_modulus, which needs a step of at most .* s\), or less load or speed; a "
+                               r"smaller step does not help")
         self.assertNotIn("furrow resume", told)
         self.assertIn("a resumed run would fail at the same step; start again with furrow run", told)
         self.assertFalse((run / "summary.json").exists())
@@ -101,7 +112,8 @@ class Failed(SystemTest):
         stopped = summary(run, "summary_failed.json")["failed"]["time_s"]
         last = max(int(entry.name) for entry in (run / "checkpoints").iterdir()) * 1e-4
         self.assertLess(last, stopped)
-        done = furrow("resume", run, "--no-plots", "--set", "run.step=5e-5", "--set", "terrain.substeps=2", "--until", f"{last + 2e-4:.4f}",
+        done = furrow("resume", run, "--no-plots", "--set", "run.step=5e-5",
+                      "--set", "terrain.substeps=2", "--until", f"{last + 2e-4:.4f}",
                       cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertFalse((run / "summary_failed.json").exists())
@@ -128,7 +140,8 @@ class Failed(SystemTest):
         write_scenario(self.folder, self.SOFT)
         study = self.folder / "study.json"
         study.write_text(json.dumps({"scenario": "small.json", "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean"},
-                                     "list": [{"rig.slip": 0.3}, {"rig.slip": 0.4, "terrain.young_modulus": 2.49e7, "run.end": 0.03}]}))
+                                     "list": [{"rig.slip": 0.3},
+                                              {"rig.slip": 0.4, "terrain.young_modulus": 2.49e7, "run.end": 0.03}]}))
         done = furrow("sweep", study, cwd=self.folder)
         self.assertEqual(done.returncode, 3, done.stderr)
         with open(self.folder / "results" / "study" / "sweep.csv", newline="") as file:

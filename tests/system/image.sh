@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The image of scripts/cluster/Containerfile, of an installed tree of the build in $FURROW's folder: built without a daemon
-# on a Debian 12 made by debootstrap, unpacked, and run by a user who is not root.
-# Exit status: 0 all well, 1 something failed, 77 cannot run here.
+# The image of scripts/cluster/Containerfile, of an installed tree of the build in $FURROW's folder: built without a
+# daemon on a Debian 12 made by debootstrap, unpacked, and run by a user who is not root. Exit status: 0 all well, 1
+# something failed, 77 cannot run here.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../.." && pwd -P)
 build=$(dirname -- "${FURROW:-$root/build/furrow}")

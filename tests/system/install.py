@@ -15,7 +15,8 @@ BUILD = pathlib.Path(PROGRAM).parent
 class Install(SystemTest):
     def setUp(self):
         super().setUp()
-        done = subprocess.run(["cmake", "--install", str(BUILD), "--prefix", str(self.folder / "first")], capture_output=True,
+        done = subprocess.run(["cmake", "--install", str(BUILD), "--prefix", str(self.folder / "first")],
+                              capture_output=True,
                               text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.tree = self.folder / "moved tree"
@@ -30,7 +31,8 @@ class Install(SystemTest):
     def test_a_moved_tree_runs_and_finds_its_files(self):
         done = self.run_installed("validate", write_scenario(self.folder))
         self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.run_installed("run", self.folder / "small.json", "--out", "out", "--set", "terrain.engine=rigid", "--set",
+        done = self.run_installed("run", self.folder / "small.json", "--out",
+                                  "out", "--set", "terrain.engine=rigid", "--set",
                                   "run.end=0.004", "--set", "run.average_from=0")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(list((self.folder / "out").glob("*.png")) or "no plots" in done.stderr, done.stderr)
@@ -46,7 +48,8 @@ class Install(SystemTest):
         for name in ("bash-completion/completions/furrow", "zsh/vendor-completions/_furrow",
                      "fish/vendor_completions.d/furrow.fish", "man/man1/furrow.1"):
             text = (self.tree / "share" / name).read_text()
-            self.assertIn("bit-identical to that of an uninterrupted run" if "man" in name or "fish" in name else "resume", text.replace("\\-", "-"))
+            self.assertIn("bit-identical to that of an uninterrupted run"
+                          if "man" in name or "fish" in name else "resume", text.replace("\\-", "-"))
             self.assertNotIn(str(ROOT), text)
 
     def test_a_batch_script_names_the_command_that_suits_every_node(self):
@@ -61,7 +64,8 @@ class Install(SystemTest):
             program.write_text(f"#!/bin/sh\necho {level}: \"$@\"\n")
             program.chmod(0o755)
         flags = pathlib.Path("/proc/cpuinfo").read_text().split()
-        taken = next((level for level, flag in (("x86-64-v4", "avx512vl"), ("x86-64-v3", "avx2"), ("x86-64-v2", "popcnt"))
+        taken = next((level for level, flag in (("x86-64-v4", "avx512vl"),
+                                                ("x86-64-v3", "avx2"), ("x86-64-v2", "popcnt"))
                       if flag in flags), "any")
         self.assertEqual(self.run_installed("run", "a b").stdout, f"{taken}: run a b\n")
         self.assertEqual(self.run_installed(FURROW_LEVEL="any").stdout, "any:\n")

@@ -59,7 +59,8 @@ class SameNumbers(CheckpointTest):
 
     def differs_from_whole_by(self, scenario):
         run = self.folder / "other"
-        self.program("run", write_scenario(self.folder, scenario, "other.json"), "--out", run, "--no-plots", "--overwrite")
+        self.program("run", write_scenario(self.folder, scenario, "other.json"),
+                     "--out", run, "--no-plots", "--overwrite")
         ours, theirs = table(self.whole), table(run)
         self.assertEqual(len(ours), len(theirs))
         worst = 0.0
@@ -121,10 +122,12 @@ class SameNumbersUnderAPlanarTire(SameNumbers):
 
 
 class BordersThatMove(CheckpointTest):
-    """A heavy wheel that slips pushes grains over the borders of four ranks. After 1000 steps one has 5 % more than the mean."""
+    """A heavy wheel that slips pushes grains over the borders of four ranks. After 1000 steps one has 5 % more than the
+    mean."""
     SCENARIO = {
         "format_version": 1,
-        "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8, "ramp": 0.01, "carrier_mass": 450, "touchdown_damping": 0},
+        "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8, "ramp": 0.01,
+                "carrier_mass": 450, "touchdown_damping": 0},
         "tire": {"file": "hmmwv_layered.json", "rigid": True},
         "terrain": {"engine": "liggghts", "ranks": 4, "radius": 0.03, "layers": 4, "length": 1.6, "width": 0.4},
         "run": {"step": 2e-4, "end": 0.208, "average_from": 0.1, "peer_timeout": 60},
@@ -217,11 +220,13 @@ class Refused(CheckpointTest):
 
     def test_parts_thinner_than_grains(self):
         done = self.program("run", self.path, "--out", self.run_folder, "--set", "terrain.ranks=20", code=2)
-        self.assertIn("key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part", done.stderr)
+        self.assertIn("key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part",
+                      done.stderr)
 
     def test_what_it_does_without_is_said(self):
         done = self.program("validate", self.path, "--set", "terrain.ranks=3", "--threads", 4, "--json")
-        self.assertIn("key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core", done.stderr)
+        self.assertIn("key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core",
+                      done.stderr)
         told = json.loads(done.stdout)
         self.assertEqual(told["time"]["terrain_threads"], 1)
         self.assertGreater(told["time"]["ghosts_per_rank"], 0)
@@ -235,18 +240,22 @@ class Refused(CheckpointTest):
         core = str(min(os.sched_getaffinity(0)))
         for ranks, yields in ((1, ""), (2, "1")):
             with self.subTest(ranks):
-                subprocess.run(["taskset", "-c", core, FAULTY, "run", self.path, "--set", f"terrain.ranks={ranks}", "--out", self.run_folder,
-                                "--overwrite"], env={**os.environ, "FURROW_MPIRUN": str(launcher)}, capture_output=True, check=False)
+                subprocess.run(["taskset", "-c", core, FAULTY, "run", self.path,
+                                "--set", f"terrain.ranks={ranks}", "--out", self.run_folder,
+                                "--overwrite"], env={**os.environ, "FURROW_MPIRUN": str(launcher)},
+                               capture_output=True, check=False)
                 self.assertEqual(told.read_text().strip(), yields)
 
     def test_without_its_library(self):
         program = self.folder / "alone" / "in" / "some" / "folder" / "furrow"
         program.parent.mkdir(parents=True)
         shutil.copy2(FAULTY, program)
-        for command in (["run", self.path, "--out", self.run_folder], ["validate", self.path], ["ranks", "--slurm", self.path]):
+        for command in (["run", self.path, "--out", self.run_folder], ["validate", self.path],
+                        ["ranks", "--slurm", self.path]):
             done = furrow(*command, cwd=self.folder, program=str(program))
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertRegex(done.stderr, "key 'terrain.engine': 'liggghts' is not part of this program: .*libliggghts-dev")
+            self.assertRegex(done.stderr,
+                             "key 'terrain.engine': 'liggghts' is not part of this program: .*libliggghts-dev")
             self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
         self.assertFalse(self.run_folder.exists())
         with open(LIBRARY, "rb") as whole:
@@ -262,6 +271,8 @@ if __name__ == "__main__":
         print(f"skipped: {LIBRARY.name} was not built")
         sys.exit(77)
     if sys.argv[1:] == ["--short"]:
-        sys.argv[1:] = ["SameNumbersOfTheReportsLaw", "RigidTire.test_from_a_checkpoint_whose_step_has_a_frame", "Refused",
-                        "Faults.test_a_command_that_liggghts_refuses_on_all_ranks", "Faults.test_a_file_that_one_rank_misses"]
+        sys.argv[1:] = ["SameNumbersOfTheReportsLaw", "RigidTire.test_from_a_checkpoint_whose_step_has_a_frame",
+                        "Refused",
+                        "Faults.test_a_command_that_liggghts_refuses_on_all_ranks",
+                        "Faults.test_a_file_that_one_rank_misses"]
     main()

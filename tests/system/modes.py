@@ -19,19 +19,22 @@ class Modes(SystemTest):
         return done
 
     def test_folder_holds_frequencies_shapes_and_pictures(self):
-        done = self.run_modes("hmmwv_lumped.json", "--elements-circumference", "24", "--elements-width", "6", "--orders", "3",
+        done = self.run_modes("hmmwv_lumped.json", "--elements-circumference",
+                              "24", "--elements-width", "6", "--orders", "3",
                               "--count", "2", "--out", "out")
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), "out")
         self.assertRegex(done.stderr, r"furrow: lowest frequency [\d.]+ Hz, of order \d\n")
         self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"},
-                         {"modes.csv", "section.csv", "shapes.csv", "summary.json", "frequencies.png", "mode_shapes.png",
+                         {"modes.csv", "section.csv", "shapes.csv", "summary.json",
+                          "frequencies.png", "mode_shapes.png",
                           "mode_sections.png", "report.html"})
         summary = json.loads((out / "summary.json").read_text())
         self.assertEqual([(mode["order"], mode["number"]) for mode in summary["modes"]],
                          [(order, number) for order in range(4) for number in (1, 2)])
         self.assertTrue(summary["stable"])
-        self.assertEqual((summary["tire"], summary["pressure_Pa"], summary["sections"]), ("hmmwv_lumped.json", 200e3, 24))
+        self.assertEqual((summary["tire"], summary["pressure_Pa"], summary["sections"]),
+                         ("hmmwv_lumped.json", 200e3, 24))
         table = rows((out / "modes.csv").read_text())
         for line, mode in zip(table, summary["modes"], strict=True):
             self.assertAlmostEqual(float(line["frequency_Hz"]), mode["frequency_Hz"], places=5)
@@ -44,11 +47,13 @@ class Modes(SystemTest):
 
     def test_pressure_stiffens_and_what_is_printed_is_what_is_written(self):
         coarse = ("hmmwv_lumped.json", "--elements-circumference", "24", "--elements-width", "6", "--orders", "2")
-        soft, hard = (rows(self.run_modes(*coarse, "--csv", "--pressure", pressure).stdout) for pressure in ("1e5", "2e5"))
+        soft, hard = (rows(self.run_modes(*coarse, "--csv", "--pressure", pressure).stdout)
+                      for pressure in ("1e5", "2e5"))
         for a, b in zip(soft, hard, strict=True):
             self.assertLess(float(a["frequency_Hz"]), float(b["frequency_Hz"]), a)
         printed = json.loads(self.run_modes(*coarse, "--json").stdout)
-        self.assertEqual([f"{mode['frequency_Hz']:.9g}" for mode in printed["modes"]], [line["frequency_Hz"] for line in hard])
+        self.assertEqual([f"{mode['frequency_Hz']:.9g}" for mode in printed["modes"]],
+                         [line["frequency_Hz"] for line in hard])
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_wrinkles_are_named(self):
@@ -74,26 +79,35 @@ class Modes(SystemTest):
         self.assertTrue(summary["stable"])
         # The belt turns on its rim with k_t alone: sqrt(2 pi k_t / belt mass) / (2 pi).
         tangential = json.loads((ROOT / "tire/data/hmmwv_ring.json").read_text())["tangential"]
-        self.assertAlmostEqual(summary["modes"][0]["frequency_Hz"], (2 * math.pi * tangential / 8.207) ** 0.5 / (2 * math.pi), delta=0.01)
+        self.assertAlmostEqual(summary["modes"][0]["frequency_Hz"],
+                               (2 * math.pi * tangential / 8.207) ** 0.5 / (2 * math.pi), delta=0.01)
 
     def test_bad_input(self):
         (self.folder / "broken.json").write_text("{")
-        (self.folder / "other.json").write_text(json.dumps({**json.loads((ROOT / "tire/data/aligator_planar.json").read_text()), "radius": 0.1}))
+        (self.folder
+         / "other.json").write_text(json.dumps({**json.loads((ROOT / "tire/data/aligator_planar.json").read_text()),
+                                                "radius": 0.1}))
         for arguments, said in (
                 ((), "TIRE is required"), (("none.json",), "key 'TIRE': 'none.json' does not exist"),
-                (("broken.json",), "broken.json:1:2: is not valid JSON"), (("other.json",), "other.json: key 'rim_radius'"),
-                (("hmmwv_ring.json", "--count", "3"), "key '--count': is 3, expected 1 to 2, the unknowns of a section"),
+                (("broken.json",), "broken.json:1:2: is not valid JSON"),
+                (("other.json",), "other.json: key 'rim_radius'"),
+                (("hmmwv_ring.json", "--count", "3"),
+                 "key '--count': is 3, expected 1 to 2, the unknowns of a section"),
                 (("hmmwv_lumped.json", "--orders", "46"), "key '--orders': is 46, expected 0 to 45"),
                 (("hmmwv_lumped.json", "--orders", "-1"), "key '--orders': is -1"),
                 (("hmmwv_lumped.json", "--count", "0"), "key '--count': is 0, expected 1 to 138"),
                 (("hmmwv_lumped.json", "--count", "1000"), "key '--count': is 1000"),
                 (("hmmwv_lumped.json", "--pressure", "-1"), "key '--pressure': is -1"),
                 (("hmmwv_lumped.json", "--pressure", "nan"), "key '--pressure': is nan"),
-                (("aligator_planar.json", "--pressure", "1e5"), "key '--pressure': is given, but a planar finite-element tire does not"),
+                (("aligator_planar.json", "--pressure", "1e5"),
+                 "key '--pressure': is given, but a planar finite-element tire does not"),
                 (("aligator_planar.json", "--elements-width", "6"), "key '--elements-width': is given"),
-                (("hmmwv_lumped.json", "--elements-circumference", "3"), "key 'elements_circumference': is 3, expected at least 8"),
-                (("hmmwv_lumped.json", "--elements-circumference", "1000000"), "key '--elements-circumference': is 1000000"),
-                (("hmmwv_lumped.json", "--csv", "--json"), "excludes"), (("hmmwv_lumped.json", "--csv", "--out", "x"), "excludes")):
+                (("hmmwv_lumped.json", "--elements-circumference", "3"),
+                 "key 'elements_circumference': is 3, expected at least 8"),
+                (("hmmwv_lumped.json", "--elements-circumference", "1000000"),
+                 "key '--elements-circumference': is 1000000"),
+                (("hmmwv_lumped.json", "--csv", "--json"), "excludes"),
+                (("hmmwv_lumped.json", "--csv", "--out", "x"), "excludes")):
             before = set(self.folder.iterdir())
             done = furrow("modes", *arguments, cwd=self.folder)
             self.assertEqual(done.returncode, 2, (arguments, done.stderr))

@@ -35,21 +35,27 @@ class Package(SystemTest):
         load = float(re.search(r"^load at 40 mm: (-?\d+) N$", out, re.MULTILINE)[1])
         self.assertTrue(100 < load < 1e5, out)
         done = subprocess.run(["build/sinkage", "none.json"], cwd=self.folder, text=True, capture_output=True)
-        self.assertEqual((done.returncode, done.stderr), (2, "sinkage: error: none.json: does not exist, expected a tire file in JSON\n"))
+        self.assertEqual((done.returncode, done.stderr),
+                         (2, "sinkage: error: none.json: does not exist, expected a tire file in JSON\n"))
 
     def test_the_debian_package_says_what_it_needs_and_runs_from_where_it_is_unpacked(self):
         self.run_here("cpack", "--config", BUILD / "CPackConfig.cmake", "-G", "DEB", "-B", self.folder / "deb")
         file, = (self.folder / "deb").glob("*.deb")
         fields = dict(re.findall(r"^ ?(\S+): (.*)$", self.run_here("dpkg-deb", "-f", file), re.MULTILINE))
         self.assertEqual(fields["Package"], "furrow")
-        for name in ("openmpi-bin", "libopenmpi3", "libc6", "libfmt9", "libopenblas0", "libcholmod3", "libgoogle-glog0v6", "libcxsparse3", "libhdf5-103"):  # Ceres is linked statically
+        # Ceres is linked statically
+        for name in ("openmpi-bin", "libopenmpi3", "libc6", "libfmt9",
+                     "libopenblas0", "libcholmod3", "libgoogle-glog0v6", "libcxsparse3", "libhdf5-103"):
             self.assertRegex(fields["Depends"], rf"(^|[ |]){re.escape(name)}")
         self.run_here("dpkg-deb", "-x", file, "root")
         usr = self.folder / "root" / "usr"
         self.assertIn("GNU GPL", (usr / "share/doc/furrow/copyright").read_text())
         self.assertFalse((usr / "include").exists(), "the libraries are no part of it")
-        self.assertEqual(list(usr.rglob("libfurrow_liggghts*")), [], "what links LIGGGHTS is under the GPL and a component of its own")
-        for name in ("furrow/rigs/README.md", "furrow/nodes/output/README.md", "furrow/GLOSSARY.md", "man/man1/furrow.1", "bash-completion/completions/furrow", "furrow/scripts/report/bundle/LICENSES.txt"):
+        self.assertEqual(list(usr.rglob("libfurrow_liggghts*")), [],
+                         "what links LIGGGHTS is under the GPL and a component of its own")
+        for name in ("furrow/rigs/README.md", "furrow/nodes/output/README.md",
+                     "furrow/GLOSSARY.md", "man/man1/furrow.1", "bash-completion/completions/furrow",
+                     "furrow/scripts/report/bundle/LICENSES.txt"):
             self.assertTrue((usr / "share" / name).is_file(), name)
         write_scenario(self.folder)
         self.run_here(usr / "bin/furrow", "run", "small.json", "--out", "out", "--set", "terrain.engine=rigid", "--set",
@@ -58,7 +64,8 @@ class Package(SystemTest):
             self.skipTest("needs python3-matplotlib and python3-h5py")
         self.run_here(usr / "bin/furrow", "report", "out")
         self.assertTrue((self.folder / "out" / "report.html").exists())
-        shown = self.run_here("env", f"PYTHONPATH={usr}/lib/python3/dist-packages", f"PATH={usr}/bin:/usr/bin:/bin", "/usr/bin/python3",
+        shown = self.run_here("env", f"PYTHONPATH={usr}/lib/python3/dist-packages",
+                              f"PATH={usr}/bin:/usr/bin:/bin", "/usr/bin/python3",
                               "-B", "-c", "import furrow; print(furrow.open('out').state)")
         self.assertEqual(shown, "done\n")
 

@@ -22,7 +22,8 @@ def by_kernel(path, folder):
     import nbformat
     os.environ["PYTHONPATH"] = str(PACKAGE)
     notebook = nbformat.read(path, as_version=4)
-    nbclient.NotebookClient(notebook, timeout=SECONDS, kernel_name="python3", resources={"metadata": {"path": folder}}).execute()
+    nbclient.NotebookClient(notebook, timeout=SECONDS, kernel_name="python3",
+                            resources={"metadata": {"path": folder}}).execute()
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     return sum("image/png" in output.get("data", {}) for cell in cells for output in cell.outputs)
 

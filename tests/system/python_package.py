@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""scripts/python/furrow as users import it, and results in xarray without it. Exit code 77: its Debian packages are missing
+"""scripts/python/furrow as users import it, and results in xarray without it. Exit code 77: its Debian packages are
+missing
 (scripts/setup.sh --python)."""
 import doctest
 import importlib.util
@@ -38,7 +39,8 @@ class Package(SystemTest):
         cls.holder = tempfile.TemporaryDirectory(prefix="furrow test ")
         cls.addClassCleanup(cls.holder.cleanup)
         cls.path = pathlib.Path(cls.holder.name) / "out"
-        cls.run_ = furrow.run(SMALL, out=cls.path, progress=False, rig__slip=0.4, run__end=0.1, output__frame_interval=0.05)
+        cls.run_ = furrow.run(SMALL, out=cls.path, progress=False, rig__slip=0.4,
+                              run__end=0.1, output__frame_interval=0.05)
 
     def test_a_run_is_what_its_files_say(self):
         run = self.run_
@@ -55,12 +57,15 @@ class Package(SystemTest):
         self.assertEqual(series.attrs["units"]["drawbar_pull_N"], "N")
         self.assertEqual(len(run.wheels), 1)
         self.assertIn("sliding_loss_J", run.accounts.columns)
-        self.assertRaisesRegex(furrow.Missing, "no table of 'vehicle', expected one of: wheel0, accounts", lambda: run.vehicle)
+        self.assertRaisesRegex(furrow.Missing, "no table of 'vehicle', expected one of: wheel0, accounts",
+                               lambda: run.vehicle)
 
     def test_packages_that_are_missing_are_named_at_once(self):
         done = subprocess.run([sys.executable, "-c", "import importlib.util as u\nfind = u.find_spec\n"
-                               "u.find_spec = lambda name, *more: None if name in ('pandas', 'xarray') else find(name, *more)\nimport furrow"],
-                              text=True, capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT / "scripts" / "python")})
+                               "u.find_spec = lambda name, *more: None if name in ('pandas', 'xarray') else find(name, "
+                               "*more)\nimport furrow"],
+                              text=True, capture_output=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "scripts" / "python")})
         self.assertEqual(done.returncode, 1)
         self.assertTrue(done.stderr.endswith("ImportError: the package 'furrow' needs what is not installed: "
                                              "apt install python3-pandas python3-xarray\n"), done.stderr)
@@ -97,7 +102,8 @@ class Package(SystemTest):
         self.assertEqual(xr.open_dataset(self.path / "frames" / "terrain_000000.h5")["speed"].attrs["units"], "m/s")
 
     def test_plots_are_those_of_the_report_and_leave_the_users_style_alone(self):
-        for draw in (furrow.plots.pull_slip_sinkage, furrow.plots.forces, furrow.plots.ranks, furrow.plots.energy, furrow.plots.momentum):
+        for draw in (furrow.plots.pull_slip_sinkage, furrow.plots.forces,
+                     furrow.plots.ranks, furrow.plots.energy, furrow.plots.momentum):
             with self.subTest(draw.__name__):
                 self.assertGreater(len(draw(self.run_).axes), 0)
                 matplotlib.pyplot.close()
@@ -109,7 +115,8 @@ class Package(SystemTest):
         self.assertEqual(len(list(folder.glob("tire0_*.vtp"))), 3)
         self.assertEqual((folder / "terrain.pvd").read_text().count("<DataSet "), 3)
         done = subprocess.run(["/usr/bin/python3", "-c", (
-            "import sys\ntry: from vtkmodules.vtkIOXML import vtkXMLPolyDataReader as Reader\nexcept ImportError: sys.exit(77)\n"
+            "import sys\ntry: from vtkmodules.vtkIOXML import vtkXMLPolyDataReader as Reader\nexcept ImportError: "
+            "sys.exit(77)\n"
             "for name in sys.argv[1:]:\n"
             "  r = Reader(); r.SetFileName(name); r.Update(); d = r.GetOutput(); a = d.GetPointData().GetArray(0)\n"
             "  print(d.GetNumberOfPoints(), d.GetNumberOfCells(), a.GetName(), a.GetMaxNorm(), *d.GetPoint(7))"),
@@ -128,7 +135,8 @@ class Package(SystemTest):
         if not shutil.which("pvpython") or not shutil.which("xvfb-run"):
             self.skipTest("no pvpython or xvfb-run")
         folder, picture = self.run_.write_vtk(self.folder / "vtk"), self.folder / "run.png"
-        done = subprocess.run(["xvfb-run", "-a", "-s", "-noreset", "pvpython", ROOT / "scripts" / "python" / "paraview_run.py", folder,
+        done = subprocess.run(["xvfb-run", "-a", "-s", "-noreset", "pvpython",
+                               ROOT / "scripts" / "python" / "paraview_run.py", folder,
                                "--picture", picture], text=True, capture_output=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         seen = matplotlib.image.imread(picture)[100:-100, 200:-200, :3]
@@ -159,7 +167,8 @@ class Package(SystemTest):
 
     def test_a_study_gives_its_points(self):
         scenario = write_scenario(self.folder, changed(output={"frame_interval": 0}))
-        study = {"scenario": str(scenario), "set": {"run.end": 0.03}, "grid": {"rig.slip": [0.1, 0.4], "run.seed": [1, 2]},
+        study = {"scenario": str(scenario), "set": {"run.end": 0.03},
+                 "grid": {"rig.slip": [0.1, 0.4], "run.seed": [1, 2]},
                  "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "mean_over": "run.seed"}}
         swept = furrow.sweep(study, out=self.folder / "study", jobs=2, progress=False)
         self.assertEqual(len(swept.runs), 4)
@@ -201,7 +210,8 @@ class Package(SystemTest):
         self.assertEqual(doctest.testmod(units).failed, 0)
         if not importlib.util.find_spec("mypy"):
             self.skipTest("no mypy")
-        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file", "mypy.ini", "--cache-dir", self.folder / "cache", "furrow"],
+        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file",
+                               "mypy.ini", "--cache-dir", self.folder / "cache", "furrow"],
                               cwd=ROOT / "scripts" / "python", text=True, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stdout)
 

@@ -7,8 +7,10 @@ import subprocess
 
 from program import ROOT, SystemTest, changed, furrow, main, on_terminal, write_scenario
 
-PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1}, tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
-WITH_QUIET = ("run", "resume", "sweep", "calibrate", "bed", "soil", "press", "modes", "kc", "report", "validate", "ranks", "new")
+PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1},
+                  tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
+WITH_QUIET = ("run", "resume", "sweep", "calibrate", "bed", "soil", "press",
+              "modes", "kc", "report", "validate", "ranks", "new")
 TIMES = ("wall_s", "settle_wall_s", "from_cache", "ms", "_per_s", "_ms")  # keys whose values differ from time to time
 
 
@@ -49,7 +51,8 @@ class Quiet(SystemTest):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/small-001\n", ""))
 
     def test_a_report_says_how_far_it_is_unless_it_is_quiet(self):
-        self.assertEqual(furrow("run", write_scenario(self.folder), "--out", "out", "--no-plots", cwd=self.folder, env=self.env).returncode, 0)
+        self.assertEqual(furrow("run", write_scenario(self.folder), "--out",
+                                "out", "--no-plots", cwd=self.folder, env=self.env).returncode, 0)
         code, text = on_terminal("report", "out", "--vtk", "vtk", cwd=self.folder, env=self.env)
         self.assertEqual(code, 0, text)
         self.assertIn("\rfurrow: writing the frames", text)
@@ -57,7 +60,8 @@ class Quiet(SystemTest):
         shares = [int(share) for share in re.findall(r"furrow: plotting (\d+) %", text)]
         self.assertGreater(len(shares), 1, text)
         self.assertEqual(shares, sorted(shares))
-        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py", "--out", "more", "--progress", "out"], cwd=self.folder,
+        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py",
+                               "--out", "more", "--progress", "out"], cwd=self.folder,
                               text=True, capture_output=True)
         shares = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("progress ")]
         self.assertEqual((len(shares), shares[0], shares), (6, 0.0, sorted(shares)), done)
@@ -69,7 +73,8 @@ class Quiet(SystemTest):
     def test_several_beds_and_a_study(self):
         write_scenario(self.folder)
         self.both("run", "small.json", "--seeds", "2", "--out", "beds", "--no-plots")
-        (self.folder / "study.json").write_text(json.dumps({"format_version": 1, "scenario": "small.json", "grid": {"rig.slip": [0.1, 0.2]}}))
+        (self.folder / "study.json").write_text(json.dumps({"format_version": 1, "scenario": "small.json",
+                                                            "grid": {"rig.slip": [0.1, 0.2]}}))
         done = furrow("sweep", "study.json", "--quiet", cwd=self.folder, env=self.env)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/study\n", ""))
 
@@ -91,11 +96,13 @@ class Quiet(SystemTest):
                          ("results/aligator_planar-modes-001\n", "results/aligator_planar-modes-002\n"))
 
     def test_suspensions(self):
-        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json", "--points", "3", "--no-plots", says=False),
+        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json",
+                                   "--points", "3", "--no-plots", says=False),
                          ("results/rover-kc-001\n", "results/rover-kc-002\n"))
 
     def test_benchmarks(self):
-        loud, quiet = map(json.loads, self.both("bench", "tire", "--elements-circumference", "24", "--elements-width", "6", "--warm", "0.02",
+        loud, quiet = map(json.loads, self.both("bench", "tire", "--elements-circumference",
+                                                "24", "--elements-width", "6", "--warm", "0.02",
                                                 "--steps", "60", "--step", "1e-4"))
         self.assertEqual(loud["state_hash"], quiet["state_hash"])
 
@@ -103,7 +110,8 @@ class Quiet(SystemTest):
         done = furrow("run", "none.json", "--quiet", cwd=self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)
-        failing = changed(run={"step": 5e-4}, terrain={"allow_unstable_step": True, "young_modulus": 1e10}, output={"series_interval": 1e-3})
+        failing = changed(run={"step": 5e-4}, terrain={"allow_unstable_step": True, "young_modulus": 1e10},
+                          output={"series_interval": 1e-3})
         done = furrow("run", write_scenario(self.folder, failing), "--quiet", cwd=self.folder, env=self.env)
         self.assertNotEqual(done.returncode, 0)
         self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)

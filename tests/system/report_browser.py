@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""report.html in a headless Chromium, opened as a file: nothing is logged, all frames play, plots answer the pointer, the
+"""report.html in a headless Chromium, opened as a file: nothing is logged, all frames play, plots answer the pointer,
+the
 themes change, and long runs stay small and responsive. Skipped (77) without chromium, chromium-driver and
 python3-selenium.
 
@@ -24,7 +25,8 @@ from plot.run_data import Run
 from program import ROOT, SystemTest
 
 FLAGS = ("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--window-size=1200,1000", "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update")
+         "--window-size=1200,1000", "--disable-dev-shm-usage", "--disable-background-networking",
+         "--disable-component-update")
 PLAY = """
 const holder = document.querySelector('.playback'), slider = holder.querySelector('input[type=range]');
 const stage = holder.querySelector('canvas').getContext('webgl2'), seconds = [], pictures = [];
@@ -78,7 +80,8 @@ def opened(driver, page_file, patience=120):
     begin = time.monotonic()
     driver.get(page_file.as_uri())
     ready = []
-    for script in ("document.documentElement.dataset.ready === 'yes'", "document.querySelector('.playback').dataset.ready === 'yes'"):
+    for script in ("document.documentElement.dataset.ready === 'yes'",
+                   "document.querySelector('.playback').dataset.ready === 'yes'"):
         while not driver.execute_script(f"return {script}"):
             if time.monotonic() - begin > patience:
                 raise AssertionError(f"not within {patience} s: {script}")
@@ -101,14 +104,18 @@ def measured(folder, frames, grains, shake=0.0):
         ready, playback = opened(driver, run / "report.html")
         played = json.loads(driver.execute_script(PLAY))
         stall = driver.execute_async_script(STALL, 3)
-        renderer = driver.execute_script("const gl = document.createElement('canvas').getContext('webgl2'), about = gl.getExtension("
-                                         "'WEBGL_debug_renderer_info'); return about ? gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : ''")
+        renderer = driver.execute_script("const gl = document.createElement('canvas').getContext('webgl2'), about = "
+                                         "gl.getExtension("
+                                         "'WEBGL_debug_renderer_info'); return about ? "
+                                         "gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : ''")
         complaints = [line["message"] for line in driver.get_log("browser") if line["level"] != "INFO"]
     finally:
         driver.quit()
-    return {"frames": frames, "frames_shown": len(played["seconds"]), "grains": grains, "page_MB": round((run / "report.html").stat().st_size / 1e6, 2),
+    return {"frames": frames, "frames_shown": len(played["seconds"]), "grains": grains,
+            "page_MB": round((run / "report.html").stat().st_size / 1e6, 2),
             "make_page_s": round(made, 2), "page_ready_s": round(ready, 2), "playback_ready_s": round(playback, 2),
-            "slider_step_s": {"median": round(statistics.median(played["seconds"]), 3), "largest": round(max(played["seconds"]), 3)},
+            "slider_step_s": {"median": round(statistics.median(played["seconds"]), 3),
+                              "largest": round(max(played["seconds"]), 3)},
             "longest_stall_while_playing_s": round(stall, 3), "renderer": renderer, "complaints": complaints}
 
 
@@ -172,8 +179,11 @@ class InBrowser(SystemTest):
         for choice, value in ((0, "speed"), (0, "displacement"), (1, "pressure"), (1, "force")):
             self.ask(f"const list = document.querySelectorAll('.controls select')[{choice}]; list.value = '{value}'; "
                      "list.dispatchEvent(new Event('change'))")
-        self.assertIn("contact", self.ask("const list = document.querySelectorAll('.controls select')[1]; list.value = 'pressure'; "
-                                          "list.dispatchEvent(new Event('change')); return document.querySelector('.scales').textContent"))
+        self.assertIn("contact",
+                      self.ask("const list = document.querySelectorAll('.controls select')[1]; list.value = "
+                               "'pressure'; "
+                               "list.dispatchEvent(new Event('change')); return "
+                               "document.querySelector('.scales').textContent"))
 
     def plots_answer(self):
         from selenium.webdriver.common.action_chains import ActionChains
@@ -182,7 +192,8 @@ class InBrowser(SystemTest):
         self.assertIn("N", self.ask("return document.querySelector('figcaption').textContent"))
         over = self.driver.find_element("css selector", ".chart .u-over")
         ActionChains(self.driver).move_to_element(over).perform()
-        self.wait(r"/1\d\.\d+ N/.test(document.querySelector('.chart .u-legend').textContent)")  # 100 N/s in the middle of 0.25 s
+        # 100 N/s in the middle of 0.25 s
+        self.wait(r"/1\d\.\d+ N/.test(document.querySelector('.chart .u-legend').textContent)")
         ticks = "document.querySelector('.chart canvas').toDataURL()"
         before = self.ask(f"return {ticks}")
         ActionChains(self.driver).move_to_element(over).click_and_hold().move_by_offset(80, 0).release().perform()
@@ -204,9 +215,11 @@ class InBrowser(SystemTest):
 
 def measure(file):
     """Writes the figures of both long pages, with where they come from."""
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], text=True, capture_output=True).stdout.strip()
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
+                            text=True, capture_output=True).stdout.strip()
     version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
-    figures = {"format_version": 1, "commit": commit, "command": "tests/system/report_browser.py --measure FILE.json", "browser": version,
+    figures = {"format_version": 1, "commit": commit, "command": "tests/system/report_browser.py --measure FILE.json",
+               "browser": version,
                "cores": os.cpu_count(), "machine": platform.machine(), "pages": []}
     for frames, grains, shake in ((12, 25000, 0.0), (1000, 12000, report_page.RADIUS)):
         with tempfile.TemporaryDirectory(prefix="furrow page ") as folder:

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The bundle of report.html made again from its sources is the one that is kept. Skipped (77) without npm or its registry.
+# The bundle of report.html made again from its sources is the one that is kept. Skipped (77) without npm or its
+# registry.
 set -euo pipefail
 report=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../../scripts/report" && pwd -P)
 command -v npm >/dev/null || exit 77

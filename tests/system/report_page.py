@@ -55,24 +55,29 @@ def wheel(turned, shift, dent):
     angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
     points = np.array([[0.4 * np.cos(a + turned), y, 0.4 * np.sin(a + turned)] for a in angle for y in (-0.1, 0.1)])
     points[7] *= 1 - dent
-    triangle = [t for k in range(24) for a in [2 * k] for b in [2 * ((k + 1) % 24)] for t in ((a, b, a + 1), (a + 1, b, b + 1))]
+    triangle = [t for k in range(24) for a in [2 * k] for b in [2 * ((k + 1) % 24)]
+                for t in ((a, b, a + 1), (a + 1, b, b + 1))]
     return points + shift, np.array(triangle)
 
 
 def known_run(folder, count=FRAMES, grains=GRAINS, shake=0.0):
-    """A run of known contents; the positions of its grains by frame. `shake`: how far every grain moves at random between
+    """A run of known contents; the positions of its grains by frame. `shake`: how far every grain moves at random
+    between
     frames, m, which no packing makes small."""
     (folder / "frames").mkdir(parents=True)
     (folder / "scenario.json").write_text(json.dumps({
-        "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2}, "run": {"end": 1.5, "average_from": 0.1},
+        "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2},
+        "run": {"end": 1.5, "average_from": 0.1},
         "expected": {"drawbar_pull": 100.0, "drawbar_pull_spread": 5.0}}))
     (folder / "summary.json").write_text(json.dumps({
-        "scenario": "known", "slip": 0.2, "simulated_s": 0.25, "net_terrain_force_N": [100.0, 0.0, 4000.0], "terrain_engine": "dem",
+        "scenario": "known", "slip": 0.2, "simulated_s": 0.25, "net_terrain_force_N": [100.0, 0.0, 4000.0],
+        "terrain_engine": "dem",
         "drawbar_pull_N": {"mean": 110.0, "sem": 4.0, "n_eff": 9.0, "steady": False, "unsteady_because": ["it drifts"],
                            "from_s": 0.1, "to_s": 0.25},
         "ranks": [{"rank": 0, "node": "rig", "threads": 1, "busy_share": 0.25}]}))
     time = np.arange(0, 0.25, 1e-3)
-    (folder / "timeseries.csv").write_text("time_s,drawbar_pull_N,sinkage_m\n" + "".join(f"{t},{100 * t},{t}\n" for t in time))
+    (folder / "timeseries.csv").write_text("time_s,drawbar_pull_N,sinkage_m\n"
+                                           + "".join(f"{t},{100 * t},{t}\n" for t in time))
     chance = np.random.default_rng(1)
     position = np.column_stack([chance.uniform(0, 2, grains), chance.uniform(-0.3, 0.3, grains), np.full(grains, 0.05)])
     kept = []
@@ -135,7 +140,8 @@ class Page(SystemTest):
     def test_answer_expectation_and_defaults(self):
         about, _ = document(self.made())
         words = " ".join(block["text"] for block in blocks_of(about, "text"))
-        self.assertIn("110.0 ± 9.2 N at 20 % slip (95 % interval", words)  # 2.306 standard errors of 4 N, 8 degrees of freedom
+        # 2.306 standard errors of 4 N, 8 degrees of freedom
+        self.assertIn("110.0 ± 9.2 N at 20 % slip (95 % interval", words)
         self.assertIn("Not steady: it drifts", words)
         self.assertIn("differs from what the scenario's author expects", words)
         scenario = next(section for section in about["sections"] if section["id"] == "scenario")["blocks"][-1]
@@ -146,7 +152,8 @@ class Page(SystemTest):
 
     def test_curves_are_those_of_the_table(self):
         about, part = document(self.made())
-        (pull,) = (chart for block in blocks_of(about, "charts") for chart in block["charts"] if chart["title"] == "Drawbar pull")
+        (pull,) = (chart for block in blocks_of(about, "charts") for chart in block["charts"]
+                   if chart["title"] == "Drawbar pull")
         self.assertEqual((pull["unit"], pull["window"]), ("N", [0.1, 0.25]))
         x, y = (array(about, part("numbers"), pull["lines"][0][axis]) for axis in "xy")
         np.testing.assert_allclose(y, 100 * x, rtol=1e-4, atol=1e-6)
@@ -168,10 +175,13 @@ class Page(SystemTest):
         self.assertEqual(at, len(data))
         tire, data = block["tires"][0], part("tires")
         count = tire["vertices"]
-        reference, poses = array(about, numbers, tire["reference"]).reshape(-1, 3), array(about, numbers, block["poses"]).reshape(FRAMES, 14)
+        reference, poses = array(about, numbers, tire["reference"]).reshape(-1,
+                                                                            3), array(about,
+                                                                                      numbers, block["poses"]).reshape(FRAMES, 14)
         for k in range(FRAMES):
             at = 8 * count * k
-            deviation = np.column_stack([planes(data[at + 2 * count * a:at + 2 * count * (a + 1)], count, 2).view("<i2").ravel() for a in range(3)])
+            deviation = np.column_stack([planes(data[at + 2 * count * a:at + 2 * count * (a + 1)],
+                                                count, 2).view("<i2").ravel() for a in range(3)])
             shown = reference @ poses[k, :9].reshape(3, 3).T + poses[k, 9:12] + tire["quantum"] * deviation
             points, _ = wheel(0.7 * k, [0.5 + 0.1 * k, 0.0, 0.5], 0.02 * k)
             np.testing.assert_allclose(shown, points, atol=tire["quantum"])
@@ -187,7 +197,9 @@ class Page(SystemTest):
 
     def test_a_failed_run_and_one_without_frames(self):
         (self.run_folder / "summary.json").unlink()
-        (self.run_folder / "summary_failed.json").write_text(json.dumps({"scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}}))
+        (self.run_folder / "summary_failed.json").write_text(json.dumps({"scenario": "known",
+                                                                         "failed": {"error": "too hard",
+                                                                                    "time_s": 0.2}}))
         for path in (self.run_folder / "frames").iterdir():
             path.unlink()
         done = furrow("report", self.run_folder, cwd=self.folder)
@@ -199,10 +211,12 @@ class Page(SystemTest):
 
     def test_accounts_and_ranks_of_a_failed_run_are_shown(self):
         (self.run_folder / "summary.json").unlink()
-        energy = {"closes": True, "residual_share": 1e-4, "turnover": 100.0, "residual": 0.01, "work": {"drive_work": 90.0}}
+        energy = {"closes": True, "residual_share": 1e-4, "turnover": 100.0,
+                  "residual": 0.01, "work": {"drive_work": 90.0}}
         (self.run_folder / "summary_failed.json").write_text(json.dumps({
             "scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}, "accounts": {"energy": energy},
-            "ranks": [{"rank": 0, "node": "rig", "threads": 1, "compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0, "busy_share": 0.25}]}))
+            "ranks": [{"rank": 0, "node": "rig", "threads": 1, "compute_s": 1.0,
+                       "wait_s": 3.0, "cpu_s": 1.0, "busy_share": 0.25}]}))
         done = furrow("report", self.run_folder, cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
@@ -249,7 +263,8 @@ class Page(SystemTest):
         for wall in ("1.25", "12.5"):
             study = self.folder / f"wall {wall}" / "study"
             study.mkdir(parents=True)
-            (study / "sweep.json").write_text(json.dumps({"study": "slips", "plot": {}, "results": ["sinkage_m", "wall_s"]}))
+            (study / "sweep.json").write_text(json.dumps({"study": "slips",
+                                                          "plot": {}, "results": ["sinkage_m", "wall_s"]}))
             (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\nruns/1,done,0,0.2,0.021,{wall}\n")
             self.assertEqual(page.write(study, [Sweep(study)], lambda *_: True), ["report.html"])
             pages.append((study / "report.html").read_bytes())
@@ -263,33 +278,40 @@ class Page(SystemTest):
         study = self.folder / "study"
         study.mkdir()
         (study / "sweep.json").write_text(json.dumps({
-            "study": "slips", "description": "Two soils.", "results": ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"],
-            "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem", "lines": "terrain.cohesion"}}))
+            "study": "slips", "description": "Two soils.",
+            "results": ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"],
+            "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem",
+                     "lines": "terrain.cohesion"}}))
         (study / "sweep.csv").write_text("folder,state,exit_code,rig.slip,terrain.cohesion,drawbar_pull_N.mean,drawbar_pull_N.sem,drawbar_pull_N.steady\n"
                                          "runs/1,done,0,0.2,40000.0,120,4,true\nruns/2,done,0,0.3,40000.0,130,5,false\n")
         page.write(study, [Sweep(study)], lambda *_: True)
         about, _ = document(study / "report.html")
         self.assertEqual([block["text"] for block in blocks_of(about, "text")],
-                         ["Two soils.", "1 of 2 points include a run whose pull is not steady: such a point is not to be quoted."])
+                         ["Two soils.",
+                          "1 of 2 points include a run whose pull is not steady: such a point is not to be quoted."])
         (charts,) = blocks_of(about, "charts")
         self.assertEqual(charts["note"], "Whiskers: standard error of each run.")
         self.assertEqual([line["label"] for line in charts["charts"][0]["lines"]], ["terrain.cohesion = 40000 Pa"])
         (table,) = blocks_of(about, "table")
-        self.assertEqual(table["columns"][3:], ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N", "drawbar pull standard error, N",
-                                                "drawbar pull steady"])
+        self.assertEqual(table["columns"][3:],
+                         ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N", "drawbar pull standard error, N",
+                          "drawbar pull steady"])
         self.assertEqual(table["rows"][0][4:], ["40000", "120", "4", "true"])
 
     def test_all_values_of_a_pressed_tire_have_units(self):
         folder = self.folder / "press"
         folder.mkdir()
-        (folder / "summary.json").write_text(json.dumps({"obstacle": "plate", "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
+        (folder / "summary.json").write_text(json.dumps({"obstacle": "plate",
+                                                         "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
                                                          "statically_stable": True,
-                                                         "sticking_stiffness": {"lateral_N_per_m": 1.5e5, "torsional_Nm_per_rad": 2500.0}}))
+                                                         "sticking_stiffness": {"lateral_N_per_m": 1.5e5,
+                                                                                "torsional_Nm_per_rad": 2500.0}}))
         (folder / "press.csv").write_text("deflection_m,force_N,unloading\n0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
         page.write(folder, [Press(folder)], lambda *_: True)
         about, part = document(folder / "report.html")
         rows = blocks_of(about, "table")[-1]["rows"]
-        for row in (["load", "4600", "N"], ["deflection", "12.8", "mm"], ["pressure", "200", "kPa"], ["statically stable", "yes", ""],
+        for row in (["load", "4600", "N"], ["deflection", "12.8", "mm"],
+                    ["pressure", "200", "kPa"], ["statically stable", "yes", ""],
                     ["sticking stiffness lateral", "150", "kN/m"], ["sticking stiffness torsional", "2500", "N m/rad"]):
             self.assertIn(row, rows)
         loading, unloading = blocks_of(about, "charts")[0]["charts"][0]["lines"]
@@ -306,13 +328,17 @@ class Page(SystemTest):
         listed = re.findall(r'timestep="([^"]+)" file="([^"]+)"', (out / "terrain.pvd").read_text())
         self.assertEqual([name for _, name in listed], [f"terrain_{k:06d}.vtp" for k in range(FRAMES)])
         np.testing.assert_allclose([float(time) for time, _ in listed], STEP * np.arange(FRAMES))
-        packed = re.search(r'Name="position" NumberOfComponents="3" format="binary">([^<]+)<', (out / listed[-1][1]).read_text())[1]
+        packed = re.search(r'Name="position" NumberOfComponents="3" format="binary">([^<]+)<',
+                           (out / listed[-1][1]).read_text())[1]
         head = np.frombuffer(base64.b64decode(packed[:44]), "<u8")  # 32 bytes: blocks, bytes, rest, bytes compressed
-        np.testing.assert_array_equal(np.frombuffer(zlib.decompress(base64.b64decode(packed[44:])), "<f4").reshape(-1, 3), self.positions[-1])
+        np.testing.assert_array_equal(np.frombuffer(zlib.decompress(base64.b64decode(packed[44:])),
+                                                    "<f4").reshape(-1, 3), self.positions[-1])
         self.assertEqual(list(head[:3]), [1, self.positions[-1].nbytes, 0])
         again = furrow("report", self.run_folder, "--vtk", out, "--quiet", cwd=self.folder)
         self.assertEqual(again.returncode, 2)
-        self.assertEqual(again.stderr, f"furrow: error: command line: key '--vtk': {out} exists and is not an empty folder, expected a new one\n")
+        self.assertEqual(again.stderr,
+                         f"furrow: error: command line: key '--vtk': {out} exists and is not an empty folder, expected "
+                         f"a new one\n")
         damaged = self.run_folder / "frames" / "terrain_000001.h5"
         damaged.write_bytes(b"")
         done = furrow("report", self.run_folder, "--vtk", self.folder / "part", cwd=self.folder)
@@ -335,7 +361,8 @@ class OwnFiles(SystemTest):
         self.run_folder, self.out = self.folder / "run", self.folder / "own"
         known_run(self.run_folder)
         summary = json.loads((self.run_folder / "summary.json").read_text())
-        summary["ranks"][0] |= {"compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0}  # so that there are two plots: ranks.png and scene.png
+        # so that there are two plots: ranks.png and scene.png
+        summary["ranks"][0] |= {"compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0}
         (self.run_folder / "summary.json").write_text(json.dumps(summary))
         self.out.mkdir()
 
@@ -359,7 +386,8 @@ class OwnFiles(SystemTest):
         mine = ("report.html", "rut.png", "ranks.png", ".report.html.part")
         for name in mine:
             (self.out / name).write_text("mine")
-        told = [f"no {name}: furrow did not write the file of that name in this folder" for name in ("report.html", "ranks.png")]
+        told = [f"no {name}: furrow did not write the file of that name in this folder"
+                for name in ("report.html", "ranks.png")]
         made = self.report("run", "--out", "own", told=told)
         self.assertEqual(made, ["scene.png"])
         (self.out / "scene.png").write_text("of an earlier report")
@@ -382,7 +410,8 @@ class OwnFiles(SystemTest):
         self.assertEqual(made, ["ranks.png", "scene.png", "report.html"])
         for name in made:
             (self.out / name).write_text("mine")
-        self.report("run", "--out", "own", code=5, told=["own: no plot was written, as other files have their names, expected another folder"])
+        self.report("run", "--out", "own", code=5,
+                    told=["own: no plot was written, as other files have their names, expected another folder"])
         self.assertEqual({path.name for path in self.out.iterdir()}, set(made))
 
     def test_links_are_neither_followed_nor_replaced(self):
@@ -394,8 +423,10 @@ class OwnFiles(SystemTest):
                 for name, to in (("scene.png", "precious"), ("report.html", "nowhere")):
                     (folder / name).unlink(missing_ok=True)
                     (folder / name).symlink_to(self.folder / to)
-                made = self.report(*arguments, told=[f"no {name}: the file of that name in this folder is a link, which furrow does not follow"
-                                                     for name in ("scene.png", "report.html")])
+                made = self.report(*arguments,
+                                   told=[f"no {name}: the file of that name in this folder is a link, which furrow "
+                                         f"does not follow"
+                                         for name in ("scene.png", "report.html")])
                 self.assertEqual(made, ["ranks.png"])
                 self.assertTrue((folder / "scene.png").is_symlink() and (folder / "report.html").is_symlink())
                 self.assertEqual((self.folder / "precious").read_text(), "precious")

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Pictures of pages as a browser shows them, and how large the pages of results are and how fast they open.
 
-usage: report_pictures.py OUT NAME=FOLDER|FILE.html...     (needs chromium, chromium-driver, python3-selenium, python3-pil)
+usage: report_pictures.py OUT NAME=FOLDER|FILE.html...     (needs chromium, chromium-driver, python3-selenium,
+python3-pil)
 
-Of a folder of results with report.html it writes OUT/NAME.jpg (the top, light), OUT/NAME_dark.jpg, and of a run with frames
-OUT/NAME_playback.jpg; of another page OUT/NAME.jpg and OUT/NAME_dark.jpg. Prints JSON: size, seconds until the page and its
-playback are ready, and what the browser complained about.
+Of a folder of results with report.html it writes OUT/NAME.jpg (the top, light), OUT/NAME_dark.jpg, and of a run with
+frames OUT/NAME_playback.jpg; of another page OUT/NAME.jpg and OUT/NAME_dark.jpg. Prints JSON: size, seconds until the
+page and its playback are ready, and what the browser complained about.
 """
 import io
 import json
@@ -68,7 +69,8 @@ def show(driver, name, page, results, out):
         driver.execute_script("window.scrollTo(0, 0)")
     keep(driver, out / f"{name}.jpg")
     if results:
-        driver.execute_script("if (matchMedia('(prefers-color-scheme: dark)').matches === false) document.querySelector('.theme').click()")
+        driver.execute_script("if (matchMedia('(prefers-color-scheme: dark)').matches === false) "
+                              "document.querySelector('.theme').click()")
     else:
         driver.execute_script("document.body.dataset.theme = 'dark'")
     keep(driver, out / f"{name}_dark.jpg")
@@ -90,9 +92,11 @@ def main():
             found[name] = show(driver, name, place / "report.html" if results else place, results, out)
     finally:
         driver.quit()
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], text=True, capture_output=True).stdout.strip()
+    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
+                            text=True, capture_output=True).stdout.strip()
     version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
-    print(json.dumps({"format_version": 1, "commit": commit, "command": " ".join(["tests/system/report_pictures.py", *sys.argv[1:]]),
+    print(json.dumps({"format_version": 1, "commit": commit,
+                      "command": " ".join(["tests/system/report_pictures.py", *sys.argv[1:]]),
                       "browser": version, "cores": os.cpu_count(), "pages": found}, indent=2))
 
 

@@ -9,7 +9,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 from plot import ride_values as ride  # noqa: E402
 
 # ISO 2631-1:1997, table 3: third-octave centre (Hz) and W_k × 1000.
-TABLE = {0.5: 418, 0.63: 459, 0.8: 477, 1.0: 482, 1.25: 484, 1.6: 494, 2.0: 531, 2.5: 631, 3.15: 804, 4.0: 967, 5.0: 1039,
+TABLE = {0.5: 418, 0.63: 459, 0.8: 477, 1.0: 482, 1.25: 484, 1.6: 494,
+         2.0: 531, 2.5: 631, 3.15: 804, 4.0: 967, 5.0: 1039,
          6.3: 1054, 8.0: 1036, 10.0: 988, 12.5: 902, 16.0: 768, 20.0: 636, 25.0: 513, 31.5: 405, 40.0: 314, 50.0: 246,
          63.0: 186, 80.0: 132}
 
@@ -17,7 +18,8 @@ TABLE = {0.5: 418, 0.63: 459, 0.8: 477, 1.0: 482, 1.25: 484, 1.6: 494, 2.0: 531,
 class Weighting(unittest.TestCase):
     def test_is_that_of_the_standards_table(self):
         for nominal, wanted in TABLE.items():
-            self.assertAlmostEqual(1000.0 * abs(ride.weighting(nominal)) / wanted, 1.0, delta=0.006, msg=f"{nominal} Hz")
+            self.assertAlmostEqual(1000.0 * abs(ride.weighting(nominal)) / wanted,
+                                   1.0, delta=0.006, msg=f"{nominal} Hz")
 
     def test_a_sine_has_its_weighted_rms(self):
         time = np.arange(0.0, 40.0, 1e-3)

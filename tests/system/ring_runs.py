@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The flexible ring in runs: it stands as `furrow press` has it, rolls on every kind of ground with accounts that close, under
+"""The flexible ring in runs: it stands as `furrow press` has it, rolls on every kind of ground with accounts that
+close, under
 a vehicle, through a study and a report."""
 import json
 
@@ -9,7 +10,8 @@ RING = {"file": "hmmwv_ring.json", "elements_circumference": 120}
 # A few kilometres per hour, let down quickly.
 ROLLING = {
     "format_version": 1,
-    "rig": {"type": "drawbar", "slip": 0.1, "angular_speed": 4.28, "ramp": 0.05, "carrier_mass": 450, "touchdown_damping": 12e3,
+    "rig": {"type": "drawbar", "slip": 0.1, "angular_speed": 4.28, "ramp": 0.05,
+            "carrier_mass": 450, "touchdown_damping": 12e3,
             "touchdown_time": 0.3},
     "tire": RING,
     "run": {"step": 1e-4, "end": 0.6, "average_from": 0.4},
@@ -38,12 +40,14 @@ class RingRuns(SystemTest):
         """On a ground that hardly gives way: 5e7 N/m³ takes up 7 % of the deflection, 2e8 N/m³ 2 %. Of 120 segments the
         middles lie 0.16 mm above the nodes, 1.2 % of the deflection."""
         ring = {**RING, "elements_circumference": 240}
-        hard = {**STAND, "tire": ring, "terrain": {"engine": "rigid", "ground_stiffness": 1e9, "ground_shear_stiffness": 1e8, "ground_damping": 5e4},
+        hard = {**STAND, "tire": ring, "terrain": {"engine": "rigid", "ground_stiffness": 1e9,
+                                                   "ground_shear_stiffness": 1e8, "ground_damping": 5e4},
                 "run": {"step": 2e-5, "end": 0.5, "average_from": 0.45}}
         path = write_scenario(self.folder, hard, "stand.json")
         told, _ = self.run_of("sticks", hard)
         slides, _ = self.run_of("slides", {**hard, "tire": {**ring, "friction": 0.0}})
-        done = furrow("press", path, "--out", self.folder / "press", "--deflection", "0.03", "--load", told["vertical_load_N"],
+        done = furrow("press", path, "--out", self.folder / "press", "--deflection",
+                      "0.03", "--load", told["vertical_load_N"],
                       cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         pressed = json.loads((self.folder / "press/summary.json").read_text())["deflection_m"]
@@ -83,10 +87,12 @@ class RingRuns(SystemTest):
 
     def test_a_load_beyond_the_model_ends_the_run(self):
         path = write_scenario(self.folder, {**ROLLING, "terrain": GROUNDS["rigid"]})
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "out", "--set", "rig.carrier_mass=6000", "--set",
+        done = furrow("run", path, "--no-plots", "--out", self.folder / "out",
+                      "--set", "rig.carrier_mass=6000", "--set",
                       "rig.touchdown_damping=0", "--set", "rig.drop_height=0.2", cwd=self.folder)
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertRegex(done.stderr, r"tire 0 was pressed (further than a flexible ring is meant for|to its rim) at t = ")
+        self.assertRegex(done.stderr,
+                         r"tire 0 was pressed (further than a flexible ring is meant for|to its rim) at t = ")
 
     def test_a_vehicle_stands_and_drives_off_on_rings(self):
         scenario = json.loads((ROOT / "rigs/hmmwv_rigid.json").read_text())
@@ -101,7 +107,8 @@ class RingRuns(SystemTest):
     def test_study_and_report(self):
         scenario = {**ROLLING, "terrain": GROUNDS["scm"], "run": {"step": 1e-4, "end": 0.12, "average_from": 0.06}}
         write_scenario(self.folder, scenario, "ring.json")
-        study = {"scenario": "ring.json", "grid": {"rig.slip": [0.1, 0.3]}, "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean"}}
+        study = {"scenario": "ring.json", "grid": {"rig.slip": [0.1, 0.3]},
+                 "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean"}}
         (self.folder / "study.json").write_text(json.dumps(study))
         done = furrow("sweep", self.folder / "study.json", "--out", self.folder / "study", cwd=self.folder, timeout=400)
         self.assertEqual(done.returncode, 0, done.stderr)

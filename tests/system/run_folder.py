@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The folder of a run: nothing of the user's own is lost in it, one run at a time has it, and a run notices when it is gone."""
+"""The folder of a run: nothing of the user's own is lost in it, one run at a time has it, and a run notices when it is
+gone."""
 import fcntl
 import json
 import os
@@ -54,7 +55,8 @@ class Overwrite(SystemTest):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertRegex(done.stderr, r"furrow: error: .*out: key '--out': (holds no run|exists already)")
         self.assertIn("an earlier version of furrow made it", furrow("resume", self.out, cwd=self.folder).stderr)
-        self.assertEqual({name: path.read_text() for name, path in files(self.out).items()}, dict.fromkeys(names, "mine"))
+        self.assertEqual({name: path.read_text() for name, path in files(self.out).items()},
+                         dict.fromkeys(names, "mine"))
 
     def test_what_furrow_wrote_goes_and_what_the_user_wrote_stays(self):
         self.run_it(self.path, "--out", "out", "--profile")
@@ -69,7 +71,8 @@ class Overwrite(SystemTest):
         for name in MINE:
             self.assertEqual((self.out / name).read_text(), "mine", name)
         left = files(self.out).keys() - set(MINE)
-        self.assertFalse([name for name in left if name.endswith((".png", "profile.json")) or name.startswith("frames")])
+        self.assertFalse([name for name in left if name.endswith((".png", "profile.json"))
+                          or name.startswith("frames")])
         self.assertLess(left, ours)
 
     def test_a_plot_never_replaces_a_picture_of_the_users_own(self):
@@ -98,7 +101,8 @@ class Overwrite(SystemTest):
         inner = self.folder / "inner"
         inner.mkdir()
         done = self.run_it(self.path, "--out", "nonex/../../w/x", code=2, cwd=inner)
-        self.assertRegex(done.stderr, "^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
+        self.assertRegex(done.stderr,
+                         "^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
         self.assertEqual((self.names(), list(inner.iterdir())), (["inner", "small.json"], []))
 
     def test_a_study_is_refused_where_no_study_was(self):
@@ -121,7 +125,8 @@ class Overwrite(SystemTest):
         disk = self.small_disk(self.folder / "disk", "1m")
         subprocess.run(["dd", "if=/dev/zero", f"of={disk}/ballast", "bs=4k"], capture_output=True)
         done = self.run_it(self.path, "--out", "disk/out", code=5)
-        self.assertEqual(done.stderr, "furrow: error: disk/out/.furrow-run: cannot be written: No space left on device\n")
+        self.assertEqual(done.stderr,
+                         "furrow: error: disk/out/.furrow-run: cannot be written: No space left on device\n")
         self.assertEqual([path.name for path in disk.iterdir()], ["ballast"])
 
 
@@ -143,13 +148,15 @@ class Gone(CheckpointTest):
         before = {name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}
         done = self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"])
         self.assertIn("the run had not begun to step; ", done.stderr)
-        self.assertEqual({name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}, before)
+        self.assertEqual({name: path.read_bytes() for name, path in files(self.run_folder).items()
+                          if name != ".furrow-run"}, before)
 
     def test_moved(self):
         process = self.start_waiting("step", 0, 220)
         elsewhere = self.folder / "elsewhere"
         self.run_folder.rename(elsewhere)
-        err = self.goes_on(process, 5, "furrow: error: .*out: was moved, removed or emptied while the run was under way")
+        err = self.goes_on(process, 5,
+                           "furrow: error: .*out: was moved, removed or emptied while the run was under way")
         self.assertNotIn("resume", err)
         self.assertFalse(self.run_folder.exists())
         self.resume(run=elsewhere)
@@ -167,7 +174,8 @@ class Gone(CheckpointTest):
                 shutil.rmtree(self.run_folder, ignore_errors=True)
                 process = self.start_waiting("step", 0, 220)
                 shutil.rmtree(self.run_folder / name)
-                self.goes_on(process, 5, f"furrow: error: .*out/{name}: was moved or removed while the run was under way")
+                self.goes_on(process, 5,
+                             f"furrow: error: .*out/{name}: was moved or removed while the run was under way")
                 self.assertFalse((self.run_folder / name).exists())
 
     def test_a_link_where_the_parts_of_a_checkpoint_are_to_be(self):
@@ -184,7 +192,8 @@ class Gone(CheckpointTest):
         self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
 
     def test_what_a_move_left_unfinished_is_gone_at_the_end(self):
-        """Moved while a checkpoint is written and moved back before anything looks: its parts have nobody to remove them."""
+        """Moved while a checkpoint is written and moved back before anything looks: its parts have nobody to remove
+        them."""
         process = self.start_waiting("step", 0, 220)
         part = self.run_folder / "checkpoints" / ".000000000210.part"
         part.mkdir()
@@ -203,7 +212,8 @@ class Gone(CheckpointTest):
             shutil.copytree(self.whole, self.run_folder)
             shutil.rmtree(self.run_folder / name)
             (self.run_folder / name).symlink_to("../own")
-            for command in (["run", self.path, "--out", self.run_folder, "--overwrite"], ["resume", self.run_folder, "--until", "0.2"]):
+            for command in (["run", self.path, "--out", self.run_folder, "--overwrite"],
+                            ["resume", self.run_folder, "--until", "0.2"]):
                 done = furrow(*command, "--no-plots", cwd=self.folder)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertIn(f"{name}: is a link, expected what it leads to", done.stderr)
@@ -234,7 +244,8 @@ class Gone(CheckpointTest):
         def replaced(file):
             shutil.copy(file, self.folder / "copy")
             os.replace(self.folder / "copy", file)
-        for change, name in ((os.unlink, "timeseries.csv"), (emptied, "timeseries.csv"), (replaced, "timeseries_accounts.csv"),
+        for change, name in ((os.unlink, "timeseries.csv"), (emptied, "timeseries.csv"),
+                             (replaced, "timeseries_accounts.csv"),
                              (os.unlink, "scenario.json")):
             with self.subTest(change=change, name=name):
                 process = self.start_waiting("step", 0, 220)
@@ -258,9 +269,12 @@ class Gone(CheckpointTest):
     def test_made_read_only(self):
         for path in (self.folder, self.path):
             os.chown(path, 65534, 65534)
-        command = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", FAULTY, "run", self.path, "--out", self.run_folder]
-        environment = {**os.environ, **self.fault("step", 0, 220, "wait"), "HOME": str(self.folder), "XDG_CACHE_HOME": str(self.folder / "cache")}
-        process = subprocess.Popen(command, cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
+        command = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups",
+                   FAULTY, "run", self.path, "--out", self.run_folder]
+        environment = {**os.environ, **self.fault("step", 0, 220, "wait"),
+                       "HOME": str(self.folder), "XDG_CACHE_HOME": str(self.folder / "cache")}
+        process = subprocess.Popen(command, cwd=self.folder, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
         self.addCleanup(process.kill)
         wait_for(lambda: self.mark.exists() or process.poll() is not None, 60, "the fault fires")
         for name in ("frames", "checkpoints", ""):
@@ -276,8 +290,10 @@ class Gone(CheckpointTest):
 
 class Killed(CheckpointTest):
     """kill -9 of `furrow` itself, and somebody who continues at once."""
-    FINER = CYCLES / 6  # the run has 133 steps for each cycle: ranks that lost `furrow` go on for a while, more on a busy machine
-    SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.16, "step": 2e-4 / FINER}, "checkpoint": {"interval": 0.004 / FINER, "keep": 2}}
+    # the run has 133 steps for each cycle: ranks that lost `furrow` go on for a while, more on a busy machine
+    FINER = CYCLES / 6
+    SCENARIO = {**RUN, "run": {**RUN["run"], "end": 0.16, "step": 2e-4 / FINER},
+                "checkpoint": {"interval": 0.004 / FINER, "keep": 2}}
 
     def test_again_and_again_without_a_pause(self):
         command = ["run", self.path, "--out", self.run_folder, "--no-plots"]
@@ -304,7 +320,9 @@ class Killed(CheckpointTest):
                 _, err = other.communicate(timeout=60)
                 self.assertEqual(other.returncode, 2, err)
                 waits, error = err.splitlines()
-                self.assertRegex(waits, r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; waiting for up to 10 s")
+                self.assertRegex(waits,
+                                 r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; waiting for "
+                                 r"up to 10 s")
                 self.assertRegex(error, rf"^furrow: error: .*out: .*process {os.getpid()} \(")
 
 

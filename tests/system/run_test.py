@@ -27,7 +27,8 @@ class Run(SystemTest):
         self.assertGreater(summary["grains"], 1000)
         self.assertEqual([rank["node"] for rank in summary["ranks"]], ["rig", "tire 0", "terrain"])
         self.check_works(run, summary)
-        for word in ("drawbar pull", "% of the load", "sinkage", "not steady", "Steady or not", "no rut measured: the axle", "busy"):
+        for word in ("drawbar pull", "% of the load", "sinkage", "not steady",
+                     "Steady or not", "no rut measured: the axle", "busy"):
             self.assertIn(word, done.stderr)
         self.assertNotIn("mpirun", done.stderr)
         self.assertNotIn("expected", done.stderr)
@@ -38,7 +39,8 @@ class Run(SystemTest):
         self.assertIn("the tire did not touch the terrain", again.stderr)
 
     def check_works(self, run, summary):
-        """A tire that starts at rest holds what rim, terrain and gravity did on it; the series' last line is the summary's."""
+        """A tire that starts at rest holds what rim, terrain and gravity did on it; the series' last line is the
+        summary's."""
         with open(run / "timeseries.csv", newline="") as file:
             rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
         rig = json.loads((run / "scenario.json").read_text())["rig"]
@@ -51,7 +53,8 @@ class Run(SystemTest):
 
     def test_a_wheel_that_stands_on_a_soil_of_ones_own_and_goes_on(self):
         (self.folder / "mysand.json").write_text(json.dumps({"format_version": 1, "terrain": {"friction": 0.5}}))
-        scenario = changed(rig={"mode": "fixed_speed", "speed": 0}, terrain={"material": "mysand.json"}, output={"frame_interval": 0})
+        scenario = changed(rig={"mode": "fixed_speed", "speed": 0}, terrain={"material": "mysand.json"},
+                           output={"frame_interval": 0})
         done = furrow("run", write_scenario(self.folder, scenario), "--no-plots", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         run = self.folder / done.stdout.strip()
@@ -70,7 +73,8 @@ class Run(SystemTest):
         path = write_scenario(self.folder)
         hashes = []
         sides = ["--set", "terrain.sides=periodic", "--threads"]
-        for number, flags in enumerate((["--threads", "1"], ["--threads", "2"], ["--set", "run.seed=2"], [*sides, "1"], [*sides, "2"])):
+        for number, flags in enumerate((["--threads", "1"], ["--threads", "2"],
+                                        ["--set", "run.seed=2"], [*sides, "1"], [*sides, "2"])):
             done = furrow("run", path, "--out", f"out{number}", *flags, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             hashes.append(json.loads((self.folder / f"out{number}" / "summary.json").read_text())["state_hash"])
@@ -135,7 +139,8 @@ class Run(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(done.stdout)
         for name in done.stdout.splitlines():
-            self.assertEqual((self.folder / name).read_bytes()[:4], b"<!DO" if name.endswith("report.html") else b"\x89PNG")
+            self.assertEqual((self.folder / name).read_bytes()[:4],
+                             b"<!DO" if name.endswith("report.html") else b"\x89PNG")
 
 
 class Interrupted(SystemTest):
@@ -143,15 +148,17 @@ class Interrupted(SystemTest):
 
     def setUp(self):
         super().setUp()
-        self.path = write_scenario(self.folder, changed(run={"end": 60.0, "average_from": 1.0, "step": 1e-4, "peer_timeout": 2},
-                                                        rig={"mode": "fixed_speed", "speed": 0.005, "slip": 0.3},
-                                                        output={"frame_interval": 0.05}))
+        self.path = write_scenario(self.folder,
+                                   changed(run={"end": 60.0, "average_from": 1.0, "step": 1e-4, "peer_timeout": 2},
+                                           rig={"mode": "fixed_speed", "speed": 0.005, "slip": 0.3},
+                                           output={"frame_interval": 0.05}))
 
     def started(self):
         process = start("run", self.path, "--out", "out", cwd=self.folder)
         self.addCleanup(process.kill)
         series = self.folder / "out" / "timeseries.csv"
-        wait_for(lambda: series.exists() and len(ranks(self.path)) == 3 and process.poll() is None, 60, "the run begins")
+        wait_for(lambda: series.exists() and len(ranks(self.path)) == 3 and process.poll() is None,
+                 60, "the run begins")
         frames = self.folder / "out" / "frames"
         wait_for(lambda: frames.exists() and len(list(frames.glob("tire0_*.h5"))) >= 2, 60, "the run moves")
         return process

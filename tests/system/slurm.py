@@ -1,4 +1,5 @@
-"""A Slurm cluster of one node for tests, in a folder of its own: its own keys, sockets and ports. Nothing of the system's
+"""A Slurm cluster of one node for tests, in a folder of its own: its own keys, sockets and ports. Nothing of the
+system's
 configuration is read or changed, and nothing but these processes uses it."""
 import os
 import pathlib
@@ -84,13 +85,15 @@ class Cluster:
 
     def daemon(self, *command):
         log = open(self.folder / f"{command[0]}.out", "wb")
-        self.processes.append(subprocess.Popen([shutil.which(command[0], path=PATH), *map(str, command[1:])], stdout=log,
+        self.processes.append(subprocess.Popen([shutil.which(command[0], path=PATH), *map(str, command[1:])],
+                                               stdout=log,
                                                stderr=log, stdin=subprocess.DEVNULL, env=self.environment,
                                                start_new_session=True))
         log.close()
 
     def call(self, *command, check=True, cwd=None, env=None, timeout=120):
-        return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=check, cwd=cwd, timeout=timeout,
+        return subprocess.run(list(map(str, command)), capture_output=True,
+                              text=True, check=check, cwd=cwd, timeout=timeout,
                               stdin=subprocess.DEVNULL, env={**self.environment, **(env or {})})
 
     def scontrol(self, *arguments, check=True):

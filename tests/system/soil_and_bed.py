@@ -93,7 +93,8 @@ class Soil(WithCache):
         self.assertEqual({p.name for p in (self.work / "out").iterdir()}, names)
         self.assertEqual(soil["format_version"], 1)
         self.assertTrue(soil["quick"])
-        for key in ("k_c", "k_phi", "n", "cohesion_Pa", "friction_angle_deg", "janosi_K_m", "cone_index_Pa", "repose_angle_deg"):
+        for key in ("k_c", "k_phi", "n", "cohesion_Pa", "friction_angle_deg",
+                    "janosi_K_m", "cone_index_Pa", "repose_angle_deg"):
             self.assertTrue(math.isfinite(soil[key]), key)
             self.assertIsNone(soil["standard_error"][key], key)  # small boxes have a bias that no scatter shows
             self.assertIsNone(soil["interval_95"][key], key)
@@ -106,7 +107,8 @@ class Soil(WithCache):
         self.assertEqual([soil["terrain"][key] for key in ("bekker_k_c", "bekker_k_phi", "bekker_n", "janosi_k")],
                          [soil[key] for key in ("k_c", "k_phi", "n", "janosi_K_m")])
         (self.work / "mine.json").write_text(json.dumps({"format_version": 1, "terrain": soil["terrain"]}))
-        empirical = write_scenario(self.work, changed(terrain=None) | {"terrain": {"engine": "scm", "material": "mine.json"}}, "scm.json")
+        empirical = write_scenario(self.work, changed(terrain=None)
+                                   | {"terrain": {"engine": "scm", "material": "mine.json"}}, "scm.json")
         done = furrow("validate", empirical, cwd=self.work)
         self.assertEqual(done.returncode, 0, done.stderr)
         for test in ("plate", "shear", "cone"):
@@ -114,7 +116,8 @@ class Soil(WithCache):
             self.assertGreater(soil[test]["box"]["grains"], 50)
         self.assertLess(soil["shear"]["floor_force_error"], 0.05)
         for name, header in (("plate", "seed,width_m,sinkage_m,pressure_Pa"), ("cone", "seed,depth_m,pressure_Pa"),
-                             ("shear", "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m"),
+                             ("shear",
+                              "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m"),
                              ("repose", "seed,cohesion_Pa,x_m,height_before_m,height_after_m")):
             lines = (self.work / "out" / f"{name}.csv").read_text().splitlines()
             self.assertEqual(lines[0], header)
@@ -122,12 +125,14 @@ class Soil(WithCache):
 
     def test_stresses_are_chosen_and_every_value_without_an_interval_says_why(self):
         path = write_scenario(self.work)
-        soil, _ = self.run_json("soil", path, "--quick", "--only", "shear", "--speed", "0.3", "--stress", "40e3", "--stress", "10e3", "--out", "out")
+        soil, _ = self.run_json("soil", path, "--quick", "--only", "shear",
+                                "--speed", "0.3", "--stress", "40e3", "--stress", "10e3", "--out", "out")
         tests = soil["shear"]["tests"]
         self.assertEqual(len(tests), 2)
         for test, stress in zip(tests, (10e3, 40e3)):
             self.assertAlmostEqual(test["normal_stress_Pa"], stress, delta=0.2 * stress)
-            self.assertAlmostEqual(math.tan(math.radians(test["secant_friction_angle_deg"])), test["tau_max_Pa"] / test["normal_stress_Pa"])
+            self.assertAlmostEqual(math.tan(math.radians(test["secant_friction_angle_deg"])),
+                                   test["tau_max_Pa"] / test["normal_stress_Pa"])
         self.assertTrue(0 < soil["friction_angle_without_cohesion_deg"] < 80)
         box = soil["shear"]["box"]
         self.assertTrue(0.3 < box["solid_fraction"] < 0.7, box)
@@ -140,7 +145,8 @@ class Soil(WithCache):
     def test_soil_files_with_grains_of_several_sizes_fit_the_small_boxes(self):
         path = write_scenario(self.work)
         for test in ("shear", "repose"):
-            soil, _ = self.run_json("soil", path, "--quick", "--only", test, "--set", "terrain.material=loose_sand.json", "--set",
+            soil, _ = self.run_json("soil", path, "--quick", "--only",
+                                    test, "--set", "terrain.material=loose_sand.json", "--set",
                                     "terrain.size_spread=0.5", "--out", test)
             self.assertIsNotNone(soil["friction_angle_deg" if test == "shear" else "repose_angle_deg"])
 
@@ -153,12 +159,15 @@ class Soil(WithCache):
         self.assertEqual(one["shear"], two["shear"])
         self.assertIsNone(one["k_phi"])
         self.assertNotIn("plate", one)
-        self.assertEqual(sorted(p.name for p in (self.work / "results").iterdir()), ["small-soil-001", "small-soil-002"])
-        self.assertEqual(sorted(p.name for p in (self.work / "results" / "small-soil-001").glob("*.csv")), ["shear.csv"])
+        self.assertEqual(sorted(p.name for p in (self.work / "results").iterdir()),
+                         ["small-soil-001", "small-soil-002"])
+        self.assertEqual(sorted(p.name for p in (self.work / "results" / "small-soil-001").glob("*.csv")),
+                         ["shear.csv"])
 
     def test_what_was_measured_is_printed_where_the_disk_is_full(self):
         disk = self.small_disk(self.work / "disk", "16k")
-        done = furrow("soil", write_scenario(self.work), "--quick", "--only", "repose", "--out", "disk/out", cwd=self.work, env=self.env)
+        done = furrow("soil", write_scenario(self.work), "--quick", "--only",
+                      "repose", "--out", "disk/out", cwd=self.work, env=self.env)
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertRegex(done.stderr, r"furrow: error: disk/out/.*: cannot .*: No space left on device")
         self.assertIn("repose", json.loads(done.stdout))
@@ -180,19 +189,23 @@ class Soil(WithCache):
         run = self.work / "run"
         run.mkdir()
         (run / "scenario.json").write_text("{}")
-        (run / "summary.json").write_text(json.dumps({"format_version": 1, "tire_radius_m": 0.4673, "tread_width_m": 0.25,
+        (run / "summary.json").write_text(json.dumps({"format_version": 1,
+                                                      "tire_radius_m": 0.4673, "tread_width_m": 0.25,
                                                       "vertical_load_N": 4609, "slip": 0.3}))
         (self.work / "soil.json").write_text(json.dumps({
-            "format_version": 1, "k_c": 15.6e3, "k_phi": 245e3, "n": 0.395, "cohesion_Pa": 6.9e3, "friction_angle_deg": 26.8,
+            "format_version": 1, "k_c": 15.6e3, "k_phi": 245e3, "n": 0.395,
+            "cohesion_Pa": 6.9e3, "friction_angle_deg": 26.8,
             "janosi_K_m": 0.0209, "standard_error": {"cohesion_Pa": 1.4e3}}))
         done = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
-        self.assertRegex(done.stderr, r"furrow: soil theory \(rigid wheel\): drawbar pull 9\d\d ± \d+ N, sinkage \d+.\d mm")
+        self.assertRegex(done.stderr,
+                         r"furrow: soil theory \(rigid wheel\): drawbar pull 9\d\d ± \d+ N, sinkage \d+.\d mm")
         (run / "scenario.json").write_text('{"terrain": {"engine": "rigid"}}')
         refused = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
         self.assertEqual(refused.returncode, 2, refused.stderr)
         self.assertIn("terrain.engine", refused.stderr)
         estimate = json.loads((run / "soil_estimate.json").read_text())
-        self.assertAlmostEqual(estimate["thrust_N"] - estimate["compaction_resistance_N"], estimate["drawbar_pull_N"], places=6)
+        self.assertAlmostEqual(estimate["thrust_N"] - estimate["compaction_resistance_N"],
+                               estimate["drawbar_pull_N"], places=6)
         pulls = [point["drawbar_pull_N"] for point in estimate["curve"]]
         self.assertEqual(pulls, sorted(pulls))
 

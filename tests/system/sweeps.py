@@ -31,7 +31,8 @@ class Sweep(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout, "results/study\n")
         rows = self.table()
-        self.assertEqual([(row["rig.slip"], row["state"], row["exit_code"]) for row in rows], [("0.1", "done", "0"), ("0.4", "done", "0")])
+        self.assertEqual([(row["rig.slip"], row["state"], row["exit_code"]) for row in rows],
+                         [("0.1", "done", "0"), ("0.4", "done", "0")])
         for row in rows:
             run = self.folder / "results" / "study" / row["folder"]
             summary = json.loads((run / "summary.json").read_text())
@@ -67,7 +68,8 @@ class Sweep(SystemTest):
 
     def test_a_failed_run_stops_no_other(self):
         # grains as soft as these leave the bin while they settle
-        study = self.study(list=[{"rig.slip": 0.1}, {"terrain.young_modulus": 1e3, "rig.carrier_mass": 20000, "run.end": 0.2},
+        study = self.study(list=[{"rig.slip": 0.1},
+                                 {"terrain.young_modulus": 1e3, "rig.carrier_mass": 20000, "run.end": 0.2},
                                  {"rig.slip": 0.2}])
         done = furrow("sweep", study, cwd=self.folder)
         rows = self.table()
@@ -116,15 +118,21 @@ class Sweep(SystemTest):
                             ({"grid": {}, "list": [{}]}, "has 'grid' and 'list', expected one of them"),
                             ({}, "expected one of 'grid', 'list' and 'passes'"),
                             ({"grid": {"rig.slip": [0.1, 0.2, 0.1]}}, "key 'grid': has the run 'rig.slip=0.1' twice"),
-                            ({"grid": {"rig.slip": [0.1]}, "set": {"rig.slip": 0.2}}, "key 'grid.rig.slip': is in 'set' as well"),
+                            ({"grid": {"rig.slip": [0.1]}, "set": {"rig.slip": 0.2}},
+                             "key 'grid.rig.slip': is in 'set' as well"),
                             ({"grid": {"rig.slip": [0.1]}, "rest": 0.1}, "key 'rest': is the time between passes"),
                             ({"passes": 0}, "key 'passes': is 0, expected a whole number"),
-                            ({"passes": 2, "set": {"checkpoint.at_end": False}}, "key 'checkpoint.at_end': is false, expected true"),
-                            ({"passes": 2, "set": {"terrain.engine": "rigid"}}, "key 'terrain.engine': is 'rigid', expected 'dem'"),
-                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slipp", "y": "sinkage_m"}}, "key 'plot.x': is 'rig.slipp', expected"),
-                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip", "y": "q"}}, "key 'plot.y': is 'q', expected one of: drawbar_pull_N.mean"),
+                            ({"passes": 2, "set": {"checkpoint.at_end": False}},
+                             "key 'checkpoint.at_end': is false, expected true"),
+                            ({"passes": 2, "set": {"terrain.engine": "rigid"}},
+                             "key 'terrain.engine': is 'rigid', expected 'dem'"),
+                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slipp", "y": "sinkage_m"}},
+                             "key 'plot.x': is 'rig.slipp', expected"),
+                            ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip", "y": "q"}},
+                             "key 'plot.y': is 'q', expected one of: drawbar_pull_N.mean"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip"}}, "key 'plot.y': is missing"),
-                            ({"grid": {"run.threads": [1, 2]}}, "has a run with run.threads=1 and a run with run.threads=2, which have the same results"),
+                            ({"grid": {"run.threads": [1, 2]}},
+                             "has a run with run.threads=1 and a run with run.threads=2, which have the same results"),
                             ({"terrain": {}}, "is a scenario, expected a study"),
                             ({"gird": {}}, "key 'gird': is unknown, expected 'grid'?"),
                             ({"scenario": "none.json", "passes": 1}, "key 'scenario': 'none.json' does not exist")):
@@ -139,13 +147,15 @@ class Sweep(SystemTest):
         self.assertIn("is a study, expected a scenario", done.stderr)
 
     def test_shipped_studies_are_valid(self):
-        for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json", "study_hard_slip.json", "study_handling.json", "multipass.json"):
+        for name in ("study_slip.json", "study_slip_angle.json", "study_camber.json",
+                     "study_hard_slip.json", "study_handling.json", "multipass.json"):
             done = furrow("sweep", ROOT / "rigs" / name, "--out", "/proc/furrow", cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("key '--out': cannot be made", done.stderr)
 
     def test_passes_begin_on_the_bed_that_the_last_one_left(self):
-        study = self.study(passes=2, rest=0.01, grid={"run.seed": [1, 2]}, set={"run.end": 0.15, "run.average_from": 0.1},
+        study = self.study(passes=2, rest=0.01, grid={"run.seed": [1, 2]},
+                           set={"run.end": 0.15, "run.average_from": 0.1},
                            plot={"x": "pass", "y": "drawbar_pull_N.mean", "mean_over": "run.seed"})
         done = furrow("sweep", study, "--jobs", "2", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -177,7 +187,8 @@ class Sweep(SystemTest):
         study = self.study(passes=2, rest=0.01, set=keys)
         process = start("sweep", study, "--out", "before", cwd=self.folder)
         self.addCleanup(process.kill)
-        second = lambda: [path for path in self.folder.glob("before/runs/*/checkpoints/0*") if self.on_a_bed_of_the_study(path.parents[1])]
+        second = lambda: [path for path in self.folder.glob("before/runs/*/checkpoints/0*")
+                          if self.on_a_bed_of_the_study(path.parents[1])]
         wait_for(lambda: second() or process.poll() is not None, 120, "a checkpoint of the second pass")
         process.terminate()
         process.communicate(timeout=60)
@@ -188,7 +199,8 @@ class Sweep(SystemTest):
         self.assertIn("continues", done.stderr)
         whole = furrow("sweep", study, "--out", "whole", cwd=self.folder)
         self.assertEqual(whole.returncode, 0, whole.stderr)
-        hashes = [{path.parent.name: json.loads(path.read_text())["state_hash"] for path in self.folder.glob(f"{name}/runs/*/summary.json")}
+        hashes = [{path.parent.name: json.loads(path.read_text())["state_hash"]
+                   for path in self.folder.glob(f"{name}/runs/*/summary.json")}
                   for name in ("after", "whole")]
         self.assertEqual(*hashes)
         self.assertEqual(len(hashes[0]), 2)

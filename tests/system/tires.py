@@ -1,6 +1,8 @@
 #!/usr/bin/python3
-"""Tires at the edges of their range, as a user meets them: changing pressure, drops, heavy loads, the rim, steps too large.
-Either a run ends well or one message says what happened, when and what to try; no number in the results is not finite."""
+"""Tires at the edges of their range, as a user meets them: changing pressure, drops, heavy loads, the rim, steps too
+large.
+Either a run ends well or one message says what happened, when and what to try; no number in the results is not
+finite."""
 import csv
 import json
 import math
@@ -18,10 +20,13 @@ HARD = {
     "output": {"series_interval": 1e-3, "frame_interval": 0},
     "checkpoint": {"at_end": False},
 }
-ROLLING = {"rig.angular_speed": 8.56, "rig.slip": 0.05, "rig.ramp": 0.05, "rig.touchdown_time": 0.1, "terrain.ground_stiffness": 5e7,
+ROLLING = {"rig.angular_speed": 8.56, "rig.slip": 0.05, "rig.ramp": 0.05,
+           "rig.touchdown_time": 0.1, "terrain.ground_stiffness": 5e7,
            "terrain.ground_shear_stiffness": 2e7, "terrain.ground_damping": 1e4}
-DROP = {"rig.drop_height": 0.3, "rig.touchdown_damping": 0, "terrain.ground_stiffness": 5e7, "terrain.ground_damping": 1e4}
-GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 20e3, "terrain.layers": 4, "terrain.length": 1.2,
+DROP = {"rig.drop_height": 0.3, "rig.touchdown_damping": 0, "terrain.ground_stiffness": 5e7,
+        "terrain.ground_damping": 1e4}
+GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 20e3,
+          "terrain.layers": 4, "terrain.length": 1.2,
           "terrain.width": 0.5}
 
 
@@ -85,15 +90,19 @@ class Load(TireTest):
         self.assertLess(abs(summary["net_terrain_force_N"][2] / summary["vertical_load_N"] - 1), 0.05)
 
     def test_the_rim_stops_the_run(self):
-        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000, "rig.drop_height": 0.1, "rig.touchdown_damping": 0,
-                            "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3, "run.step": 2e-4, "run.end": 1.0},
-                           r"tire 0 reached its rim at t = [\d.]+ s, step \d+: clearance -[\d.e-]+ m at the node of column \d+, "
+        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000,
+                            "rig.drop_height": 0.1, "rig.touchdown_damping": 0,
+                            "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3,
+                            "run.step": 2e-4, "run.end": 1.0},
+                           r"tire 0 reached its rim at t = [\d.]+ s, step \d+: clearance -[\d.e-]+ m at the node of "
+                           r"column \d+, "
                            r"row \d+ .*try a higher pressure")
         time = float(re.search(r"t = ([\d.]+)", error)[1])
         self.assertGreater(time, math.sqrt(2 * 0.1 / 9.81))
 
     def test_a_step_too_large_is_told(self):
-        self.stops({**ROLLING, "run.step": 4e-3, "run.end": 1.0, "terrain.ground_stiffness": 4e8, "output.series_interval": 4e-3},
+        self.stops({**ROLLING, "run.step": 4e-3, "run.end": 1.0, "terrain.ground_stiffness": 4e8,
+                    "output.series_interval": 4e-3},
                    r"tire 0 (did not converge|lost its shape) at t = [\d.]+ s, step \d+: .*; try a smaller run.step")
 
 
@@ -121,7 +130,8 @@ class Pressure(TireTest):
         self.assertLess(abs(low["accounts"]["energy"]["residual_share"]), 0.05)
 
     def test_a_run_with_a_schedule_goes_on_bit_for_bit(self):
-        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]], "run.end": 0.06, "run.average_from": 0.02,
+        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]],
+                    "run.end": 0.06, "run.average_from": 0.02,
                     "checkpoint.at_end": True}
         whole, _ = self.ends_well(settings)
         (self.folder / "out").rename(self.folder / "whole")
@@ -155,7 +165,8 @@ class OtherTires(TireTest):
     """The toroidal tire and the one of tire/HOWTO.md, pressed and rolled."""
 
     def check(self, file, mass, stiffness):
-        coarse = {"tire.file": file, "tire.elements_circumference": 40, "tire.elements_width": 12, "rig.carrier_mass": mass}
+        coarse = {"tire.file": file, "tire.elements_circumference": 40,
+                  "tire.elements_width": 12, "rig.carrier_mass": mass}
         done = self.start(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
         self.assertEqual(done.returncode, 0, done.stderr)
         press = json.loads((self.folder / "out/summary.json").read_text())
@@ -182,17 +193,21 @@ class Profile(SystemTest):
     """scripts/tire_profile.py: a meridian from a drawing."""
 
     def rows(self, text):
-        return subprocess.run([ROOT / "scripts" / "tire_profile.py", "-"], input=text, text=True, capture_output=True, check=False)
+        return subprocess.run([ROOT / "scripts" / "tire_profile.py", "-"],
+                              input=text, text=True, capture_output=True, check=False)
 
     def test_mirrors_the_points_and_measures_along_them(self):
         done = self.rows("height_m, axial_m\n0,0.03\n0.04,0.03\n0.04,0\n")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = json.loads("{" + done.stdout + "}")["profile"]
-        self.assertEqual(rows, [[0.0, 0.0, -0.03], [round(2 / 7, 9), 0.04, -0.03], [0.5, 0.04, 0.0], [round(5 / 7, 9), 0.04, 0.03], [1.0, 0.0, 0.03]])
+        self.assertEqual(rows, [[0.0, 0.0, -0.03], [round(2 / 7, 9), 0.04, -0.03],
+                                [0.5, 0.04, 0.0], [round(5 / 7, 9), 0.04, 0.03], [1.0, 0.0, 0.03]])
 
     def test_what_is_no_meridian_is_refused_in_one_line(self):
-        for text, word in (("height_m;axial_m\n0;1\n", "expected height_m,axial_m"), ("height_m,axial_m\n0,76\n", "line 2"),
-                           ("height_m,axial_m\n0,0.1\n0,0.1\n", "line 3"), ("height_m,axial_m\n0,nan\n", "line 2"), ("", "first line"),
+        for text, word in (("height_m;axial_m\n0;1\n", "expected height_m,axial_m"),
+                           ("height_m,axial_m\n0,76\n", "line 2"),
+                           ("height_m,axial_m\n0,0.1\n0,0.1\n", "line 3"),
+                           ("height_m,axial_m\n0,nan\n", "line 2"), ("", "first line"),
                            ("height_m,axial_m\n0,0.1\n0.1,0.1\n0.1,0.05\n", "crown")):
             done = self.rows(text)
             self.assertEqual(done.returncode, 1, text)

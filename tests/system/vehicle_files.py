@@ -38,25 +38,31 @@ WRONG = [
     ("no_axles", changed("hmmwv.json", ("axles", ...)), "key 'axles': is missing, expected a list"),
     ("empty_axles", changed("hmmwv.json", ("axles", [])), "key 'axles': has 0 entries, expected 1 to 16 axles"),
     ("misspelt_key", changed("hmmwv.json", ("axels", [])), "key 'axels': is unknown, expected 'axles'?"),
-    ("of_a_later_program", changed("hmmwv.json", ("format_version", 2)), "key 'format_version': is 2: the file is newer than this program"),
+    ("of_a_later_program", changed("hmmwv.json", ("format_version", 2)),
+     "key 'format_version': is 2: the file is newer than this program"),
     ("no_version", changed("hmmwv.json", ("format_version", ...)), "key 'format_version': is missing, expected 1"),
-    ("negative_mass", changed("hmmwv.json", ("chassis/mass", -5)), "key 'chassis.mass': is -5, expected a number above zero"),
+    ("negative_mass", changed("hmmwv.json", ("chassis/mass", -5)),
+     "key 'chassis.mass': is -5, expected a number above zero"),
     ("inertia_of_no_body", changed("hmmwv.json", ("chassis/inertia", [1, 2, 4])),
      "key 'chassis.inertia': has the principal moments 1, 2, 4, expected none larger than the sum of the other two"),
-    ("axle_without_wheel", changed("hmmwv.json", ("axles/0/wheel", ...)), "key 'axles[0].wheel': is missing, expected an object { }"),
-    ("wheel_without_tire", changed("hmmwv.json", ("axles/0/wheel/tire", ...)), "key 'axles[0].wheel.tire': is missing, expected a text"),
+    ("axle_without_wheel", changed("hmmwv.json", ("axles/0/wheel", ...)),
+     "key 'axles[0].wheel': is missing, expected an object { }"),
+    ("wheel_without_tire", changed("hmmwv.json", ("axles/0/wheel/tire", ...)),
+     "key 'axles[0].wheel.tire': is missing, expected a text"),
     ("tire_that_is_not_there", changed("hmmwv.json", ("axles/1/wheel/tire", "none.json")),
      "key 'axles[1].wheel.tire': 'none.json' does not exist, expected a file at one of"),
     ("tire_that_is_too_weak", changed("buggy.json", ("chassis/mass", 30e3)), "key 'axles[0].wheel.tire': "),
     ("tire_that_is_no_tire", changed("hmmwv.json", ("axles/0/wheel/tire", "loose_sand.json")), "loose_sand.json"),
     ("unknown_suspension", changed("hmmwv.json", (S + "/type", "mcpherson")),
-     "key 'axles[0].suspension.type': is 'mcpherson', expected 'double_wishbone', 'trailing_arm', 'rigid_axle' or 'fixed'"),
+     "key 'axles[0].suspension.type': is 'mcpherson', expected 'double_wishbone', 'trailing_arm', 'rigid_axle' or "
+     "'fixed'"),
     ("left_wheel_on_the_right", changed("hmmwv.json", (S + "/spindle/center", [0, -0.9, 0])),
      "key 'axles[0].suspension.spindle.center': lies at y = -0.9, expected a point on the left"),
     ("hinge_of_one_point", changed("hmmwv.json", (S + "/lower_arm/chassis_back", [0.223, 0.307, 0])),
      "key 'axles[0].suspension.lower_arm.chassis_back': is the point of axles[0].suspension.lower_arm.chassis_front"),
     ("spring_on_the_same_body", changed("hmmwv.json", (S + "/spring/on", "chassis")),
-     "key 'axles[0].suspension.spring.on': is 'chassis', the body of its other end, expected 'lower_arm', 'upper_arm' or 'upright'"),
+     "key 'axles[0].suspension.spring.on': is 'chassis', the body of its other end, expected 'lower_arm', 'upper_arm' "
+     "or 'upright'"),
     ("spring_without_force", changed("hmmwv.json", (S + "/spring/force", ...)),
      "key 'axles[0].suspension.spring.force': is missing, expected a table of forces, or the key rate"),
     ("table_that_does_not_rise", changed("hmmwv.json", (S + "/spring/force/2/0", 0.01)),
@@ -79,21 +85,26 @@ WRONG = [
      "key 'driveline.gearbox.ratios[1]': is 0, expected a number above zero"),
     ("shifts_up_before_it_shifts_down", changed("hmmwv.json", ("driveline/gearbox/up_rpm", 1000)),
      "key 'driveline.gearbox.up_rpm': is 1000, expected more than down_rpm, 1200"),
-    ("no_engine_map", changed("hmmwv.json", ("driveline/engine/torque", ...)), "key 'driveline.engine.torque': is missing, expected a list"),
+    ("no_engine_map", changed("hmmwv.json", ("driveline/engine/torque", ...)),
+     "key 'driveline.engine.torque': is missing, expected a list"),
     ("engine_map_that_does_not_rise", changed("hmmwv.json", ("driveline/engine/torque/3/0", 850)),
      "key 'driveline.engine.torque[3]': begins with 850 after 900, expected a table that rises"),
     ("losses_that_drive", changed("hmmwv.json", ("driveline/engine/losses/3/1", 50)),
      "key 'driveline.engine.losses[3]': drives the engine with 50 N m, expected a torque against its speed"),
     ("converter_that_gives_power", changed("hmmwv.json", ("driveline/converter/torque_ratio/3/1", 2)),
      "key 'driveline.converter.torque_ratio[3]': gives 1.5 times the power that it takes, expected at most 1"),
-    ("no_engine", changed("hmmwv.json", ("driveline/engine", ...)), "key 'driveline.engine': is missing, expected an engine for the clutch"),
+    ("no_engine", changed("hmmwv.json", ("driveline/engine", ...)),
+     "key 'driveline.engine': is missing, expected an engine for the clutch"),
     ("differential_of_one_output", changed("hmmwv.json", ("driveline/differentials/1/outputs", ["front left"])),
      "key 'driveline.differentials[1].outputs': has 1 shafts, expected two"),
-    ("shaft_of_no_wheel", changed("hmmwv.json", ("driveline/shafts/12", {"name": "pump", "inertia": 0.1, "axis": [1, 0, 0]})),
+    ("shaft_of_no_wheel",
+     changed("hmmwv.json", ("driveline/shafts/12", {"name": "pump", "inertia": 0.1, "axis": [1, 0, 0]})),
      "key 'driveline.shafts[12].name': 'pump' reaches no wheel, expected a train of gears to one"),
     ("output_that_drives_nothing", changed("hmmwv.json", ("driveline/wheels/3", ...)),
-     "key 'driveline.differentials[2].outputs': 'rear right' drives nothing, expected a shaft that a wheel, a gear or a differential"),
-    ("loop_of_gears", changed("hmmwv.json", ("driveline/gears/3", {"name": "bypass", "in": "front box", "out": "front drive", "ratio": 5})),
+     "key 'driveline.differentials[2].outputs': 'rear right' drives nothing, expected a shaft that a wheel, a gear or "
+     "a differential"),
+    ("loop_of_gears", changed("hmmwv.json", ("driveline/gears/3",
+                                             {"name": "bypass", "in": "front box", "out": "front drive", "ratio": 5})),
      "key 'driveline.gears[3]': 'bypass' closes a loop of gears, expected a train without loops"),
     ("wheel_driven_twice", changed("hmmwv.json", ("driveline/wheels/3/side", "left")),
      "key 'driveline.wheels[3]': drives the wheel 'rear left' again, expected one shaft per wheel"),
@@ -102,19 +113,23 @@ WRONG = [
     ("motor_beside_a_motor", changed("rover.json", ("driveline/motors/1/axle", "front")),
      "key 'driveline.motors[1].axle': 'front' is driven already, expected one drive per wheel"),
     ("number_for_a_name", changed("hmmwv.json", ("name", 3)), "key 'name': is 3, expected a text"),
-    ("text_for_a_number", changed("hmmwv.json", ("chassis/mass", "heavy")), "key 'chassis.mass': is 'heavy', expected a number"),
+    ("text_for_a_number", changed("hmmwv.json", ("chassis/mass", "heavy")),
+     "key 'chassis.mass': is 'heavy', expected a number"),
     ("key_given_twice", '{"axles": [], "axles": []}', "key 'axles'"),
     ("empty_name", changed("hmmwv.json", ("name", "")), "key 'name': is empty, expected a name"),
     ("lengths_in_mm", changed("hmmwv.json", ("axles/0/origin", [1688.965, 0, 0])),
      "key 'axles[0].origin': has 1688.965 among its coordinates, expected at most 100 in magnitude: points are in m"),
     ("rack_that_leaves_its_tie_rods", changed("buggy.json", ("axles/0/steering/left_travel", -0.5)),
-     "key 'axles[0].steering.left_travel': is -0.5 m, the travel of the rack that full steering asks for, expected at most 0.1 m in "
+     "key 'axles[0].steering.left_travel': is -0.5 m, the travel of the rack that full steering asks for, expected at "
+     "most 0.1 m in "
      "magnitude: steering -1 asks for 0.5 m, but the linkage of axle 'front' ends at 0.1 m, steering -0.2"),
     ("pitman_arm_beyond_its_dead_centre", changed("hmmwv.json", ("axles/0/steering/left_angle_deg", -85)),
-     "key 'axles[0].steering.left_angle_deg': is -85 degrees, the angle of the Pitman arm that full steering asks for, expected at most "),
+     "key 'axles[0].steering.left_angle_deg': is -85 degrees, the angle of the Pitman arm that full steering asks for, "
+     "expected at most "),
     ("cut_short", json.dumps(shipped("hmmwv.json"))[:4000], "wrong.json:1:4001: is not valid JSON"),
     ("rate_in_N_per_mm", changed("buggy.json", ("axles/0/suspension/spring/rate", 38.8)),
-     "there is no equilibrium near the drawn posture; it weighs 5511 N, and the springs of axle 'front' push with 4.22 N as drawn"),
+     "there is no equilibrium near the drawn posture; it weighs 5511 N, and the springs of axle 'front' push with 4.22 "
+     "N as drawn"),
     ("behind_its_wheels", changed("hmmwv.json", ("chassis/center_of_mass", [-4, 0, 0.2])),
      "near the drawn posture; its centre of mass, x = -3.42 m, y = 0.00 m, does not lie between its wheels"),
     ("no_spring", changed("buggy.json", ("axles/0/suspension/spring", ...)), "vehicle 'Buggy'"),
@@ -144,7 +159,8 @@ class Wrong(SystemTest):
                     self.refused("validate", document, message)
 
     def test_options(self):
-        for more, word in ((("--travel", "-1"), "--travel"), (("--travel", "0.5"), "axle 'front'"), (("--points", "2"), "--points"),
+        for more, word in ((("--travel", "-1"), "--travel"), (("--travel", "0.5"), "axle 'front'"),
+                           (("--points", "2"), "--points"),
                            (("--csv", "--json"), "--csv"), (("--csv", "--out", "x"), "--out")):
             done = furrow("kc", "rover.json", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 2, done.stderr)
@@ -154,10 +170,12 @@ class Wrong(SystemTest):
         self.assertIn("key 'VEHICLE': 'none.json' does not exist, expected a file at that place or in", done.stderr)
         done = furrow("kc", ROOT / "rigs" / "hmmwv_rigid.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("hmmwv_rigid.json: is a scenario, expected the file of a vehicle: its rig.vehicle is 'hmmwv.json'", done.stderr)
+        self.assertIn("hmmwv_rigid.json: is a scenario, expected the file of a vehicle: its rig.vehicle is "
+                      "'hmmwv.json'", done.stderr)
         done = furrow("run", "hmmwv.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("hmmwv.json: is a vehicle, expected a scenario (the key rig.vehicle of a scenario takes vehicles)", done.stderr)
+        self.assertIn("hmmwv.json: is a vehicle, expected a scenario (the key rig.vehicle of a scenario takes "
+                      "vehicles)", done.stderr)
         done = furrow("validate", "hmmwv_small.json", "--set", "rig.vehicle=none.json", cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         places = done.stderr.split("expected a file at one of: ")[1].strip().split(", ")
@@ -174,9 +192,11 @@ class Wrong(SystemTest):
 class Unlikely(SystemTest):
     def test_what_is_hardly_meant_is_warned_of(self):
         for where, value, message in (
-                ("driveline/gearbox/up_rpm", 7000, "key 'driveline.gearbox.up_rpm': is 7000, above the 6305 rpm to which the engine drives it"),
+                ("driveline/gearbox/up_rpm", 7000,
+                 "key 'driveline.gearbox.up_rpm': is 7000, above the 6305 rpm to which the engine drives it"),
                 ("chassis/mass", 0.42, "key 'chassis.mass': is 0.42 kg, all other parts have "),
-                ("chassis/inertia", [0.07, 0.26, 0.28], "key 'chassis.inertia': gives a radius of gyration of 0.0269 m between wheels "
+                ("chassis/inertia", [0.07, 0.26, 0.28],
+                 "key 'chassis.inertia': gives a radius of gyration of 0.0269 m between wheels "
                                                        "that are 2.78 m apart: another unit?")):
             with self.subTest(where):
                 path = self.folder / "odd.json"
@@ -185,13 +205,16 @@ class Unlikely(SystemTest):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertIn(f"furrow: warning: {path}: {message}", done.stderr)
                 scenario = self.folder / "run.json"
-                scenario.write_text(json.dumps({"rig": {"type": "vehicle", "vehicle": "odd.json"}, "terrain": {"engine": "rigid"}}))
+                scenario.write_text(json.dumps({"rig": {"type": "vehicle", "vehicle": "odd.json"},
+                                                "terrain": {"engine": "rigid"}}))
                 done = furrow("validate", scenario, cwd=self.folder, timeout=300)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertIn(f"furrow: warning: {scenario}: key 'rig.vehicle': is {path}, whose {message.replace(': ', ' ', 1)}", done.stderr)
+                self.assertIn(f"furrow: warning: {scenario}: key 'rig.vehicle': is {path}, whose "
+                              f"{message.replace(': ', ' ', 1)}", done.stderr)
         for path in DATA.glob("*.json"):
             if "schema" not in path.name:
-                done = furrow("validate", path.name, cwd=self.folder, timeout=300)  # also where a scenario's name is similar
+                # also where a scenario's name is similar
+                done = furrow("validate", path.name, cwd=self.folder, timeout=300)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertNotIn("warning", done.stderr)
 

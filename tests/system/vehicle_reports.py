@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""`furrow events` and `furrow report` on a vehicle's run of known contents: series written here, with events at known times."""
+"""`furrow events` and `furrow report` on a vehicle's run of known contents: series written here, with events at known
+times."""
 import json
 import pathlib
 import sys
@@ -31,7 +32,8 @@ def series(seed=1, **shape):
     t = np.maximum(time - MOVE, 0.0)
     speed, way = shape.get("pace", 2.0) * ACCELERATION * t, shape.get("pace", 2.0) * 0.5 * ACCELERATION * t ** 2
     zero = np.zeros_like(time)
-    vehicle = {"time_s": time, "x_m": 2.5 + way, "y_m": zero, "z_m": 0.66 + zero, "roll_rad": zero, "pitch_rad": zero.copy(),
+    vehicle = {"time_s": time, "x_m": 2.5 + way, "y_m": zero, "z_m": 0.66 + zero,
+               "roll_rad": zero, "pitch_rad": zero.copy(),
                "yaw_rad": zero, "distance_m": way, "speed_m_s": speed, "throttle": np.where(time > MOVE, 0.8, 0.0),
                "brake": np.where(time < 0.4, 1.0, 0.0), "steering": zero, "gear": np.where(time < SHIFT[0], 1.0, 2.0),
                "shifting": np.where((time >= SHIFT[0]) & (time < SHIFT[1]), 1.0, 0.0),
@@ -56,15 +58,19 @@ def series(seed=1, **shape):
         slip = np.where(locked, -1e6, np.where(time > MOVE, 0.2, 0.0))  # as the rig limits it
         wheels.append({"time_s": time, "slip": slip, "sinkage_m": sinkage, "sinkage_in_rut_m": in_rut,
                        "force_z_N": vertical, "iso_force_x_N": net, "iso_force_y_N": zero, "iso_force_z_N": vertical,
-                       "tractive_effort_N": net + (700.0 if rear else 900.0), "terrain_resistance_N": (700.0 if rear else 900.0) + zero,
-                       "spindle_torque_Nm": (net + 900.0) * RADIUS, "speed_m_per_s": speed, "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
-                       "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way, "axle_height_m": height, "lowest_point_m": SURFACE - sinkage,
+                       "tractive_effort_N": net + (700.0 if rear else 900.0),
+                       "terrain_resistance_N": (700.0 if rear else 900.0) + zero,
+                       "spindle_torque_Nm": (net + 900.0) * RADIUS, "speed_m_per_s": speed,
+                       "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
+                       "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way,
+                       "axle_height_m": height, "lowest_point_m": SURFACE - sinkage,
                        "sinkage_kinematic_m": SURFACE - (height - RADIUS), "suspension_travel_m": zero})
     return vehicle, wheels
 
 
 def write_table(path, columns):
-    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns), comments="", fmt="%.9g")
+    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",",
+               header=",".join(columns), comments="", fmt="%.9g")
 
 
 def write_run(folder, **shape):
@@ -74,11 +80,13 @@ def write_run(folder, **shape):
     for k, wheel in enumerate(wheels):
         write_table(folder / f"timeseries_wheel{k}.csv", wheel)
     (folder / "scenario.json").write_text(json.dumps({
-        "rig": {"type": "vehicle", "vehicle": shape.get("vehicle", "hmmwv.json"), "lateral": 0.0}, "run": {"end": shape.get("end", END), "average_from": 1.0},
+        "rig": {"type": "vehicle", "vehicle": shape.get("vehicle", "hmmwv.json"), "lateral": 0.0},
+        "run": {"end": shape.get("end", END), "average_from": 1.0},
         "terrain": {"engine": "dem"}}))
     (folder / "summary.json").write_text(json.dumps({
         "scenario": "made", "terrain_engine": "dem", "law": "mindlin", "grains": 3000,
-        "ranks": [{"rank": 0, "node": "rig", "kind": "vehicle", "threads": 1, "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 2.0}],
+        "ranks": [{"rank": 0, "node": "rig", "kind": "vehicle", "threads": 1,
+                   "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 2.0}],
         "wheels": [{"vertical_load_N": load, "lateral_m": TRACK * (-1) ** k} for k, load in enumerate(LOADS)]}))
     return vehicle, wheels
 
@@ -87,7 +95,8 @@ def write_frames(folder, vehicle, wheels):
     """First and last instant: drums, and grains whose ruts are as deep as the wheels have sunk."""
     (folder / "frames").mkdir()
     angle = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
-    x, y = (value.ravel() for value in np.meshgrid(np.arange(0.0, 10.0, 0.08), np.arange(-1.4, 1.4, 0.08), indexing="ij"))
+    x, y = (value.ravel() for value in np.meshgrid(np.arange(0.0, 10.0, 0.08),
+                                                   np.arange(-1.4, 1.4, 0.08), indexing="ij"))
     for index, line in ((0, 0), (1, -1)):
         with h5py.File(folder / "frames" / f"terrain_{index:06d}.h5", "w") as file:
             rut = (np.abs(np.abs(y) - TRACK) < 0.15) * (index * DEPTH)
@@ -97,7 +106,8 @@ def write_frames(folder, vehicle, wheels):
         for k, wheel in enumerate(wheels):
             centre = [wheel["position_m"][line], TRACK * (-1) ** k, wheel["axle_height_m"][line]]
             ring = np.column_stack([RADIUS * np.cos(angle), 0 * angle, RADIUS * np.sin(angle)])
-            vertex = np.concatenate([ring + [0, side, 0] for side in (-0.12, 0.12)] + [[[0, -0.12, 0], [0, 0.12, 0]]]) + centre
+            vertex = np.concatenate([ring + [0, side, 0] for side in (-0.12, 0.12)]
+                                    + [[[0, -0.12, 0], [0, 0.12, 0]]]) + centre
             n = len(angle)
             triangle = [t for i in range(n) for j in [(i + 1) % n]
                         for t in ((i, j, n + i), (j, n + j, n + i), (2 * n, i, j), (2 * n + 1, n + j, n + i))]
@@ -178,7 +188,8 @@ class Events(SystemTest):
         done = self.told("--from=2", locks=1.0)
         self.assertRegex(done.stdout, r"(?m)^slip +0\.2\S* .*not defined +not defined$")
         self.assertIn("slip, rear axle: locked for 100 % of the time; the mean leaves that out", done.stdout)
-        self.assertIsNone(json.loads(self.told("--json", "--from=2", locks=1.0).stdout)["axles"]["means"]["slip"]["rear"]["mean"])
+        self.assertIsNone(json.loads(self.told("--json", "--from=2",
+                                               locks=1.0).stdout)["axles"]["means"]["slip"]["rear"]["mean"])
         standing = json.loads(self.told("--json", "--from=0.1", "--to=0.4").stdout)["axles"]["means"]["slip"]["front"]
         self.assertEqual((standing["mean"], standing["leaves_out"]), (None, "standing for 100 % of the time"))
 
@@ -204,7 +215,8 @@ class Events(SystemTest):
         self.assertAlmostEqual(told["gross_traction_over_weight"], traction, delta=0.02)
 
     def test_wrong_input_is_told_in_one_line(self):
-        self.assertIn("key '--from': is 9 s, expected 0 to 3 s, the end of the series", self.told("--from", "9", code=2).stderr)
+        self.assertIn("key '--from': is 9 s, expected 0 to 3 s, the end of the series",
+                      self.told("--from", "9", code=2).stderr)
         folder = self.folder / "torn"
         write_run(folder)
         path = folder / "timeseries_wheel2.csv"
@@ -229,7 +241,8 @@ class Report(SystemTest):
         done = furrow("report", folder, cwd=self.folder, timeout=600)
         self.assertEqual(done.returncode, 0, done.stderr)
         names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
-        self.assertEqual(names, {"vehicle.png", "wheel_forces.png", "wheel_motion.png", "front_and_rear.png", "gear.png", "ranks.png",
+        self.assertEqual(names, {"vehicle.png", "wheel_forces.png", "wheel_motion.png",
+                                 "front_and_rear.png", "gear.png", "ranks.png",
                                  "scene.png", "report.html"})
         for name in names - {"report.html"}:
             self.assertEqual((folder / name).read_bytes()[:4], b"\x89PNG")
@@ -253,7 +266,8 @@ class Report(SystemTest):
                          [[f"{e['time_s']:.3f}", e["event"], e["of"], e["threshold"]] for e in told])
         self.assertIn("first right", {row[2] for row in events["rows"]})
         tables = [block for section in about["sections"] for block in section["blocks"] if block["type"] == "table"]
-        self.assertIn("second left", [row[0] for table in tables if table["columns"][0] == "wheel" for row in table["rows"]])
+        self.assertIn("second left", [row[0] for table in tables if table["columns"][0] == "wheel"
+                                      for row in table["rows"]])
 
 
 class Statistics(unittest.TestCase):

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Whole vehicles as users run them: the shipped scenarios begin, the tables say what vehicle, driver and wheels do, and what
+"""Whole vehicles as users run them: the shipped scenarios begin, the tables say what vehicle, driver and wheels do, and
+what
 is wrong is told in one line."""
 import csv
 import json
@@ -26,7 +27,8 @@ class Vehicles(SystemTest):
 
     def test_the_car_on_hard_ground_is_let_down_stands_and_drives_off(self):
         done = self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
-        self.assertRegex(done.stderr + done.stdout, r"vehicle: 0\.\d+ m in all; from 0\.7 s on 0\.\d+ m/s on average, engine ")
+        self.assertRegex(done.stderr + done.stdout,
+                         r"vehicle: 0\.\d+ m in all; from 0\.7 s on 0\.\d+ m/s on average, engine ")
         vehicle, wheels = self.table("vehicle"), [self.table(f"wheel{k}") for k in range(4)]
         at = {round(line["time_s"], 3): i for i, line in enumerate(vehicle)}
         stands, drives = at[0.5], at[0.9]
@@ -46,7 +48,8 @@ class Vehicles(SystemTest):
         with h5py.File(self.folder / "out" / "results.h5") as file:
             self.assertEqual([file[f"series/wheel{k}"].attrs["name"].decode() for k in range(4)], names)
         told = summary["vehicle"]
-        self.assertAlmostEqual(told["mass_kg"] * 9.81 / sum(wheel["vertical_load_N"] for wheel in summary["wheels"]), 1.0, delta=1e-3)
+        self.assertAlmostEqual(told["mass_kg"] * 9.81 / sum(wheel["vertical_load_N"] for wheel in summary["wheels"]),
+                               1.0, delta=1e-3)
         self.assertEqual(told["distance_m"], summary["subjects"]["vehicle"]["distance_m"])
         self.assertEqual(told["energy_J"]["engine"], summary["subjects"]["vehicle"]["drive_work_J"])
         self.assertGreater(told["max_pitch_rad"], 0.0)
@@ -81,7 +84,8 @@ class Vehicles(SystemTest):
         for axle in top_heavy["axles"]:
             axle["wheel"]["tire"] = str(ROOT / "tire/data" / axle["wheel"]["tire"])
         (self.folder / "top_heavy.json").write_text(json.dumps(top_heavy))
-        told = self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json", "--set", "rig.driver=null",
+        told = self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json",
+                           "--set", "rig.driver=null",
                            "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65", "--set", "run.step=5e-4",
                            "--set", "run.end=2", "--set", "run.average_from=0.5")
         self.assertIn("s, before 2 s: the vehicle has turned over", told.stderr)
@@ -89,7 +93,8 @@ class Vehicles(SystemTest):
         self.assertLess(self.summary()["end_time_s"], 1.9)
 
     def test_grains_on_a_slope_carry_the_car_and_its_momentum_closes(self):
-        coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3", "--set", "terrain.length=6", "--set", "rig.driver=null",
+        coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3",
+                  "--set", "terrain.length=6", "--set", "rig.driver=null",
                   "--set", "rig.start=3", "--set", "tire.contact_tangent=false"]
         self.run_it("hmmwv_small.json", *QUICK, *coarse, "--set", "rig.slope=0.1", "--set", "run.end=1.2",
                     "--set", "run.average_from=0.8", "--set", "run.step=2e-4")
@@ -126,7 +131,8 @@ class Vehicles(SystemTest):
         (self.folder / "mine.json").write_text(json.dumps(car))
         done = furrow("resume", self.folder / "out", "--until", "0.04", "--no-plots", cwd=self.folder, timeout=300)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn(f"key 'rig.vehicle': '{self.folder / 'mine.json'}' was changed since the run began, expected the file that it "
+        self.assertIn(f"key 'rig.vehicle': '{self.folder / 'mine.json'}' was changed since the run began, expected the "
+                      f"file that it "
                       "was computed with", done.stderr)
 
     def test_every_shipped_scenario_of_a_vehicle_is_valid(self):
@@ -143,7 +149,8 @@ class Vehicles(SystemTest):
     def test_what_is_wrong_is_told_in_one_line_before_anything_is_written(self):
         for setting, message in (
                 ("rig.vehicle=none.json", "key 'rig.vehicle': 'none.json' does not exist"),
-                ("rig.vehicle=null", "key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json"),
+                ("rig.vehicle=null",
+                 "key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json"),
                 ("rig.driver=none.csv", "key 'rig.driver': 'none.csv' does not exist"),
                 ('rig.driver={"speed": {"target": -1}}', "key 'rig.driver.speed.target': "),
                 ("rig.heading=9", "key 'rig.heading': is 9 rad, expected a number, -3.15 to 3.15 rad"),

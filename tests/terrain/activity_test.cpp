@@ -61,8 +61,8 @@ struct Plate {
 };
 
 /// Mean vertical force on the plate over each interval of `every` steps while it goes down from z = `from`, N.
-std::vector<double> press(GrainSolver& solver, const DemOptions& options, double from, double speed,
-                          int intervals, int every) {
+std::vector<double> press(GrainSolver& solver, const DemOptions& options, double from, double speed, int intervals,
+                          int every) {
   Plate plate(from);
   const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
   solver.surfaces().attach(
@@ -211,8 +211,7 @@ TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
       asleep.step(options.step), awake.step(options.step);
     ASSERT_LT(asleep.accounts().active, few) << cohesion;
     const double from = awake.top();
-    const auto some = press(asleep, options, from, 0.1, 20, 100),
-               all = press(awake, options, from, 0.1, 20, 100);
+    const auto some = press(asleep, options, from, 0.1, 20, 100), all = press(awake, options, from, 0.1, 20, 100);
     double most = 0.0, error = 0.0;
     for (std::size_t n = 0; n < all.size(); ++n) {
       most = std::max(most, all[n]);
@@ -220,8 +219,7 @@ TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
     }
     EXPECT_GT(most, 10.0);
     std::string curve;
-    for (std::size_t n = 0; n < all.size(); ++n)
-      curve += std::to_string(all[n]) + " " + std::to_string(some[n]) + "\n";
+    for (std::size_t n = 0; n < all.size(); ++n) curve += std::to_string(all[n]) + " " + std::to_string(some[n]) + "\n";
     EXPECT_LT(error, 0.05 * most) << "cohesion " << cohesion << ", awake and asleep, N:\n" << curve;
     EXPECT_LT(asleep.accounts().active, asleep.grains().count);
   }

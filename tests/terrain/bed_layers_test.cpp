@@ -27,8 +27,7 @@ TEST(BedLayers, reference_layer_holds_the_reports_25500_grains) {
 
 TEST(BedLayers, same_seed_same_layers_other_seed_others) {
   const Bin bin{0.3, 0.2};
-  const auto a = bed_layers(bin, 0.01, 3, 1), b = bed_layers(bin, 0.01, 3, 1),
-             c = bed_layers(bin, 0.01, 3, 2);
+  const auto a = bed_layers(bin, 0.01, 3, 1), b = bed_layers(bin, 0.01, 3, 1), c = bed_layers(bin, 0.01, 3, 2);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     EXPECT_EQ(a[k].x, b[k].x);

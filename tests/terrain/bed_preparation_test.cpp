@@ -101,8 +101,7 @@ TEST(ClosePairs, agree_with_all_pairs_also_across_periodic_sides) {
       points.push_back({0.21 * std::fmod(0.618034 * k, 1.0), 0.13 * (std::fmod(0.754878 * k, 1.0) - 0.5),
                         0.1 * std::fmod(0.569840 * k, 1.0)});
     std::vector<std::pair<std::size_t, std::size_t>> found, all;
-    for_close_pairs(points, bin, 0.02,
-                    [&](std::size_t a, std::size_t b, double) { found.emplace_back(a, b); });
+    for_close_pairs(points, bin, 0.02, [&](std::size_t a, std::size_t b, double) { found.emplace_back(a, b); });
     for (std::size_t a = 0; a < points.size(); ++a)
       for (std::size_t b = a + 1; b < points.size(); ++b) {
         const Quad d = shortest(bin, points[a], points[b]);
@@ -119,8 +118,7 @@ TEST_F(Beds, lattice_fills_the_bin_without_touching_and_counts_as_expected) {
   EXPECT_EQ(static_cast<double>(grains.size()), expected_grains(options_));
   const Bin bin{options_.length, options_.width};
   for (const Quad& p : grains)
-    for (int wall = 0; wall < kWalls; ++wall)
-      EXPECT_GE(bin.distance(wall, p), options_.radius * (1.0 - 1e-12));
+    for (int wall = 0; wall < kWalls; ++wall) EXPECT_GE(bin.distance(wall, p), options_.radius * (1.0 - 1e-12));
   int touching = 0;
   for_close_pairs(grains, bin, 2.0 * options_.radius, [&](std::size_t, std::size_t, double) { ++touching; });
   EXPECT_EQ(touching, 0);
@@ -197,10 +195,9 @@ TEST_F(Beds, periodic_sides_hold_each_other) {
   solver.restore(prepared.bed);
   const std::vector<Quad> grains = positions_by_id(solver);
   int across = 0;
-  for_close_pairs(grains, solver.params().bin, 2.0 * options_.radius,
-                  [&](std::size_t a, std::size_t b, double) {
-                    across += std::abs(grains[a].y - grains[b].y) > 0.5 * options_.width;
-                  });
+  for_close_pairs(grains, solver.params().bin, 2.0 * options_.radius, [&](std::size_t a, std::size_t b, double) {
+    across += std::abs(grains[a].y - grains[b].y) > 0.5 * options_.width;
+  });
   EXPECT_GT(across, 10);
   int beyond = 0;
   for (const Quad& p : grains) {
@@ -218,8 +215,7 @@ TEST_F(Beds, radii_of_a_file_are_kept_and_checked) {
   EXPECT_NEAR(statistics_of(prepare_bed(options_, {})).grain_volume,
               4.0 / 3.0 * std::numbers::pi * (std::pow(0.012, 3) + std::pow(0.008, 3)), 1e-15);
   options_.bed = write("large.csv", "x_m,y_m,z_m,radius_m\n0.05,0,0.02,0.014\n");
-  EXPECT_NE(refusal().find("line 2': the grain's radius is 0.014 m, expected 0.007 to 0.013 m"),
-            std::string::npos)
+  EXPECT_NE(refusal().find("line 2': the grain's radius is 0.014 m, expected 0.007 to 0.013 m"), std::string::npos)
       << refusal();
 }
 
@@ -227,11 +223,9 @@ TEST_F(Beds, radii_of_a_file_are_kept_and_checked) {
 TEST_F(Beds, hdf5_of_positions_is_settled_like_csv) {
   const std::string file = (folder_ / "frame.h5").string();
   const std::vector<float> x{0.05F, 0.0F, 0.02F, 0.1F, 0.0F, 0.02F}, r{0.01F, 0.01F};
-  const auto put = [](hid_t out, const char* name, const std::vector<float>& values,
-                      std::vector<hsize_t> size) {
+  const auto put = [](hid_t out, const char* name, const std::vector<float>& values, std::vector<hsize_t> size) {
     const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-    const Handle set(H5Dcreate2(out, name, H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Dclose);
+    const Handle set(H5Dcreate2(out, name, H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     H5Dwrite(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   };
   {
@@ -261,8 +255,8 @@ TEST_F(Beds, positions_of_a_file_are_settled_and_kept) {
     for (int i = 0; i < 13; ++i)
       for (int j = 0; j < 8; ++j)
         text += std::to_string(0.012 + 0.0215 * i + 0.005 * (layer % 2)) + "," +
-                std::to_string(-0.088 + 0.0215 * j + 0.005 * (layer % 2)) + "," +
-                std::to_string(0.01 + 0.021 * layer) + "\n";
+                std::to_string(-0.088 + 0.0215 * j + 0.005 * (layer % 2)) + "," + std::to_string(0.01 + 0.021 * layer) +
+                "\n";
   options_.bed = write("mine.csv", text);
   const PreparedBed first = prepare_bed(options_, {}), second = prepare_bed(options_, {});
   EXPECT_FALSE(first.from_cache);
@@ -284,8 +278,9 @@ TEST_F(Beds, bad_positions_are_refused_by_line) {
            {"0.1,0,1e400", "expected three finite numbers"},
            {"0.4,0,0.05", "line 3': the grain stands at (0.4, 0, 0.05) m, expected a centre inside the bin"},
            {"0.1,0,-0.05", "inside the bin"},
-           {"0.1,0,5000", "line 3': the grain stands at (0.1, 0, 5000) m, 5000 m above all that is below it, expected at "
-                          "most 1 m, 100 radii"},
+           {"0.1,0,5000",
+            "line 3': the grain stands at (0.1, 0, 5000) m, 5000 m above all that is below it, expected at "
+            "most 1 m, 100 radii"},
            {"\x1b[31m,0,0.05", "line 3': '\\x1b[31m,0,0.05', expected three finite numbers"},
            {"0.101,0,0.05", "line 3': the grain at (0.101, 0, 0.05) m is 0.001 m from that of line 2"}}) {
     options_.bed = write("bad.csv", std::string("x_m,y_m,z_m\n0.1,0,0.05\n") + row + "\n");
@@ -442,8 +437,7 @@ TEST_F(Beds, a_bed_of_format_4_is_read_by_name) {
              walls = numbers_in(old, "walls/history");
   const std::size_t count = strips.size() / 14;
   EXPECT_EQ(bed.get_double("accounts/elastic"), accounts[1]);
-  EXPECT_EQ(bed.get<double>("accounts/velocity"),
-            std::vector<double>(accounts.begin() + 12, accounts.begin() + 15));
+  EXPECT_EQ(bed.get<double>("accounts/velocity"), std::vector<double>(accounts.begin() + 12, accounts.begin() + 15));
   EXPECT_EQ(bed.get_int("accounts/contacts"), 20 + 19);
   EXPECT_EQ(bed.get_int("accounts/active"), 38);
   for (std::size_t k = 0; k < count; ++k) {

@@ -37,8 +37,7 @@ int most_by_trying(const Conflicts& conflicts, int second) {
     for (int a = 0; a < first; ++a)
       if (set >> a & 1u)
         for (const int b : conflicts[a]) barred[b] = true;
-    most = std::max<int>(
-        most, std::popcount(set) + static_cast<int>(std::count(barred.begin(), barred.end(), false)));
+    most = std::max<int>(most, std::popcount(set) + static_cast<int>(std::count(barred.begin(), barred.end(), false)));
   }
   return most;
 }
@@ -87,8 +86,7 @@ TEST(BedLayers, layers_that_go_around_keep_their_distance_across_the_sides) {
     }
   }
   EXPECT_TRUE(at_side);
-  EXPECT_NEAR(static_cast<double>(s.size()), expected_layer_count(bin, r, true),
-              0.02 * static_cast<double>(s.size()));
+  EXPECT_NEAR(static_cast<double>(s.size()), expected_layer_count(bin, r, true), 0.02 * static_cast<double>(s.size()));
 }
 
 class Tiled : public ::testing::Test {
@@ -126,10 +124,8 @@ TEST_F(Tiled, bed_rests_and_is_as_dense_as_one_settled_whole) {
   DemOptions whole = options_;
   whole.tile = 0.0;
   const std::vector<Quad> grains = positions(tiled, options_);
-  const BedStatistics a = statistics(grains, options_),
-                      b = statistics(positions(prepare_bed(whole, {}), whole), whole);
-  EXPECT_NEAR(static_cast<double>(a.grains), static_cast<double>(b.grains),
-              0.04 * static_cast<double>(b.grains));
+  const BedStatistics a = statistics(grains, options_), b = statistics(positions(prepare_bed(whole, {}), whole), whole);
+  EXPECT_NEAR(static_cast<double>(a.grains), static_cast<double>(b.grains), 0.04 * static_cast<double>(b.grains));
   EXPECT_NEAR(static_cast<double>(a.grains), expected_grains(options_), 0.03 * static_cast<double>(a.grains));
   EXPECT_NEAR(a.grain_volume, static_cast<double>(a.grains) * volume_below(0.01, 0.0, 0.02), 1e-9);
   EXPECT_NEAR(a.solid_fraction_bulk, b.solid_fraction_bulk, 0.03 * b.solid_fraction_bulk);
@@ -155,8 +151,7 @@ TEST_F(Tiled, nobody_is_squeezed_in_where_pieces_are_joined_or_cut) {
     // The side walls that a piece was settled between press on it; all others are new to it.
     for (const Quad& p : grains)
       for (int wall = 0; wall < kFloor; ++wall)
-        EXPECT_GE(solver_params(options_).bin.distance(wall, p),
-                  (width < 0.5 && wall >= 2 ? 0.9 : 1.0) * p.w);
+        EXPECT_GE(solver_params(options_).bin.distance(wall, p), (width < 0.5 && wall >= 2 ? 0.9 : 1.0) * p.w);
   }
 }
 
@@ -216,8 +211,7 @@ TEST_F(Tiled, a_tile_as_large_as_the_bin_is_the_bed_settled_whole) {
   EXPECT_FALSE(is_tiled(options_));
   DemOptions whole = options_;
   whole.tile = 0.0;
-  EXPECT_EQ(archive_hash(prepare_bed(options_, {}).bed).value(),
-            archive_hash(prepare_bed(whole, {}).bed).value());
+  EXPECT_EQ(archive_hash(prepare_bed(options_, {}).bed).value(), archive_hash(prepare_bed(whole, {}).bed).value());
 }
 
 TEST_F(Tiled, too_small_pieces_are_refused_by_key) {
@@ -241,9 +235,7 @@ TEST_F(Tiled, a_signal_stops_every_part_of_the_work) {
     if (phases.empty() || phases.back() != what) phases.push_back(what);
   };
   prepare_bed(options_, note);
-  const auto told = [&](const char* what) {
-    return std::find(phases.begin(), phases.end(), what) != phases.end();
-  };
+  const auto told = [&](const char* what) { return std::find(phases.begin(), phases.end(), what) != phases.end(); };
   EXPECT_TRUE(told("a piece of the bed: settling the bed"));
   EXPECT_TRUE(told("joining the pieces of the bed"));
   EXPECT_TRUE(told("joints of the bed: settling the bed"));

@@ -36,8 +36,7 @@ TEST(Coefficients, none_is_lost_or_exchanged_when_rounded_or_scaled) {
   const auto coefficients = std::bit_cast<ContactCoefficients>(numbers);
   const auto same = std::bit_cast<std::array<double, kCount>>(rounded<double>(coefficients));
   const auto floats = std::bit_cast<std::array<float, kCount>>(rounded<float>(coefficients));
-  const auto unscaled =
-      std::bit_cast<std::array<double, kCount>>(scaled(coefficients, pair_scale<double>(1.0, 1.0)));
+  const auto unscaled = std::bit_cast<std::array<double, kCount>>(scaled(coefficients, pair_scale<double>(1.0, 1.0)));
   for (std::size_t k = 0; k < kCount; ++k) {
     EXPECT_EQ(same[k], numbers[k]);
     EXPECT_EQ(floats[k], static_cast<float>(numbers[k]));
@@ -75,8 +74,7 @@ TEST(MindlinLaw, tangential_stiffness_matches_mindlin_1949) {
   undamped.damping = undamped.shear_damping = 0.0;
   const double v = 1e-4, dt = 1e-5;
   ContactForce<double> f{};
-  for (int k = 0; k < 10; ++k)
-    f = MindlinLaw::force<false>(undamped, dt, touching(delta, {0, v, 0}), history);
+  for (int k = 0; k < 10; ++k) f = MindlinLaw::force<false>(undamped, dt, touching(delta, {0, v, 0}), history);
   EXPECT_NEAR(f.tangential.y, -8.0 * g_star * contact_radius * 10 * v * dt, 1e-12);
 }
 
@@ -87,8 +85,7 @@ TEST(MindlinLaw, sliding_is_cut_at_coulomb_of_the_force_before_cohesion) {
   ContactHistory<double> history{};
   const double delta = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0);  // no net load
   ContactForce<double> f{};
-  for (int k = 0; k < 1000; ++k)
-    f = MindlinLaw::force<false>(c, 1e-5, touching(delta, {0, 0.3, 0.4}), history);
+  for (int k = 0; k < 1000; ++k) f = MindlinLaw::force<false>(c, 1e-5, touching(delta, {0, 0.3, 0.4}), history);
   EXPECT_NEAR(f.normal, 0.0, 1e-9);
   EXPECT_NEAR(std::hypot(f.tangential.y, f.tangential.z), 0.9 * c.cohesion_force, 1e-9);
   EXPECT_NEAR(c.cohesion_force, 9.048, 1e-3);
@@ -163,8 +160,7 @@ TEST(Mixing, follows_the_stated_rules) {
   const double e_star = 1.0 / ((1 - 0.09) / 2.49e7 + (1 - 0.16) / 2e7);
   EXPECT_NEAR(c.stiffness, 4.0 / 3.0 * e_star * std::sqrt(0.006), 1e-6);
   // A tire of 4.2 kg/m² moves with 0.52 g under a grain of 2.26 g: its damper is that of the lighter pair.
-  const double heavy = c.damping, heavy_shear = c.shear_damping,
-               skin = 4.2 * 2.0 * std::sqrt(3.0) * 0.006 * 0.006;
+  const double heavy = c.damping, heavy_shear = c.shear_damping, skin = 4.2 * 2.0 * std::sqrt(3.0) * 0.006 * 0.006;
   tire.area_density = 4.2;
   c = mix(grain_material(few.options), tire, Partner::surface, grain, law);
   EXPECT_NEAR(c.damping / heavy, std::sqrt(skin / (skin + grain.mass)), 1e-12);

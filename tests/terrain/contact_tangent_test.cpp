@@ -17,8 +17,7 @@ constexpr double kStep = 1e-5;  // of an interval, s
 
 /// A quad under the plane z = height that looks down.
 testing::Surface plate(double size, double height) {
-  testing::Surface s =
-      testing::sheet(-0.5 * size, -0.5 * size, size, 1, 1, [=](double, double) { return height; });
+  testing::Surface s = testing::sheet(-0.5 * size, -0.5 * size, size, 1, 1, [=](double, double) { return height; });
   for (auto& triangle : s.mesh.triangles) std::swap(triangle[1], triangle[2]);
   return s;
 }
@@ -65,8 +64,7 @@ void expect_difference(const testing::Surface& surface, const Vec3& shift, doubl
 }
 
 /// A grain too heavy to move, 0.3 mm deep in a plate above it.
-NodalForces push_grain(const testing::Surface& surface, const Vec3& shift, const std::string& law,
-                       double friction) {
+NodalForces push_grain(const testing::Surface& surface, const Vec3& shift, const std::string& law, double friction) {
   constexpr int kSubsteps = 10;
   terrain::dem::FewGrains few;
   few.options.law = law;
@@ -99,8 +97,7 @@ TEST(ContactTangent, of_a_grain_is_the_difference_of_its_force) {
   const testing::Surface surface = plate(0.1, 0.0);
   for (const char* law : {"mindlin", "hertz_tanh"})
     for (const Vec3& shift : {Vec3(0, 0, -1e-10), Vec3(0, 0, 1e-10), Vec3(1e-10, 2e-10, -1e-10)})
-      expect_difference(surface, shift, 1e-3,
-                        [&](const Vec3& d) { return push_grain(surface, d, law, 100.0); });
+      expect_difference(surface, shift, 1e-3, [&](const Vec3& d) { return push_grain(surface, d, law, 100.0); });
 }
 
 TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {

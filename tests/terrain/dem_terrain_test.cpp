@@ -112,8 +112,7 @@ TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
   EXPECT_GT(top, height);
   EXPECT_LT(top, height + 0.03);
   const TerrainEstimate e = estimate_dem_terrain(options_);
-  EXPECT_NEAR(static_cast<double>(e.grains), static_cast<double>(terrain->size()),
-              0.1 * static_cast<double>(e.grains));
+  EXPECT_NEAR(static_cast<double>(e.grains), static_cast<double>(terrain->size()), 0.1 * static_cast<double>(e.grains));
 }
 
 TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
@@ -156,8 +155,7 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
   EXPECT_TRUE(settled_again);
   EXPECT_EQ(hash_of(*first), hash_of(*second));
   EXPECT_NO_THROW(terrain::dem::read_bed(cached()));
-  for (const auto& entry : fs::directory_iterator(cached().parent_path()))
-    EXPECT_EQ(entry.path().extension(), ".h5");
+  for (const auto& entry : fs::directory_iterator(cached().parent_path())) EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
 /// Files of a cache that somebody has renamed.
@@ -294,8 +292,7 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     EXPECT_LT(std::abs(left), 0.03 * to.surface_work + 3.0 * to.sample_error) << law;
     EXPECT_LT(to.sample_error, 0.05 * to.losses());
     const TerrainMomenta &p = before.momenta, &q = after.momenta;
-    EXPECT_LT((q.grains - p.grains - q.gravity_impulse - q.wall_impulse - q.surface_impulse - q.sleep_impulse)
-                  .norm(),
+    EXPECT_LT((q.grains - p.grains - q.gravity_impulse - q.wall_impulse - q.surface_impulse - q.sleep_impulse).norm(),
               1e-10 * q.gravity_impulse.norm());
     EXPECT_NEAR(q.gravity_impulse.z(), -mass * 9.81 * 1000 * dt, 1e-10 * q.gravity_impulse.norm());
   }

@@ -25,14 +25,11 @@ FewGrains exact() {
   return few;
 }
 
-double mass_of(const FewGrains& few) {
-  return grain_properties(few.options.radius, few.options.density).mass;
-}
+double mass_of(const FewGrains& few) { return grain_properties(few.options.radius, few.options.density).mass; }
 
 /// Height of the centre at which the floor carries the grain's weight, m.
 double resting_height(const FewGrains& few) {
-  return few.options.radius -
-         std::pow(mass_of(few) * few.gravity / few.coefficients().floor.stiffness, 2.0 / 3.0);
+  return few.options.radius - std::pow(mass_of(few) * few.gravity / few.coefficients().floor.stiffness, 2.0 / 3.0);
 }
 
 void run(GrainSolver& s, double step, double time) {
@@ -164,8 +161,7 @@ TEST(EnergyAccounts, pulling_off_costs_what_cohesion_stored_and_loses_nothing) {
   few.options.restitution = 1.0;
   few.options.friction = 0.0;
   const ContactCoefficients c = few.coefficients().pair;
-  const double overlap = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0),
-               half = few.options.radius - 0.5 * overlap;
+  const double overlap = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0), half = few.options.radius - 0.5 * overlap;
   GrainSolver s = few.make({{0.3 - half, 0.0, 0.3, 0.0}, {0.3 + half, 0.0, 0.3, 0.0}});
   set_velocity(s, 0, Vec3(-1, 0, 0));
   set_velocity(s, 1, Vec3(1, 0, 0));
@@ -254,9 +250,9 @@ Balance balance(const Crowd& which, double step, double time) {
 }
 
 TEST(EnergyAccounts, residual_of_a_crowd_shrinks_with_the_step) {
-  for (const Crowd& which : {Crowd{"mindlin"}, Crowd{"mindlin", Precision::mixed, true, 0.0, 0.2},
-                             Crowd{"mindlin", Precision::mixed, true, 0.0, 0.0, 0.0},
-                             Crowd{"hertz_tanh", Precision::mixed, true}}) {
+  for (const Crowd& which :
+       {Crowd{"mindlin"}, Crowd{"mindlin", Precision::mixed, true, 0.0, 0.2},
+        Crowd{"mindlin", Precision::mixed, true, 0.0, 0.0, 0.0}, Crowd{"hertz_tanh", Precision::mixed, true}}) {
     double share[3];
     for (const int k : {0, 1, 2}) {
       const Balance b = balance(which, 2e-5 / (1 << k), 0.12);
@@ -304,8 +300,7 @@ TEST(EnergyAccounts, samples_change_no_bit_of_the_motion_and_estimate_their_own_
 TEST(EnergyAccounts, same_bits_for_any_threads_and_after_a_restart) {
   for (const char* law : {"mindlin", "hertz_tanh"}) {
     FewGrains few;
-    GrainSolver one = crowd({law, Precision::mixed, true}, few),
-                two = crowd({law, Precision::mixed, true}, few);
+    GrainSolver one = crowd({law, Precision::mixed, true}, few), two = crowd({law, Precision::mixed, true}, few);
     two.set_threads(2);
     run(one, 2e-5, 0.01);
     Archive archive;
@@ -330,9 +325,8 @@ TEST(EnergyAccounts, same_bits_for_any_threads_and_after_a_restart) {
 
 /// Accounts that begin on a loaded bed know what its springs hold.
 TEST(EnergyAccounts, begin_with_what_contacts_hold) {
-  for (const Crowd& which :
-       {Crowd{"mindlin", Precision::mixed}, Crowd{"mindlin", Precision::full, false, 20e3, 0.2},
-        Crowd{"hertz_tanh", Precision::mixed}}) {
+  for (const Crowd& which : {Crowd{"mindlin", Precision::mixed}, Crowd{"mindlin", Precision::full, false, 20e3, 0.2},
+                             Crowd{"hertz_tanh", Precision::mixed}}) {
     FewGrains few = exact();
     GrainSolver s = crowd(which, few);
     run(s, 2e-5, 0.25);
@@ -340,8 +334,7 @@ TEST(EnergyAccounts, begin_with_what_contacts_hold) {
     s.reset_accounts();
     const TerrainEnergies begun = s.reported_energies();
     EXPECT_EQ(begun.losses(), 0.0);
-    EXPECT_NEAR(begun.elastic_tangential, before.elastic_tangential, 1e-5 * before.elastic_tangential)
-        << which.law;
+    EXPECT_NEAR(begun.elastic_tangential, before.elastic_tangential, 1e-5 * before.elastic_tangential) << which.law;
     EXPECT_NEAR(begun.cohesion / before.cohesion, 1.0, 2e-3) << which.law;  // grains have moved since
     EXPECT_NEAR(begun.stored() / before.stored(), 1.0, 2e-3);
   }

@@ -66,9 +66,7 @@ inline Quad quad(const Vec3& v) { return {v.x(), v.y(), v.z(), 0.0}; }
 inline Vec3 position(const GrainSolver& s, int id) { return vec(s.grains().position[s.index_of(id)]); }
 inline Vec3 velocity(const GrainSolver& s, int id) { return vec(s.grains().velocity[s.index_of(id)]); }
 inline Vec3 spin(const GrainSolver& s, int id) { return vec(s.grains().spin[s.index_of(id)]); }
-inline void set_velocity(GrainSolver& s, int id, const Vec3& v) {
-  s.grains().velocity[s.index_of(id)] = quad(v);
-}
+inline void set_velocity(GrainSolver& s, int id, const Vec3& v) { s.grains().velocity[s.index_of(id)] = quad(v); }
 inline void set_spin(GrainSolver& s, int id, const Vec3& w) { s.grains().spin[s.index_of(id)] = quad(w); }
 
 }  // namespace furrow::terrain::dem

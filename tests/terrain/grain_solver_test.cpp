@@ -69,8 +69,7 @@ TEST(GrainSolver, oblique_collision_conserves_momentum_and_angular_momentum) {
         Vec3 p = Vec3::Zero(), l = Vec3::Zero();
         for (int id : {0, 1}) {
           p += g.mass * velocity(s, id);
-          l +=
-              g.mass * (position(s, id) - Vec3(0.3, 0, 0.3)).cross(velocity(s, id)) + g.inertia * spin(s, id);
+          l += g.mass * (position(s, id) - Vec3(0.3, 0, 0.3)).cross(velocity(s, id)) + g.inertia * spin(s, id);
         }
         return std::pair(p, l);
       };
@@ -117,8 +116,7 @@ double speed_on_incline(const FewGrains& few, double angle, double time) {
   tilted.gravity = kStandardGravity;
   tilted.slope = angle;
   const double load = grain_properties(kRadius, 2500).mass * kStandardGravity * std::cos(angle);
-  GrainSolver s =
-      tilted.make({{0.1, 0, kRadius - std::pow(load / tilted.coefficients().floor.stiffness, 2.0 / 3.0)}});
+  GrainSolver s = tilted.make({{0.1, 0, kRadius - std::pow(load / tilted.coefficients().floor.stiffness, 2.0 / 3.0)}});
   const double dt = few.options.step;
   for (double t = 0; t < time; t += dt) {
     s.step(dt);
@@ -183,8 +181,7 @@ std::vector<Quad> cloud(int n, double spacing, std::uint64_t seed) {
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53 - 0.5; };
   std::vector<Quad> out;
   for (int k = 0; k < n; ++k)
-    out.push_back({0.03 + spacing * (k % 18) + 4e-4 * uniform(),
-                   -0.1 + spacing * (k / 18 % 12) + 4e-4 * uniform(),
+    out.push_back({0.03 + spacing * (k % 18) + 4e-4 * uniform(), -0.1 + spacing * (k / 18 % 12) + 4e-4 * uniform(),
                    0.0065 + spacing * (k / 216) + 4e-4 * uniform(), 0.0});
   return out;
 }
@@ -194,8 +191,7 @@ GrainSolver random_bed(FewGrains& few, int n, double speed) {
   GrainSolver s = few.make(cloud(n, 0.0126, 3));
   std::mt19937_64 bits(5);
   for (int id = 0; id < n; ++id)
-    set_velocity(
-        s, id, speed * Vec3::NullaryExpr([&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; }));
+    set_velocity(s, id, speed * Vec3::NullaryExpr([&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; }));
   s.reset_accounts();
   return s;
 }

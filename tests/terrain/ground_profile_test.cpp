@@ -2,8 +2,8 @@
 // has the energy that it says.
 #include "terrain/rigid/ground_profile.hpp"
 
-#include <algorithm>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cmath>
 
@@ -89,7 +89,8 @@ TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {
   const Vec3 up(0.0, 0.0, 0.3);
   const auto a = make_rigid_ground(plane), b = make_rigid_ground(curb);
   const Vec3 velocity(0.5, 0.1, -0.01);
-  const SurfaceState low = placed(wheel, {0.3, 0.0, 0.398}, velocity), high = placed(wheel, Vec3(0.3, 0.0, 0.398) + up, velocity);
+  const SurfaceState low = placed(wheel, {0.3, 0.0, 0.398}, velocity),
+                     high = placed(wheel, Vec3(0.3, 0.0, 0.398) + up, velocity);
   a->attach(wheel.mesh, rubber(0.8), low);
   b->attach(wheel.mesh, rubber(0.8), high);
   const Push on_plane = push(*a, low, 1e-5), on_curb = push(*b, high, 1e-5);

@@ -22,8 +22,7 @@ struct Push {
 /// One interval of a surface that moves with constant velocity and begins at `start`.
 inline Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
   Push result;
-  const Outcome status =
-      ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
+  const Outcome status = ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});
   EXPECT_TRUE(status.ok) << status.message("terrain");
   return result;
 }

@@ -63,8 +63,7 @@ class Plate {
     const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
     solver.surfaces().attach(
         mesh, rubber,
-        mix(grain_material(options), rubber, Partner::surface, solver.params().grain, law_settings(options)),
-        state_);
+        mix(grain_material(options), rubber, Partner::surface, solver.params().grain, law_settings(options)), state_);
     solver.surfaces().restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, solver.top() + 0.1)});
   }
 
@@ -337,9 +336,8 @@ TEST(Parcels, bed_that_slept_by_other_parcels_wakes_and_a_run_is_refused) {
   EXPECT_EQ(never.accounts().active, never.grains().count);
   // Sums of those asleep were kept from their last evaluation, a step before they stopped.
   EXPECT_NEAR(never.accounts().elastic / asleep.accounts().elastic, 1.0, 1e-3);
-  EXPECT_NEAR(
-      static_cast<double>(never.accounts().contacts) / static_cast<double>(asleep.accounts().contacts), 1.0,
-      2e-3);
+  EXPECT_NEAR(static_cast<double>(never.accounts().contacts) / static_cast<double>(asleep.accounts().contacts), 1.0,
+              2e-3);
   try {
     require_same_parcels(saved, never.strips());
     FAIL();

@@ -85,8 +85,7 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
       ground->attach(block.mesh, rubber(0.9), start);  // the smaller coefficient rules
       const Push one = slide_steadily(*ground, start);
       const Vec3 expected = -0.7 * one.sums.normal.z() * std::tanh(scale * speed) * direction;
-      EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm())
-          << scale << ' ' << speed;
+      EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm()) << scale << ' ' << speed;
       EXPECT_LE(one.sums.tangential.norm(), 0.7 * one.sums.normal.norm() * (1.0 + 1e-14));
       EXPECT_LT(one.sums.transfer_force_residual, 1e-12);
       EXPECT_LT(one.sums.transfer_moment_residual, 1e-12);
@@ -133,8 +132,7 @@ TEST(RigidGround, shears_what_it_touches_from_then_on) {
       for (std::size_t k = 0; k < state.position.size(); ++k) state.position[k] += dt * state.velocity[k];
     }
     const double t = steps * dt;
-    EXPECT_NEAR(one.sums.tangential.y() / (-0.5 * options.ground_shear_stiffness * width * c * v * t * t),
-                1.0, 1e-3);
+    EXPECT_NEAR(one.sums.tangential.y() / (-0.5 * options.ground_shear_stiffness * width * c * v * t * t), 1.0, 1e-3);
     double moment = 0.0;
     for (std::size_t k = 0; k < one.forces.vertex.size(); ++k)
       moment += one.forces.force[k].y() * state.position[one.forces.vertex[k]].x();
@@ -362,8 +360,7 @@ TEST(RigidGround, books_each_loss_where_it_belongs) {
   EXPECT_NEAR(end.tangential_damping_loss, begin.tangential_damping_loss, 1e-9 * end.sliding_loss);
   EXPECT_EQ(end.normal_damping_loss, 0.0);
   EXPECT_NEAR(end.elastic_normal, 0.5 * options.ground_stiffness * 0.02 * 1.6e-7, 1e-12);
-  EXPECT_NEAR(end.elastic_tangential, 0.5 * friction * friction / (options.ground_shear_stiffness * 0.02),
-              1e-9);
+  EXPECT_NEAR(end.elastic_tangential, 0.5 * friction * friction / (options.ground_shear_stiffness * 0.02), 1e-9);
   EXPECT_LT(std::abs(residual(start, end)), 2e-3 * end.losses());
   // Lifted off, the layer lets its shear go.
   for (Vec3& x : state.position) x += Vec3(1000 * 1e-4 * speed, 0.0, 0.0);
@@ -441,9 +438,7 @@ TEST(RigidGround, carries_several_surfaces_each_with_its_own_force) {
 TEST(RigidGround, continues_a_saved_state_bit_for_bit) {
   const auto ground = make_rigid_ground({});
   const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
-  auto at = [&](int i) {
-    return placed(round, {1.2e-4 * i, 0.0, 0.4673 - 8e-4}, {3.0, 0.0, -0.01}, 3.4e-4 * i, 8.56);
-  };
+  auto at = [&](int i) { return placed(round, {1.2e-4 * i, 0.0, 0.4673 - 8e-4}, {3.0, 0.0, -0.01}, 3.4e-4 * i, 8.56); };
   ground->attach(round.mesh, rubber(), at(0));
   for (int i = 0; i < 5; ++i) push(*ground, at(i), 4e-5, 2);
   Archive archive;

@@ -44,13 +44,11 @@ TEST(IsoRoad, heights_have_the_density_of_their_class_in_every_octave) {
           std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>(m) / static_cast<double>(n));
       std::complex<double> phase = 1.0;
       for (std::size_t k = 0; k < n; ++k, phase *= turn) {
-        const double hann =
-            1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
+        const double hann = 1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
         sum += hann * road[k][1] * phase;
       }
       // One-sided; the window's mean square is 1.5.
-      density[m] +=
-          2.0 * std::norm(sum) * kLength / (1.5 * static_cast<double>(n) * static_cast<double>(n)) / kSeeds;
+      density[m] += 2.0 * std::norm(sum) * kLength / (1.5 * static_cast<double>(n) * static_cast<double>(n)) / kSeeds;
     }
   }
   for (double from = 0.04; from < 2.0; from *= 2.0) {
@@ -156,8 +154,7 @@ TEST_F(RoadFile, slope_and_banking_of_the_reference_line_are_added) {
       " 0.0000000-0.0100000 0.0000000 0.0100000 0.0200000\n";
   const std::filesystem::path file = put("sloped.crg", bytes);
   const ProfilePoints left = read_road(file, 1.0), right = read_road(file, -1.0);
-  const double z_left[] = {1.01, 1.1 + 0.01 + 0.03, 1.08 + 0.01},
-               z_right[] = {1.02, 1.1 + 0.02 - 0.03, 1.08 + 0.02};
+  const double z_left[] = {1.01, 1.1 + 0.01 + 0.03, 1.08 + 0.01}, z_right[] = {1.02, 1.1 + 0.02 - 0.03, 1.08 + 0.02};
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(left[k][1], z_left[k], 1e-12);
     EXPECT_NEAR(right[k][1], z_right[k], 1e-12);
@@ -198,8 +195,7 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
       {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,mm\n$\n" + rows, "line 13': is not a cut"},
       {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section at v = 0,m\n$\n" + rows,
        "line 14': mixes cuts"},
-      {kRoad +
-           "$KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section 1,m\n$\n$$\n 0.0000000 0.0000000\n",
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section 1,m\n$\n$$\n 0.0000000 0.0000000\n",
        "has two cuts at v = -0.5 m"},
       {"$ROAD_CRG\nLONG_SECTION_V_RIGHT = 0\n$\n$KD_DEFINITION\n#:LRFI\nD:long section 1,m\n$\n$$\n "
        "0.0000000\n 0.0000000\n",
@@ -230,11 +226,11 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
       put("road.crg", kRoad + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
   EXPECT_NE(refusal([&] { read_road(file, 0.75); }).find("expected terrain.profile_v from -0.5 to 0.5 m"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { read_road(file, -0.2); }).find("has no height at u = 2 m, v = -0.2 m"),
-            std::string::npos);
+  EXPECT_NE(refusal([&] { read_road(file, -0.2); }).find("has no height at u = 2 m, v = -0.2 m"), std::string::npos);
   const std::filesystem::path high =
       put("high.crg", kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
-  EXPECT_NE(refusal([&] { read_road(high, 0.0); }).find("has the height 9e+08 m at u = 3 m, v = 0 m"), std::string::npos);
+  EXPECT_NE(refusal([&] { read_road(high, 0.0); }).find("has the height 9e+08 m at u = 3 m, v = 0 m"),
+            std::string::npos);
 }
 
 TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {

@@ -54,9 +54,8 @@ TEST(SavedTerrain, a_step_that_is_none_is_refused) {
   EXPECT_EQ(complaint(good, "terrain/step", 1e-4), "");
   for (const double step : {0.0, -1.0})
     EXPECT_NE(complaint(good, "terrain/step", step).find("saved state 'step' is"), std::string::npos) << step;
-  EXPECT_NE(
-      complaint(good, "terrain/step", std::numeric_limits<double>::quiet_NaN()).find("'step' is not finite"),
-      std::string::npos);
+  EXPECT_NE(complaint(good, "terrain/step", std::numeric_limits<double>::quiet_NaN()).find("'step' is not finite"),
+            std::string::npos);
 }
 
 TEST(SavedTerrain, a_grain_of_a_size_that_the_terrain_does_not_have_is_refused) {
@@ -85,8 +84,7 @@ TEST(SavedTerrain, a_tire_of_a_material_that_cannot_be_is_refused) {
     std::string name;
     for (const auto& [known, array] : good.arrays())
       if (known.ends_with(std::string("material/") + field)) name = known;
-    EXPECT_NE(complaint(good, name, value).find("of surface 0 holds a material that cannot be"),
-              std::string::npos)
+    EXPECT_NE(complaint(good, name, value).find("of surface 0 holds a material that cannot be"), std::string::npos)
         << field << ' ' << value;
   }
 }

@@ -95,8 +95,7 @@ TEST(SolverState, a_saved_one_comes_back) {
 TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
   const Archive good = saved();
   const auto refused = [&](const Archive& archive, const std::string& array) {
-    EXPECT_TRUE(complaint(archive).starts_with("saved state '" + array + "'"))
-        << array << ": " << complaint(archive);
+    EXPECT_TRUE(complaint(archive).starts_with("saved state '" + array + "'")) << array << ": " << complaint(archive);
   };
   constexpr std::int32_t kWild = 1 << 30;
   for (const std::int32_t value : {-1, kWild}) {
@@ -131,7 +130,8 @@ TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
   refused(archive, "mean_contact_force");
 }
 
-/// Numbers anywhere, changed to anything, and arrays cut short: a message, or a state that can be stepped. More of them:
+/// Numbers anywhere, changed to anything, and arrays cut short: a message, or a state that can be stepped. More of
+/// them:
 /// --gtest_shuffle --gtest_repeat=1000.
 void change_at_random(const Archive& good, const FewGrains& few) {
   std::mt19937_64 random(static_cast<unsigned>(::testing::UnitTest::GetInstance()->random_seed()));
@@ -154,8 +154,7 @@ void change_at_random(const Archive& good, const FewGrains& few) {
                                            std::numeric_limits<std::int32_t>::max(),
                                            std::numeric_limits<std::int32_t>::min()};
           T& value = values[random() % values.size()];
-          value =
-              random() % 2 ? static_cast<T>(kOdd[random() % std::size(kOdd)]) : static_cast<T>(value + T{1});
+          value = random() % 2 ? static_cast<T>(kOdd[random() % std::size(kOdd)]) : static_cast<T>(value + T{1});
         },
         array);
     Archive archive = good;
@@ -179,9 +178,8 @@ TEST(SolverState, parcels_need_all_their_columns_and_lists_in_order) {
   EXPECT_NE(complaint(with(good, "parcels/measured_force", 1, -1.0), wide_grains()), "");
   const auto& partners = good.get<std::uint64_t>("pairs/partners");
   ASSERT_GT(partners.size(), 2U);
-  EXPECT_TRUE(
-      complaint(with(good, "pairs/partners", 0, std::uint64_t{kQuad} << 32 | 2 * kQuad), wide_grains())
-          .starts_with("saved state 'pairs/partners' lists the grains of strip"));
+  EXPECT_TRUE(complaint(with(good, "pairs/partners", 0, std::uint64_t{kQuad} << 32 | 2 * kQuad), wide_grains())
+                  .starts_with("saved state 'pairs/partners' lists the grains of strip"));
   EXPECT_TRUE(complaint(with(good, "walls/grain", 1, std::int32_t{0}), wide_grains()).empty());
   EXPECT_TRUE(complaint(with(good, "walls/grain", 0, std::int32_t{5}), wide_grains())
                   .starts_with("saved state 'walls/grain' lists the grains of strip"));

@@ -69,8 +69,7 @@ TEST(StepRefinement, collisions_above_the_stable_step_gain_no_energy_and_lose_li
   const double step = 0.98 * dem::stable_at(o, dem::stated_overlap(o)).step;
   const double e_star = o.young_modulus / 2.0 / (1.0 - o.poisson_ratio * o.poisson_ratio);
   const double mass = dem::grain_properties(o.radius, o.density).mass, v = 9.0;
-  const double hertz =
-      std::pow(15.0 / 16.0 * 0.5 * mass * 4.0 * v * v / (e_star * std::sqrt(0.5 * o.radius)), 0.4);
+  const double hertz = std::pow(15.0 / 16.0 * 0.5 * mass * 4.0 * v * v / (e_star * std::sqrt(0.5 * o.radius)), 0.4);
   ASSERT_GT(hertz, dem::stated_overlap(o) * 2.0);
   ASSERT_LT(hertz, 2.0 * dem::kDeepestShare * o.radius);
   ASSERT_GT(step, dem::stable_at(o, hertz).step);
@@ -89,8 +88,8 @@ TEST(StepRefinement, collisions_above_the_stable_step_gain_no_energy_and_lose_li
     c.run(v, 0.5 * step, false);
     half = std::max(half, std::abs(c.restitution - 1.0));
   }
-  std::printf("restitution error: parts %.4f rms; whole step %.4f, half step %.4f largest\n",
-              std::sqrt(squares), whole, half);
+  std::printf("restitution error: parts %.4f rms; whole step %.4f, half step %.4f largest\n", std::sqrt(squares), whole,
+              half);
   EXPECT_LT(std::sqrt(squares), 0.045);
 }
 
@@ -159,8 +158,7 @@ class Pressed : public ::testing::Test {
     const double interval = 2.0 * options_.step;
     for (int k = 0; k < intervals; ++k) {
       for (Vec3& v : plate.state.velocity) v = Vec3(0.0, 0.0, -speed);
-      if (Outcome outcome = terrain.advance({&plate.state, 1}, interval, 2, forces, sums); !outcome.ok)
-        return outcome;
+      if (Outcome outcome = terrain.advance({&plate.state, 1}, interval, 2, forces, sums); !outcome.ok) return outcome;
       for (Vec3& x : plate.state.position) x.z() -= interval * speed;
       force_ = sums[0].force.z();
       hardest_ = std::max(hardest_, force_);
@@ -193,8 +191,7 @@ TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_res
   const int way = static_cast<int>(0.014 / 0.5 / length);
   int pressed = 0;
   Outcome outcome;
-  while (outcome.ok && a->state().most_parts == 1 && pressed < way)
-    outcome = press(*a, plate, 0.5, 1), ++pressed;
+  while (outcome.ok && a->state().most_parts == 1 && pressed < way) outcome = press(*a, plate, 0.5, 1), ++pressed;
   ASSERT_TRUE(outcome.ok) << outcome.message("terrain");
   ASSERT_GT(a->state().substeps_added, 0) << "pressed by " << hardest_ << " N";
   Archive saved;
@@ -238,8 +235,7 @@ TEST_F(Pressed, a_contact_that_no_step_can_hold_ends_with_where_and_what_to_chan
   ASSERT_FALSE(outcome.ok);
   const std::string said = outcome.message("terrain");
   std::puts(said.c_str());
-  for (const char* word :
-       {"contact", "deeper than 30 % of a grain's diameter", "at (", "young_modulus", kNoStepHelps})
+  for (const char* word : {"contact", "deeper than 30 % of a grain's diameter", "at (", "young_modulus", kNoStepHelps})
     EXPECT_NE(said.find(word), std::string::npos) << said;
 }
 

@@ -28,8 +28,7 @@ struct PathCheck {
   int most_hits = 0;
 };
 
-PathCheck follow(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, int samples,
-                 double overlap) {
+PathCheck follow(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, int samples, double overlap) {
   PathCheck result;
   const double scale = std::pow(overlap, 1.5);
   std::array<SurfaceHit, kMaxSurfaceHits> hit;
@@ -73,8 +72,8 @@ void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const V
       (left ? hi : lo) = middle;
       (left ? f_hi : f_lo) = f_middle;
     }
-    EXPECT_LT((f_hi - f_lo).norm(), 5e-6) << what << ": the force jumps by this share of the plane's at "
-                                          << (from + (to - from) * lo).transpose();
+    EXPECT_LT((f_hi - f_lo).norm(), 5e-6)
+        << what << ": the force jumps by this share of the plane's at " << (from + (to - from) * lo).transpose();
   }
 }
 
@@ -111,8 +110,8 @@ TEST(SurfaceContact, slides_over_a_tilted_cut_plane_far_from_the_origin_as_over_
   for (int i = 0; i <= 5000; ++i) {
     const Vec3 centre = turn * Vec3(-0.02 + 8e-6 * i, 0.0017 + 1e-6 * i, kRadius - overlap) + shift;
     ASSERT_EQ(surface.hits(centre, kRadius, hit), 1);
-    ripple = std::max(
-        {ripple, std::abs(hit[0].overlap / overlap - 1.0), (hit[0].normal - turn * Vec3::UnitZ()).norm()});
+    ripple =
+        std::max({ripple, std::abs(hit[0].overlap / overlap - 1.0), (hit[0].normal - turn * Vec3::UnitZ()).norm()});
   }
   EXPECT_LT(ripple, 1e-9);
 }
@@ -176,8 +175,7 @@ TEST(SurfaceContact, counts_both_walls_of_a_right_angle) {
     EXPECT_NEAR(hit[i].overlap / overlap, 1.0, 1e-9);
     EXPECT_NEAR(std::abs(hit[i].normal.x()), std::sqrt(0.5), 1e-12);
   }
-  expect_continuous(surface, {-3e-3, 1e-3, height + 2.9e-3}, {3e-3, 1e-3, height + 2.9e-3}, overlap,
-                    "right angle");
+  expect_continuous(surface, {-3e-3, 1e-3, height + 2.9e-3}, {3e-3, 1e-3, height + 2.9e-3}, overlap, "right angle");
 }
 
 TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
@@ -202,11 +200,10 @@ TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
   for (int count : {4, 5, 6, 8})
     for (double slope : {-0.3, -0.01, 1e-4, 0.01, 0.1, 0.3})
       for (int kind = 0; kind < 2; ++kind) {  // cones, and saddles
-        const testing::Surface around = testing::fan(
-            count, 0.03, [&](int k) { return 0.03 * slope * (kind == 0 ? 1.0 : (k % 2 ? 1.0 : -1.0)); });
+        const testing::Surface around =
+            testing::fan(count, 0.03, [&](int k) { return 0.03 * slope * (kind == 0 ? 1.0 : (k % 2 ? 1.0 : -1.0)); });
         const SurfaceCollider surface = around.collider(kRadius);
-        const double height =
-            (kRadius - overlap) * std::sqrt(1.0 + (kind == 0 && slope > 0 ? slope * slope : 0.0));
+        const double height = (kRadius - overlap) * std::sqrt(1.0 + (kind == 0 && slope > 0 ? slope * slope : 0.0));
         for (double y : {0.0, 1e-5, 1.1e-4, 1.2e-3})
           expect_continuous(surface, {-3e-3, y, height}, {3.1e-3, -0.4 * y, height}, overlap,
                             "fan of " + std::to_string(count) + ", slope " + std::to_string(slope) +
@@ -334,10 +331,10 @@ TEST(SurfaceContact, finds_what_a_search_through_all_triangles_finds) {
       const int n = 12;
       for (int p = 0; p <= n; ++p)
         for (int q = 0; p + q <= n; ++q)
-          nearest = std::min(
-              nearest, (centre - (round.vertex[t[0]] + (round.vertex[t[1]] - round.vertex[t[0]]) * p / n +
-                                  (round.vertex[t[2]] - round.vertex[t[0]]) * q / n))
-                           .norm());
+          nearest =
+              std::min(nearest, (centre - (round.vertex[t[0]] + (round.vertex[t[1]] - round.vertex[t[0]]) * p / n +
+                                           (round.vertex[t[2]] - round.vertex[t[0]]) * q / n))
+                                    .norm());
       if (nearest < 0.9 * kRadius) break;
     }
     const int count = surface.hits(centre, kRadius, hit);

@@ -68,9 +68,7 @@ struct Scene {
   std::vector<ContactSums> sums;
   double worst_force_residual = 0.0, worst_moment_residual = 0.0;
 
-  explicit Scene(const dem::DemOptions& options) : terrain(make_dem_terrain(options)) {
-    terrain->prepare({});
-  }
+  explicit Scene(const dem::DemOptions& options) : terrain(make_dem_terrain(options)) { terrain->prepare({}); }
 
   void put(double x, double mass) {
     Block block;
@@ -153,8 +151,7 @@ TEST(SurfaceCoupling, no_grain_passes_through_a_plate_that_is_rammed_into_the_be
   for (std::size_t g = 0; g < frame.radius.size(); ++g) {
     const Vec3 x(frame.position[3 * g], frame.position[3 * g + 1], frame.position[3 * g + 2]);
     const Vec3 local = x - block.position;
-    if (std::abs(local.x()) < 0.055 && std::abs(local.y()) < 0.055 && local.z() > 0.0 && local.z() < 0.1)
-      ++inside;
+    if (std::abs(local.x()) < 0.055 && std::abs(local.y()) < 0.055 && local.z() > 0.0 && local.z() < 0.1) ++inside;
   }
   EXPECT_EQ(inside, 0);
 }

@@ -42,8 +42,7 @@ inline Surface sheet(double x0, double y0, double h, int nx, int ny,
                      const std::function<double(double, double)>& height) {
   Surface s;
   for (int i = 0; i <= nx; ++i)
-    for (int j = 0; j <= ny; ++j)
-      s.vertex.emplace_back(x0 + i * h, y0 + j * h, height(x0 + i * h, y0 + j * h));
+    for (int j = 0; j <= ny; ++j) s.vertex.emplace_back(x0 + i * h, y0 + j * h, height(x0 + i * h, y0 + j * h));
   s.mesh.vertex_count = static_cast<int>(s.vertex.size());
   auto id = [&](int i, int j) { return i * (ny + 1) + j; };
   for (int i = 0; i < nx; ++i)
@@ -96,8 +95,7 @@ inline Surface wheel(double radius, double width, int facets, int across) {
   for (int k = 0; k < facets; ++k)
     for (int j = 0; j <= across; ++j) {
       const double phi = 2.0 * M_PI * k / facets;
-      s.vertex.emplace_back(radius * std::sin(phi), -0.5 * width + width * j / across,
-                            -radius * std::cos(phi));
+      s.vertex.emplace_back(radius * std::sin(phi), -0.5 * width + width * j / across, -radius * std::cos(phi));
     }
   const int left = static_cast<int>(s.vertex.size()), right = left + 1;
   s.vertex.emplace_back(0.0, -0.5 * width, 0.0);

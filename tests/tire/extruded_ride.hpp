@@ -1,4 +1,5 @@
-// What the tests of tires that are drawn out over their width have in common: a ride on a rim that speeds up and shifts.
+// What the tests of tires that are drawn out over their width have in common: a ride on a rim that speeds up and
+// shifts.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -39,8 +40,8 @@ inline NodalForces loads(const SurfaceState& surface, const RimState& rim, doubl
 }
 
 struct Ride {
-  double worst_force = 0.0;                   // of Δ momentum − impulses over the largest impulse
-  double work = 0.0, residual = 0.0;          // J
+  double worst_force = 0.0;           // of Δ momentum − impulses over the largest impulse
+  double work = 0.0, residual = 0.0;  // J
   TireDiagnostics first, last;
 
   explicit Ride(const TireOptions& options, double step, double toe = 0.0, double end = 0.1) {
@@ -104,7 +105,8 @@ inline void expect_exact_continuation(const TireOptions& options, double step) {
   EXPECT_EQ(one->spindle_wrench().force, other->spindle_wrench().force);
   EXPECT_EQ(one->spindle_wrench().moment, other->spindle_wrench().moment);
   EXPECT_EQ(one->diagnostics().losses(), other->diagnostics().losses());
-  for (const NamedValue& figure : one->figures()) EXPECT_EQ(figure.value, other->figures().of(figure.name)) << figure.name;
+  for (const NamedValue& figure : one->figures())
+    EXPECT_EQ(figure.value, other->figures().of(figure.name)) << figure.name;
 }
 
 /// What it says of itself before it is made is what it is.

@@ -64,12 +64,11 @@ TEST_F(PressCurveTest, is_made_anew_where_the_file_is_damaged_or_the_pressure_an
   const auto curve = tire::press_curve(*coarse(), 1000.0, {});
   ASSERT_EQ(kept().size(), 1U);
   const std::filesystem::path file = kept().front();
-  for (
-      const char* text :
-      {"", "{}", "[1]", R"({"radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 2, 1, 3, 4]})",
-       R"({"radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 1, 2, 3, "x"]})",
-       R"({"radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 1, 2, 3, 4]})",
-       R"({"checksum": 1, "radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 1, 2, 3, 4]})"}) {
+  for (const char* text :
+       {"", "{}", "[1]", R"({"radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 2, 1, 3, 4]})",
+        R"({"radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 1, 2, 3, "x"]})",
+        R"({"radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 1, 2, 3, 4]})",
+        R"({"checksum": 1, "radius_m": [0.4], "deflection_m": [0, 1, 2, 3, 4], "force_N": [0, 1, 2, 3, 4]})"}) {
     write_whole_file(file, text);
     EXPECT_EQ(tire::press_curve(*coarse(), 1000.0, {})->points, curve->points) << text;
   }

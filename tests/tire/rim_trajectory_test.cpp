@@ -23,8 +23,7 @@ TEST(RimTrajectory, steady_spin_is_followed_exactly) {
   const RimKinematics middle = t.at(0.5);
   const RimState exact = spinning(99.5 * h, omega);
   EXPECT_LT((middle.state.position - exact.position).norm(), 1e-14);
-  EXPECT_LT((middle.state.orientation.toRotationMatrix() - exact.orientation.toRotationMatrix()).norm(),
-            1e-13);
+  EXPECT_LT((middle.state.orientation.toRotationMatrix() - exact.orientation.toRotationMatrix()).norm(), 1e-13);
   EXPECT_LT((middle.state.angular_velocity - omega).norm(), 1e-9);
 }
 

@@ -46,17 +46,15 @@ TEST(ShellMesh, half_torus_mass_matches_pappus) {
   set_elements_width(tire.file, 60);
   const ShellMesh mesh = make_shell_mesh(tire.file);
   // Half circle of radius a, centroid 2a/π outside the rim radius: A = π a · 2π (R + 2a/π)
-  const double a = 0.195,
-               area = std::numbers::pi * a * 2 * std::numbers::pi * (0.35 + 2 * a / std::numbers::pi);
-  EXPECT_NEAR(rigid_mass(mesh, element_masses(tire.file, mesh)).mass, 500 * 0.014 * area,
-              2e-3 * 500 * 0.014 * area);
+  const double a = 0.195, area = std::numbers::pi * a * 2 * std::numbers::pi * (0.35 + 2 * a / std::numbers::pi);
+  EXPECT_NEAR(rigid_mass(mesh, element_masses(tire.file, mesh)).mass, 500 * 0.014 * area, 2e-3 * 500 * 0.014 * area);
 }
 
 TEST(ShellMesh, tread_rubber_adds_its_mass) {
   Made tire("hmmwv_layered.json");
   tire.file.tread_mass_per_area = 10.0;
-  const double heavier = rigid_mass(tire.mesh, element_masses(tire.file, tire.mesh)).mass -
-                         rigid_mass(tire.mesh, tire.masses).mass;
+  const double heavier =
+      rigid_mass(tire.mesh, element_masses(tire.file, tire.mesh)).mass - rigid_mass(tire.mesh, tire.masses).mass;
   EXPECT_NEAR(heavier, 10.0 * 2 * std::numbers::pi * 0.4673 * 0.29,
               1.0);  // meridian length of the tread about 0.29 m
 }
@@ -117,8 +115,7 @@ TEST(ShellMesh, surface_triangles_are_mirrored_about_the_mid_plane) {
   for (const auto& t : surface.triangles) {
     std::array<int, 3> mirrored;
     for (int k = 0; k < 3; ++k)
-      mirrored[k] =
-          t[k] >= nodes ? nodes + 1 - (t[k] - nodes) : t[k] - t[k] % rows + (rows - 1 - t[k] % rows);
+      mirrored[k] = t[k] >= nodes ? nodes + 1 - (t[k] - nodes) : t[k] - t[k] % rows + (rows - 1 - t[k] % rows);
     EXPECT_EQ(set.count(key(mirrored)), 1u);
   }
 }

@@ -64,8 +64,7 @@ TEST_F(TireFileTest, layered_hmmwv_holds_the_reference_layup) {
 }
 
 TEST_F(TireFileTest, shipped_files_make_both_models) {
-  for (const char* name :
-       {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"}) {
+  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"}) {
     TireOptions options;
     options.file = std::string(TIRE_DATA "/") + name;
     options.elements_circumference = 12;
@@ -103,8 +102,7 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
   EXPECT_EQ(with([](json& j) { j["radius"] = -0.4; }), "key 'radius': is -0.4, expected a number above zero");
   EXPECT_EQ(with([](json& j) { j["radius"] = "big"; }), "key 'radius': is 'big', expected a number");
   EXPECT_EQ(with([](json& j) { j["radius"] = 1e300; }), "key 'radius': is 1e300 m, expected 0.0001 to 100 m");
-  EXPECT_EQ(with([](json& j) { j["pressure"] = -1; }),
-            "key 'pressure': is -1, expected a number of zero or above");
+  EXPECT_EQ(with([](json& j) { j["pressure"] = -1; }), "key 'pressure': is -1, expected a number of zero or above");
   EXPECT_EQ(with([](json& j) { j["pressure"] = nullptr; }), "key 'pressure': is null, expected a number");
   EXPECT_EQ(with([](json& j) { j["elements_circumference"] = 4.5; }),
             "key 'elements_circumference': is 4.5, expected a whole number from 8 to 10000");
@@ -121,10 +119,7 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
             "steel cord");
   EXPECT_EQ(with([](json& j) { j["sections"]["bead"]["layers"] = json::array(); }),
             "key 'sections.bead.layers': is empty, expected at least one layer");
-  EXPECT_EQ(with([](json& j) {
-              j["profile"][3] = {0.5, 0.01};
-            }),
-            "key 'profile[3]': expected three numbers t, x, y");
+  EXPECT_EQ(with([](json& j) { j["profile"][3] = {0.5, 0.01}; }), "key 'profile[3]': expected three numbers t, x, y");
   EXPECT_EQ(with([](json& j) {
               j["prony"] = {{{"relative_modulus", 0.1}}};
             }),
@@ -160,8 +155,9 @@ TEST_F(TireFileTest, a_meridian_that_crosses_itself_is_refused_where_it_does) {
     return complaint(changed.dump());
   };
   // s = ±√c is passed twice, at y = 0 and x = 0.2 (1 − c), and t = (1 ± √c)/2.
-  EXPECT_EQ(with_loop(0.6), "key 'profile': crosses itself at x = 0.08 m, y = 0 m, between t = 0.11 and t = 0.89, "
-                            "expected a meridian without a loop");
+  EXPECT_EQ(with_loop(0.6),
+            "key 'profile': crosses itself at x = 0.08 m, y = 0 m, between t = 0.11 and t = 0.89, "
+            "expected a meridian without a loop");
   EXPECT_EQ(with_loop(-0.6), "no error");
   json many = good_;
   many["profile"] = json(std::vector<json>(2001, {0.0, 0.0, 0.0}));
@@ -200,14 +196,12 @@ json public_layout(const TireFile& f) {
             {"Structural Damping Coefficient", f.structural_damping},
             {"Default Pressure", f.pressure},
             {"Number Elements Circumference", 90}};
-  j["Contact Material"] = {{"Coefficient of Friction", 0.9},
-                           {"Coefficient of Restitution", 0.1},
-                           {"Properties", {{"Young Modulus", 2e6}, {"Poisson Ratio", 0.3}}},
-                           {"Coefficients",
-                            {{"Normal Stiffness", 2e6},
-                             {"Normal Damping", 13},
-                             {"Tangential Stiffness", 1e6},
-                             {"Tangential Damping", 0}}}};
+  j["Contact Material"] = {
+      {"Coefficient of Friction", 0.9},
+      {"Coefficient of Restitution", 0.1},
+      {"Properties", {{"Young Modulus", 2e6}, {"Poisson Ratio", 0.3}}},
+      {"Coefficients",
+       {{"Normal Stiffness", 2e6}, {"Normal Damping", 13}, {"Tangential Stiffness", 1e6}, {"Tangential Damping", 0}}}};
   for (const LayerMaterial& m : f.materials)
     j["Materials"].push_back({{"Type", "Orthotropic"},
                               {"Density", m.density},
@@ -249,8 +243,7 @@ TEST_F(TireFileTest, public_layout_mistakes_name_their_key) {
     return complaint(changed.dump());
   };
   EXPECT_EQ(with([](json&) {}), "no error");
-  EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }),
-            "key 'Tire Radios': is unknown, expected 'Tire Radius'?");
+  EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }), "key 'Tire Radios': is unknown, expected 'Tire Radius'?");
   EXPECT_EQ(with([](json& j) { j["Template"] = "FialaTire"; }),
             "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire");
   EXPECT_EQ(with([](json& j) { j["Tread Section"]["Material ID"][0] = 7; }),

@@ -9,10 +9,8 @@ namespace {
 TireFile file(const std::string& name) { return read_tire_file(TIRE_DATA "/" + name); }
 
 TEST(TireMagnitudes, shipped_tires_have_nothing_odd) {
-  for (const char* name :
-       {"hmmwv_layered.json", "hmmwv_lumped.json", "passenger_205_55r16.json", "toroidal.json"})
-    EXPECT_TRUE(unlikely_values(file(name)).empty())
-        << name << ": " << unlikely_values(file(name)).front().first;
+  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "passenger_205_55r16.json", "toroidal.json"})
+    EXPECT_TRUE(unlikely_values(file(name)).empty()) << name << ": " << unlikely_values(file(name)).front().first;
 }
 
 TEST(TireMagnitudes, another_unit_is_named_with_its_key) {

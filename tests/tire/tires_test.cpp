@@ -79,8 +79,7 @@ TEST_F(TiresTest, an_unknown_model_lists_the_valid_ones) {
   const std::string valid = one_of(names);
   EXPECT_EQ(complaint(file), "key 'model': is 'brush', expected " + valid);
   file["model"] = "wheel";
-  EXPECT_EQ(complaint(file),
-            "key 'model': is 'wheel', which is not available in this version, expected " + valid);
+  EXPECT_EQ(complaint(file), "key 'model': is 'wheel', which is not available in this version, expected " + valid);
   file["model"] = 3;
   EXPECT_EQ(complaint(file).substr(0, 11), "key 'model'");
 }
@@ -150,8 +149,7 @@ TEST_F(TiresTest, every_model_says_all_of_its_diagnostics_and_has_its_outside_ou
       require_outward(one_turned, state.position, Vec3::Zero(), "tire.json");
       ADD_FAILURE() << "a triangle that runs against its neighbours was not noticed";
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("tire.json: the contact surface has two triangles"),
-                std::string::npos)
+      EXPECT_NE(std::string(error.what()).find("tire.json: the contact surface has two triangles"), std::string::npos)
           << error.what();
     }
   }
@@ -184,20 +182,17 @@ TEST_F(TiresTest, step_advice_is_a_share_of_the_damping_time_and_larger_with_con
 }
 
 TEST_F(TiresTest, a_rigid_tire_takes_no_contact_tangents) {
-  const json section = {
-      {"file", TIRE_DATA "/hmmwv_layered.json"}, {"rigid", true}, {"contact_tangent", true}};
+  const json section = {{"file", TIRE_DATA "/hmmwv_layered.json"}, {"rigid", true}, {"contact_tangent", true}};
   try {
     read_tire(section, ReadContext{"test.json", "tires.1"});
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "test.json: key 'tires.1.contact_tangent': is true, expected false for a rigid tire");
+    EXPECT_STREQ(error.what(), "test.json: key 'tires.1.contact_tangent': is true, expected false for a rigid tire");
   }
 }
 
 TEST_F(TiresTest, pressure_tables_run_forward_in_time) {
-  const json section = {{"file", TIRE_DATA "/hmmwv_layered.json"},
-                        {"pressure", json::array({{0.5, 2e5}, {0.5, 1e5}})}};
+  const json section = {{"file", TIRE_DATA "/hmmwv_layered.json"}, {"pressure", json::array({{0.5, 2e5}, {0.5, 1e5}})}};
   try {
     read_tire(section, ReadContext{"test.json", "tire"});
     FAIL() << "accepted";

@@ -34,8 +34,7 @@ TEST(Actuator, force_of_time_between_two_bodies_keeps_momentum_and_its_work_is_t
   const int b = system.add_body("b", 3.0, Vec3(0.2, 0.2, 0.4).asDiagonal(), state);
   const int jack = system.add_line_actuator("jack", a, b, Vec3::Zero(), state.position,
                                             [](double t) { return 5.0 * std::cos(3.0 * t); });
-  const int twist =
-      system.add_torque_actuator("twist", a, b, Vec3::UnitX(), [](double t) { return 0.2 * t; });
+  const int twist = system.add_torque_actuator("twist", a, b, Vec3::UnitX(), [](double t) { return 0.2 * t; });
   system.assemble(0.0);
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(system.step(1e-3).ok);
   EXPECT_LT(system.momentum().norm(), 1e-12);
@@ -52,8 +51,7 @@ TEST(Actuator, restored_actuators_continue_bit_for_bit) {
     vehicle::BodyState state;
     state.position = Vec3(0.0, 0.0, -1.0);
     const int bob = system.add_body("bob", 2.0, 0.1 * Mat3::Identity(), state);
-    const int pin =
-        system.add_joint(vehicle::JointKind::revolute, "pin", vehicle::kGround, bob, hinge(Vec3::Zero()));
+    const int pin = system.add_joint(vehicle::JointKind::revolute, "pin", vehicle::kGround, bob, hinge(Vec3::Zero()));
     system.add_joint_actuator("held", pin);
     system.add_joint_actuator("law", pin, [](double t) { return std::sin(t); });
     system.assemble(0.0);

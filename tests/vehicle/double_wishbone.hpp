@@ -1,5 +1,6 @@
 // The kinematics of a double wishbone on its own: five points of the upright, found by Newton's method from nothing but
-// distances. The wheel is lifted and the tie rod moved in small steps, so that the posture stays the drawn one's neighbour.
+// distances. The wheel is lifted and the tie rod moved in small steps, so that the posture stays the drawn one's
+// neighbour.
 #pragma once
 
 #include <Eigen/LU>
@@ -36,9 +37,7 @@ class DoubleWishbone {
           Vector up = x, down = x;
           up[k] += 1e-6;
           down[k] -= 1e-6;
-          J.col(k) =
-              (residuals(up, share * travel, share * rod) - residuals(down, share * travel, share * rod)) /
-              2e-6;
+          J.col(k) = (residuals(up, share * travel, share * rod) - residuals(down, share * travel, share * rod)) / 2e-6;
         }
         x -= J.partialPivLu().solve(residual);
         if (residual.norm() < 1e-14) break;
@@ -79,9 +78,7 @@ class DoubleWishbone {
     const auto from_fixed = [&](int k, const Vec3& point, const Vec3& drawn) {
       r[i++] = (at(k) - point).norm() - (drawn_[k] - drawn).norm();
     };
-    const auto between = [&](int a, int b) {
-      r[i++] = (at(a) - at(b)).norm() - (drawn_[a] - drawn_[b]).norm();
-    };
+    const auto between = [&](int a, int b) { r[i++] = (at(a) - at(b)).norm() - (drawn_[a] - drawn_[b]).norm(); };
     from_fixed(kUpper, spec_.upper_arm.chassis_front, spec_.upper_arm.chassis_front);
     from_fixed(kUpper, spec_.upper_arm.chassis_back, spec_.upper_arm.chassis_back);
     from_fixed(kLower, spec_.lower_arm.chassis_front, spec_.lower_arm.chassis_front);

@@ -15,8 +15,7 @@ TEST(Drift, stays_below_1e_9_over_a_million_steps) {
   const int wheel = system.add_body("wheel", 4.0, Vec3(0.1, 0.2, 0.1).asDiagonal(), state);
   vehicle::JointPlace axle;
   axle.axis = Vec3::UnitY();
-  const int bearing =
-      system.add_joint(vehicle::JointKind::revolute, "bearing", vehicle::kGround, wheel, axle);
+  const int bearing = system.add_joint(vehicle::JointKind::revolute, "bearing", vehicle::kGround, wheel, axle);
   system.add_motor("motor", bearing, [](double t) { return vehicle::Motion{8.56 * t, 8.56}; });
   state.position = Vec3(0.3, 0.0, -0.6);
   const int bob = system.add_body("bob", 1.0, Vec3(0.01, 0.02, 0.03).asDiagonal(), state);
@@ -36,6 +35,6 @@ TEST(Drift, stays_below_1e_9_over_a_million_steps) {
     if (i % 1000 == 999) worst = std::max(worst, system.max_violation());
   }
   EXPECT_EQ(system.time(), steps * 4e-5);
-  verification::verify("linkage with motor and damper, 1,000,000 steps",
-                       "largest violation of a constraint, m and rad", worst, 0.0, 1e-11, "constraints", 1.0);
+  verification::verify("linkage with motor and damper, 1,000,000 steps", "largest violation of a constraint, m and rad",
+                       worst, 0.0, 1e-11, "constraints", 1.0);
 }

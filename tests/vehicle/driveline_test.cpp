@@ -15,8 +15,7 @@
 #include "vehicle/driveline/torque_converter.hpp"
 
 using namespace furrow;
-using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of,
-    furrow::testing::torque;
+using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of, furrow::testing::torque;
 using vehicle::Gearbox, vehicle::kGround, vehicle::Table;
 
 namespace {
@@ -30,12 +29,10 @@ Table rpm_table(const std::string& name, std::vector<std::pair<double, double>> 
 
 // Engine and converter of a HMMWV.
 vehicle::EngineOptions engine_options() {
-  return {rpm_table("full", {{-100, 300}, {800, 382},  {900, 490},  {1000, 579}, {1100, 650},
-                             {1200, 706}, {1300, 746}, {1400, 774}, {1500, 789}, {1600, 793},
-                             {1700, 788}, {1800, 774}, {1900, 754}, {2000, 728}, {2100, 697},
-                             {2200, 664}, {2300, 628}, {2400, 593}, {2500, 558}, {2700, -400}}),
-          rpm_table("losses", {{-50, 30}, {0, 0}, {50, -30}, {1000, -50}, {2000, -70}, {3000, -90}}), 0.0,
-          10.0};
+  return {rpm_table("full", {{-100, 300}, {800, 382},  {900, 490},  {1000, 579}, {1100, 650}, {1200, 706}, {1300, 746},
+                             {1400, 774}, {1500, 789}, {1600, 793}, {1700, 788}, {1800, 774}, {1900, 754}, {2000, 728},
+                             {2100, 697}, {2200, 664}, {2300, 628}, {2400, 593}, {2500, 558}, {2700, -400}}),
+          rpm_table("losses", {{-50, 30}, {0, 0}, {50, -30}, {1000, -50}, {2000, -70}, {3000, -90}}), 0.0, 10.0};
 }
 
 vehicle::ConverterOptions converter_options() {
@@ -89,11 +86,10 @@ TEST(Converter, stall_balances_the_engine_against_the_square_law) {
   for (int i = 0; i < 20000; ++i) ASSERT_TRUE(system.step(1e-3).ok);
   const double speed = system.shaft(crank).state.speed;
   verification::verify("converter stalled", "torque of the engine, N m",
-                       options.full.value(speed) + options.losses.value(speed), std::pow(speed / 15.0, 2),
-                       1e-8, "square law of the converter");
-  verification::verify("converter stalled", "torque that holds the turbine, N m",
-                       -system.rate_state(stall).torque, 2.0 * std::pow(speed / 15.0, 2), 1e-8,
-                       "twice that of the engine");
+                       options.full.value(speed) + options.losses.value(speed), std::pow(speed / 15.0, 2), 1e-8,
+                       "square law of the converter");
+  verification::verify("converter stalled", "torque that holds the turbine, N m", -system.rate_state(stall).torque,
+                       2.0 * std::pow(speed / 15.0, 2), 1e-8, "twice that of the engine");
   EXPECT_NEAR(speed / kRpm, 2500.0, 200.0);
 }
 
@@ -189,8 +185,7 @@ TEST(Gearbox, shift_under_power_hands_the_torque_over_and_ends_in_time) {
   for (int i = 0; i < 401; ++i) {
     train.run(1);
     if (std::abs(train.speed(train.out) - 0.2 * train.speed(train.in)) < 1e-10) ++held;
-    largest_jump =
-        std::max(largest_jump, std::abs(train.gearbox.output_torque(train.system) - torque_before));
+    largest_jump = std::max(largest_jump, std::abs(train.gearbox.output_torque(train.system) - torque_before));
     torque_before = train.gearbox.output_torque(train.system);
     EXPECT_TRUE(i != 398 || train.gearbox.shifting());
   }
@@ -286,10 +281,8 @@ TEST(Driveline, energies_of_engine_converter_shifts_and_brakes_add_up) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
   const int crank = system.add_shaft("crank", 1.1, kGround, x, 800 * kRpm);
   const int turbine = system.add_shaft("turbine", 0.3, kGround, x);
-  const int propeller = system.add_shaft("propeller", 0.5, kGround, x),
-            box = system.add_shaft("box", 0.6, kGround, y);
-  const int left = system.add_shaft("left", 30.0, kGround, y),
-            right = system.add_shaft("right", 32.0, kGround, y);
+  const int propeller = system.add_shaft("propeller", 0.5, kGround, x), box = system.add_shaft("box", 0.6, kGround, y);
+  const int left = system.add_shaft("left", 30.0, kGround, y), right = system.add_shaft("right", 32.0, kGround, y);
   const int frame = system.add_shaft("frame", 1.0, kGround, y);
   vehicle::Engine engine(system, "engine", crank, engine_options());
   vehicle::TorqueConverter converter(system, "converter", crank, turbine, converter_options());
@@ -322,6 +315,5 @@ TEST(Driveline, energies_of_engine_converter_shifts_and_brakes_add_up) {
   EXPECT_GE(shifts, 1);
   EXPECT_GT(brake.heat(system), 0.0);
   const double spent = converter.heat(system) + gearbox.loss(system) + brake.heat(system) + lock.heat(system);
-  EXPECT_NEAR(start + engine.work(system) - spent, system.kinetic_energy(),
-              1e-8 * std::abs(engine.work(system)));
+  EXPECT_NEAR(start + engine.work(system) - spent, system.kinetic_energy(), 1e-8 * std::abs(engine.work(system)));
 }

@@ -28,8 +28,7 @@ TEST(FarAway, the_hmmwv_drives_brakes_and_stands) {
       car.set_inputs(inputs);
       for (int k = 0; k < car.wheel_count(); ++k) car.set_wrench(k, contacts[k].roll(car.rim(k), 4.0));
       const Outcome outcome = car.step(1e-3);
-      ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i << ", " << x
-                              << " m from the origin";
+      ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i << ", " << x << " m from the origin";
     }
     EXPECT_LE(car.system().max_violation(), std::max(1e-11, 8.0 * 2.3e-16 * (x + 10.0)));
     EXPECT_NEAR(car.origin().z(), z, 0.02);

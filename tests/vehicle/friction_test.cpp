@@ -171,10 +171,8 @@ TEST(Brake, works_between_an_upright_that_swings_and_its_wheel_without_turning_t
   const int upright = system.add_body("upright", 20.0, Vec3(0.3, 0.4, 0.2).asDiagonal(), state);
   state.angular_velocity += 30.0 * Vec3::UnitY();
   const int wheel = system.add_body("wheel", 30.0, Vec3(1.0, 2.0, 1.0).asDiagonal(), state);
-  const int bearing =
-      system.add_joint(vehicle::JointKind::revolute, "bearing", upright, wheel, hinge(Vec3::Zero()));
-  const FrictionCoupling brake =
-      FrictionCoupling::brake(system, "brake", upright, wheel, Vec3::UnitY(), 60.0);
+  const int bearing = system.add_joint(vehicle::JointKind::revolute, "bearing", upright, wheel, hinge(Vec3::Zero()));
+  const FrictionCoupling brake = FrictionCoupling::brake(system, "brake", upright, wheel, Vec3::UnitY(), 60.0);
   system.assemble(0.0);
   const Vec3 momentum = system.angular_momentum(Vec3::Zero());
   const double energy = system.kinetic_energy();

@@ -68,8 +68,8 @@ std::vector<KinematicsRow> sweep(const vehicle::VehicleSpec& spec, double radius
 TEST(Kinematics, double_wishbones_match_an_independent_solution_of_distances) {
   const vehicle::VehicleSpec spec = shipped("hmmwv.json");
   const std::string name = "double wishbones of the HMMWV, travel of 80 mm and steering";
-  verification::Worst places(name, "camber, toe, caster, kingpin, scrub, trail, track, spring, rad and m",
-                             kTolerance, "solution of distances");
+  verification::Worst places(name, "camber, toe, caster, kingpin, scrub, trail, track, spring, rad and m", kTolerance,
+                             "solution of distances");
   verification::Worst slopes(name, "roll centre, anti-dive, motion ratio, m and 1", kTolerance,
                              "differences of the solution of distances");
   int compared = 0;
@@ -111,8 +111,7 @@ TEST(Kinematics, wheel_rates_are_the_slope_of_the_springs_force_at_the_wheel) {
       return 0.5 * *suspension.spring->rate * d * d;
     };
     const double e = 2e-3;
-    const double rate =
-        (energy(row.travel + e) - 2.0 * energy(row.travel) + energy(row.travel - e)) / (e * e);
+    const double rate = (energy(row.travel + e) - 2.0 * energy(row.travel) + energy(row.travel - e)) / (e * e);
     EXPECT_NEAR(row.wheel_rate, rate, 1e-3 * rate) << row.wheel << " at " << row.travel;
   }
 }

@@ -26,8 +26,8 @@ struct SliderCrank {
     crank = system.add_body("crank", 1.0, inertia, bar_state(0.5 * pin, phi));
     rod = system.add_body("rod", 0.8, inertia, bar_state(0.5 * (pin + piston), 0.0));
     slider = system.add_body("slider", 2.0, inertia, bar_state(piston, 0.0));
-    crank_pin = system.add_joint(vehicle::JointKind::revolute, "main bearing", vehicle::kGround, crank,
-                                 hinge(Vec3::Zero()));
+    crank_pin =
+        system.add_joint(vehicle::JointKind::revolute, "main bearing", vehicle::kGround, crank, hinge(Vec3::Zero()));
     big_end = system.add_joint(vehicle::JointKind::revolute, "big end", crank, rod, hinge(pin));
     // Spherical at one end and cylindrical at the guide: no redundant rows in space.
     small_end = system.add_joint(vehicle::JointKind::spherical, "small end", rod, slider, hinge(piston));
@@ -57,9 +57,8 @@ TEST(SliderCrank, held_crank_carries_the_piston_force_by_virtual_work) {
     // T δφ + F δx = 0
     EXPECT_NEAR(mechanism.system.motor_force(mechanism.motor), -force * SliderCrank::slider_slope(phi), 1e-9);
     // The rod is a two-force member: the guide carries F tan β across.
-    const double tan_beta =
-        SliderCrank::r * std::sin(phi) /
-        std::sqrt(SliderCrank::l * SliderCrank::l - std::pow(SliderCrank::r * std::sin(phi), 2));
+    const double tan_beta = SliderCrank::r * std::sin(phi) /
+                            std::sqrt(SliderCrank::l * SliderCrank::l - std::pow(SliderCrank::r * std::sin(phi), 2));
     const Mat3 axes = mechanism.system.joint(mechanism.guide).frame_a.axes;
     const Vec3 guide = axes * mechanism.system.reaction(mechanism.guide).force;
     EXPECT_NEAR(std::abs(guide.z()), std::abs(force * tan_beta), 1e-8);
@@ -100,17 +99,14 @@ TEST(FourBar, parallelogram_motor_torque_matches_statics_and_redundancy_is_flagg
   const Mat3 inertia = Vec3(0.2, 0.3, 0.2).asDiagonal();
   vehicle::System system;
   const int left = system.add_body("left bar", bar_mass, inertia, bar_state(0.5 * arm, 0.0));
-  const int right =
-      system.add_body("right bar", bar_mass, inertia, bar_state(Vec3(w, 0, 0) + 0.5 * arm, 0.0));
-  const int platform =
-      system.add_body("platform", platform_mass, inertia, bar_state(Vec3(w / 2, 0, 0) + arm, 0.0));
-  const int pivot = system.add_joint(vehicle::JointKind::revolute, "left pivot", vehicle::kGround, left,
-                                     hinge(Vec3::Zero()));
-  system.add_joint(vehicle::JointKind::revolute, "right pivot", vehicle::kGround, right,
-                   hinge(Vec3(w, 0, 0)));
+  const int right = system.add_body("right bar", bar_mass, inertia, bar_state(Vec3(w, 0, 0) + 0.5 * arm, 0.0));
+  const int platform = system.add_body("platform", platform_mass, inertia, bar_state(Vec3(w / 2, 0, 0) + arm, 0.0));
+  const int pivot =
+      system.add_joint(vehicle::JointKind::revolute, "left pivot", vehicle::kGround, left, hinge(Vec3::Zero()));
+  system.add_joint(vehicle::JointKind::revolute, "right pivot", vehicle::kGround, right, hinge(Vec3(w, 0, 0)));
   const int left_pin = system.add_joint(vehicle::JointKind::revolute, "left pin", left, platform, hinge(arm));
-  const int right_pin = system.add_joint(vehicle::JointKind::revolute, "right pin", right, platform,
-                                         hinge(Vec3(w, 0, 0) + arm));
+  const int right_pin =
+      system.add_joint(vehicle::JointKind::revolute, "right pin", right, platform, hinge(Vec3(w, 0, 0) + arm));
   const int motor = system.add_motor("hold", pivot, [](double) { return vehicle::Motion{}; });
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 3);
@@ -120,9 +116,7 @@ TEST(FourBar, parallelogram_motor_torque_matches_statics_and_redundancy_is_flagg
   // +x.
   const double torque = -(platform_mass + bar_mass) * kStandardGravity * l * std::sin(theta);
   EXPECT_NEAR(system.motor_force(motor), torque, 1e-8 * std::abs(torque));
-  const auto world = [&](int joint) {
-    return Vec3(system.joint(joint).frame_a.axes * system.reaction(joint).force);
-  };
+  const auto world = [&](int joint) { return Vec3(system.joint(joint).frame_a.axes * system.reaction(joint).force); };
   EXPECT_NEAR(world(left_pin).z() + world(right_pin).z(), platform_mass * kStandardGravity, 1e-8);
   EXPECT_NEAR(world(left_pin).y(), 0.0, 1e-6);
   EXPECT_LT(system.max_violation(), 1e-12);
@@ -139,14 +133,14 @@ TEST(Joints, universal_joint_turns_shafts_by_the_hooke_relation) {
   const int driver = system.add_body("input", 1.0, inertia, state);
   state.orientation = Quat(Eigen::AngleAxisd(beta, Vec3::UnitY()));
   const int driven = system.add_body("output", 1.0, inertia, state);
-  const int bearing = system.add_joint(vehicle::JointKind::revolute, "input bearing", vehicle::kGround,
-                                       driver, slide(Vec3::Zero(), in));
+  const int bearing = system.add_joint(vehicle::JointKind::revolute, "input bearing", vehicle::kGround, driver,
+                                       slide(Vec3::Zero(), in));
   vehicle::JointPlace cross;
   cross.axis = Vec3::UnitY();                    // fixed in the input shaft
   cross.second_axis = Vec3::UnitY().cross(out);  // fixed in the output shaft
   system.add_joint(vehicle::JointKind::universal, "cross", driver, driven, cross);
-  const int far = system.add_joint(vehicle::JointKind::cylindrical, "output bearing", vehicle::kGround,
-                                   driven, slide(Vec3::Zero(), out));
+  const int far = system.add_joint(vehicle::JointKind::cylindrical, "output bearing", vehicle::kGround, driven,
+                                   slide(Vec3::Zero(), out));
   (void)far;
   system.add_motor("motor", bearing, [=](double t) { return vehicle::Motion{omega * t, omega}; });
   system.assemble(0.0);
@@ -177,6 +171,5 @@ TEST(Joints, distance_joint_is_a_massless_rod) {
   for (int i = 0; i < 2000; ++i) EXPECT_TRUE(system.step(1e-3).ok);
   EXPECT_NEAR(system.body(ball).state.position.norm(), l, 1e-12);
   EXPECT_NEAR(system.body(ball).state.position.z(), -l * std::cos(theta), 1e-5);
-  EXPECT_NEAR(system.reaction(rod).force.norm(), m * kStandardGravity / std::cos(theta),
-              1e-4 * m * kStandardGravity);
+  EXPECT_NEAR(system.reaction(rod).force.norm(), m * kStandardGravity / std::cos(theta), 1e-4 * m * kStandardGravity);
 }

@@ -22,10 +22,9 @@ struct Pendulum {
   vehicle::System system;
   int body, joint;
   explicit Pendulum(double angle, const Vec3& gravity = standard_gravity()) : system(gravity) {
-    body = system.add_body("bob", kMass, Vec3(0.2, kInertia, 0.25).asDiagonal(),
-                           bar_state(hanging(kArm, angle), angle));
-    joint =
-        system.add_joint(vehicle::JointKind::revolute, "hinge", vehicle::kGround, body, hinge(Vec3::Zero()));
+    body =
+        system.add_body("bob", kMass, Vec3(0.2, kInertia, 0.25).asDiagonal(), bar_state(hanging(kArm, angle), angle));
+    joint = system.add_joint(vehicle::JointKind::revolute, "hinge", vehicle::kGround, body, hinge(Vec3::Zero()));
     system.assemble(0.0);
   }
   double angle() const {
@@ -36,8 +35,7 @@ struct Pendulum {
 
 // [Landau & Lifshitz, Mechanics, §11]: T = 4 √(I/(m g a)) K(sin θ₀/2)
 double quarter_period(double amplitude) {
-  return std::sqrt(kHingeInertia / (kMass * kStandardGravity * kArm)) *
-         std::comp_ellint_1(std::sin(0.5 * amplitude));
+  return std::sqrt(kHingeInertia / (kMass * kStandardGravity * kArm)) * std::comp_ellint_1(std::sin(0.5 * amplitude));
 }
 
 double angle_after_quarter(int steps) {
@@ -68,8 +66,7 @@ TEST(Pendulum, energy_stays_bounded_over_many_swings) {
   double largest = 0.0, late = 0.0;
   for (int i = 0; i < 40000; ++i) {
     EXPECT_TRUE(pendulum.system.step(h).ok);
-    const double error =
-        std::abs(pendulum.system.kinetic_energy() + pendulum.system.gravity_energy() - start);
+    const double error = std::abs(pendulum.system.kinetic_energy() + pendulum.system.gravity_energy() - start);
     largest = std::max(largest, error);
     if (i >= 39200) late = std::max(late, error);
   }
@@ -85,8 +82,7 @@ TEST(Pendulum, hinge_carries_weight_and_centripetal_force_at_the_bottom) {
   for (int i = 0; i < steps; ++i) EXPECT_TRUE(pendulum.system.step(h).ok);
   const double omega_sq = 2.0 * kMass * kStandardGravity * kArm * (1.0 - std::cos(1.2)) / kHingeInertia;
   const vehicle::Reaction& reaction = pendulum.system.reaction(pendulum.joint);
-  EXPECT_NEAR(reaction.force.norm(), kMass * (kStandardGravity + kArm * omega_sq),
-              1e-4 * kMass * kStandardGravity);
+  EXPECT_NEAR(reaction.force.norm(), kMass * (kStandardGravity + kArm * omega_sq), 1e-4 * kMass * kStandardGravity);
   EXPECT_LT(reaction.moment.norm(), 1e-9);
 }
 
@@ -98,8 +94,7 @@ TEST(Pendulum, reaction_times_step_is_the_change_of_momentum) {
     EXPECT_TRUE(pendulum.system.step(h).ok);
     const Vec3 change = (pendulum.system.momentum() - before) / h;
     const Mat3 axes = pendulum.system.joint(pendulum.joint).frame_a.axes;
-    const Vec3 sum =
-        axes * pendulum.system.reaction(pendulum.joint).force - Vec3(0, 0, kMass * kStandardGravity);
+    const Vec3 sum = axes * pendulum.system.reaction(pendulum.joint).force - Vec3(0, 0, kMass * kStandardGravity);
     EXPECT_LT((sum - change).norm(), 1e-12 * kMass * kStandardGravity * 10) << i;
   }
 }
@@ -140,10 +135,9 @@ Angles double_pendulum(double first, double second, double end, int steps) {
   vehicle::System system;
   const Mat3 inertia = Vec3(kBarInertia, kBarInertia, 0.01).asDiagonal();
   const Vec3 knee = hanging(kBarLength, first);
-  const int upper =
-      system.add_body("upper", kBarMass, inertia, bar_state(hanging(0.5 * kBarLength, first), first));
-  const int lower = system.add_body("lower", kBarMass, inertia,
-                                    bar_state(knee + hanging(0.5 * kBarLength, second), second));
+  const int upper = system.add_body("upper", kBarMass, inertia, bar_state(hanging(0.5 * kBarLength, first), first));
+  const int lower =
+      system.add_body("lower", kBarMass, inertia, bar_state(knee + hanging(0.5 * kBarLength, second), second));
   system.add_joint(vehicle::JointKind::revolute, "shoulder", vehicle::kGround, upper, hinge(Vec3::Zero()));
   system.add_joint(vehicle::JointKind::revolute, "knee", upper, lower, hinge(knee));
   system.assemble(0.0);

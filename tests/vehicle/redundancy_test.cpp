@@ -14,8 +14,7 @@ using namespace furrow::testing;
 TEST(Redundancy, door_on_two_hinges_has_minimum_norm_reactions) {
   const double m = 30.0, a = 0.4, b = 0.8;
   vehicle::System system;
-  const int door =
-      system.add_body("door", m, Vec3(6.0, 7.0, 2.0).asDiagonal(), bar_state(Vec3(a, 0, 0), 0.0));
+  const int door = system.add_body("door", m, Vec3(6.0, 7.0, 2.0).asDiagonal(), bar_state(Vec3(a, 0, 0), 0.0));
   const int upper = system.add_joint(vehicle::JointKind::revolute, "upper hinge", vehicle::kGround, door,
                                      slide(Vec3(0, 0, b), Vec3::UnitZ()));
   const int lower = system.add_joint(vehicle::JointKind::revolute, "lower hinge", vehicle::kGround, door,
@@ -68,12 +67,10 @@ TEST(Redundancy, contradicting_motors_are_an_error_that_names_one) {
 TEST(Redundancy, joints_that_cannot_be_assembled_are_an_error) {
   vehicle::System system;
   const int block = system.add_body("block", 1.0, Mat3::Identity(), vehicle::BodyState{});
-  system.add_joint(vehicle::JointKind::fixed, "here", vehicle::kGround, block,
-                   slide(Vec3::Zero(), Vec3::UnitZ()));
+  system.add_joint(vehicle::JointKind::fixed, "here", vehicle::kGround, block, slide(Vec3::Zero(), Vec3::UnitZ()));
   vehicle::BodyState state;
   state.position = Vec3(1.0, 0.0, 0.0);
   system.set_state(block, state);
-  system.add_joint(vehicle::JointKind::fixed, "there", vehicle::kGround, block,
-                   slide(Vec3::Zero(), Vec3::UnitZ()));
+  system.add_joint(vehicle::JointKind::fixed, "there", vehicle::kGround, block, slide(Vec3::Zero(), Vec3::UnitZ()));
   EXPECT_THROW(system.assemble(0.0), Error);
 }

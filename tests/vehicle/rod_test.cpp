@@ -54,8 +54,7 @@ TEST(RevoluteSpherical, reaction_is_the_statics_of_a_strut) {
   vehicle::System system;
   const int block = system.add_body("block", 10.0, Mat3::Identity(), {});
   const Vec3 foot(-0.3, 0.0, -0.4);
-  system.add_joint(vehicle::JointKind::prismatic, "guide", vehicle::kGround, block,
-                   slide(Vec3::Zero(), Vec3::UnitZ()));
+  system.add_joint(vehicle::JointKind::prismatic, "guide", vehicle::kGround, block, slide(Vec3::Zero(), Vec3::UnitZ()));
   const int strut = system.add_joint(vehicle::JointKind::revolute_spherical, "strut", vehicle::kGround, block,
                                      rod(foot, Vec3::Zero(), Vec3::UnitY()));
   system.assemble(0.0);
@@ -74,8 +73,8 @@ TEST(RevoluteSpherical, an_end_on_the_hinge_is_refused) {
                Error);
 }
 
-// A rack that slides along y steers an upright about z over a tie rod of length L: with the arm r at the angle φ and the
-// rod's inner end Q, r² + Q² − 2 r Q cos(φ − ψ) = L², ψ the direction of Q. The rack carries −T dφ/dy.
+// A rack that slides along y steers an upright about z over a tie rod of length L: with the arm r at the angle φ and
+// the rod's inner end Q, r² + Q² − 2 r Q cos(φ − ψ) = L², ψ the direction of Q. The rack carries −T dφ/dy.
 TEST(Rack, steers_an_upright_by_the_law_of_cosines_and_carries_its_torque) {
   const Vec3 arm(-0.2, 0.05, 0.0), inner(-0.25, -0.4, 0.0);
   const double r = arm.norm(), L = (arm - inner).norm(), torque = 35.0;
@@ -84,28 +83,26 @@ TEST(Rack, steers_an_upright_by_the_law_of_cosines_and_carries_its_torque) {
     const double across = std::acos((r * r + Q.squaredNorm() - L * L) / (2.0 * r * Q.norm()));
     return std::remainder(std::atan2(Q.y(), Q.x()) - across, 2.0 * std::numbers::pi);
   };
-  ASSERT_NEAR(std::remainder(angle_at(0.0) - std::atan2(arm.y(), arm.x()), 2.0 * std::numbers::pi), 0.0,
-              1e-12);
+  ASSERT_NEAR(std::remainder(angle_at(0.0) - std::atan2(arm.y(), arm.x()), 2.0 * std::numbers::pi), 0.0, 1e-12);
   vehicle::System system(Vec3::Zero());
   vehicle::BodyState state;
   state.position = inner;
   const int rack = system.add_body("rack", 9.07, Mat3::Identity(), state);
   const int upright = system.add_body("upright", 19.0, 0.3 * Mat3::Identity(), {});
-  const int slider = system.add_joint(vehicle::JointKind::prismatic, "rack", vehicle::kGround, rack,
-                                      slide(inner, Vec3::UnitY()));
+  const int slider =
+      system.add_joint(vehicle::JointKind::prismatic, "rack", vehicle::kGround, rack, slide(inner, Vec3::UnitY()));
   const int pin = system.add_joint(vehicle::JointKind::revolute, "kingpin", vehicle::kGround, upright,
                                    slide(Vec3::Zero(), Vec3::UnitZ()));
   system.add_joint(vehicle::JointKind::distance, "tie rod", rack, upright, rod(inner, arm, Vec3::UnitZ()));
-  const int motor =
-      system.add_motor("rack drive", slider, [](double t) { return vehicle::step_motion(t, 0.06, 1.0); });
+  const int motor = system.add_motor("rack drive", slider, [](double t) { return vehicle::step_motion(t, 0.06, 1.0); });
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 0);
   system.set_load(upright, Vec3::Zero(), Vec3(0, 0, torque));
   for (int i = 1; i <= 1200; ++i) {
     ASSERT_TRUE(system.step(1e-3).ok);
     const double y = vehicle::step_motion(i * 1e-3, 0.06, 1.0).value;
-    ASSERT_NEAR(system.coordinate(pin).value,
-                std::remainder(angle_at(y) - angle_at(0.0), 2.0 * std::numbers::pi), 1e-11);
+    ASSERT_NEAR(system.coordinate(pin).value, std::remainder(angle_at(y) - angle_at(0.0), 2.0 * std::numbers::pi),
+                1e-11);
   }
   const double slope = (angle_at(0.06 + 1e-6) - angle_at(0.06 - 1e-6)) / 2e-6;
   EXPECT_NEAR(system.motor_force(motor), -torque * slope, 1e-6);

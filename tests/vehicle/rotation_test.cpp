@@ -26,6 +26,5 @@ TEST(Rotation, midpoint_velocity_satisfies_its_equation) {
 TEST(Rotation, midpoint_velocity_says_when_the_step_is_too_long) {
   Vec3 omega;
   const Mat3 J_inverse = Vec3(1.0, 0.1, 10.0).asDiagonal();
-  EXPECT_FALSE(
-      vehicle::midpoint_angular_velocity(Mat3::Identity(), J_inverse, Vec3(300.0, 200.0, 100.0), 0.1, omega));
+  EXPECT_FALSE(vehicle::midpoint_angular_velocity(Mat3::Identity(), J_inverse, Vec3(300.0, 200.0, 100.0), 0.1, omega));
 }

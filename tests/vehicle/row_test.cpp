@@ -31,11 +31,10 @@ TEST(Row, jacobian_matches_central_differences) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto vector = [&] { return Vec3(uniform(generator), uniform(generator), uniform(generator)); };
   const auto placed = [&] {
-    return Placed{3.0 * vector(), Quat(Eigen::AngleAxisd(2.0 * uniform(generator), vector().normalized())),
-                  vector(), vector()};
+    return Placed{3.0 * vector(), Quat(Eigen::AngleAxisd(2.0 * uniform(generator), vector().normalized())), vector(),
+                  vector()};
   };
-  for (const vehicle::RowKind kind :
-       {vehicle::RowKind::offset, vehicle::RowKind::dot, vehicle::RowKind::distance}) {
+  for (const vehicle::RowKind kind : {vehicle::RowKind::offset, vehicle::RowKind::dot, vehicle::RowKind::distance}) {
     for (int sample = 0; sample < 50; ++sample) {
       vehicle::Row row;
       row.kind = kind;
@@ -46,8 +45,8 @@ TEST(Row, jacobian_matches_central_differences) {
       const Placed a = placed(), b = placed();
       const Mat3 R_a = a.orientation.toRotationMatrix(), R_b = b.orientation.toRotationMatrix();
       const vehicle::RowJacobian J = vehicle::row_jacobian(row, {&a.position, &R_a}, {&b.position, &R_b});
-      const double rate = J.v_a.dot(a.velocity) + J.w_a.dot(a.angular_velocity) + J.v_b.dot(b.velocity) +
-                          J.w_b.dot(b.angular_velocity);
+      const double rate =
+          J.v_a.dot(a.velocity) + J.w_a.dot(a.angular_velocity) + J.v_b.dot(b.velocity) + J.w_b.dot(b.angular_velocity);
       const double t = 1e-5;
       const double reference = (value_after(row, a, b, t) - value_after(row, a, b, -t)) / (2.0 * t);
       EXPECT_NEAR(rate, reference, 2e-9) << "kind " << static_cast<int>(kind);
@@ -61,8 +60,7 @@ TEST(Row, angle_jacobian_matches_central_differences_while_the_hinge_holds) {
   const Quat common(Eigen::AngleAxisd(0.9, Vec3(1, -2, 0.5).normalized()));
   const Vec3 axis = common * Vec3::UnitZ(), shared(0.2, 0.7, -0.4);
   const Placed a{Vec3::Zero(), common, Vec3::Zero(), shared};
-  const Placed b{Vec3::Zero(), Quat(Eigen::AngleAxisd(1.3, axis)) * common, Vec3::Zero(),
-                 shared + 2.5 * axis};
+  const Placed b{Vec3::Zero(), Quat(Eigen::AngleAxisd(1.3, axis)) * common, Vec3::Zero(), shared + 2.5 * axis};
   const Mat3 R_a = a.orientation.toRotationMatrix(), R_b = b.orientation.toRotationMatrix();
   EXPECT_NEAR(vehicle::row_value(row, {&a.position, &R_a}, {&b.position, &R_b}), 1.3, 1e-15);
   const vehicle::RowJacobian J = vehicle::row_jacobian(row, {&a.position, &R_a}, {&b.position, &R_b});

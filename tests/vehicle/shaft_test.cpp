@@ -58,16 +58,14 @@ TEST(Gear, pair_accelerates_with_the_reduced_inertia_and_the_carrier_takes_the_d
   // Relative speeds u and the housing's ω about x: Lagrange's equations of the three with total momentum zero.
   // J₁(u + ω) + J₂(g u + ω) + Jₕ ω = 0, energy ½ J₁(u+ω)² + ½ J₂(g u+ω)² + ½ Jₕ ω² = T φ
   const double Jh = 4.0, w_per_u = -(J1 + J2 * g) / (J1 + J2 + Jh);
-  const double effective =
-      J1 * std::pow(1 + w_per_u, 2) + J2 * std::pow(g + w_per_u, 2) + Jh * w_per_u * w_per_u;
+  const double effective = J1 * std::pow(1 + w_per_u, 2) + J2 * std::pow(g + w_per_u, 2) + Jh * w_per_u * w_per_u;
   const double u = T / effective * 1.0;
   const double w = system.body(housing).state.angular_velocity.x();
   EXPECT_NEAR(w, w_per_u * u, 1e-10);
   EXPECT_NEAR(system.shaft(in).state.speed - w, u, 1e-10);
   EXPECT_NEAR(system.shaft(out).state.speed - w, g * u, 1e-10);
-  verification::verify("gear pair in a free housing", "torque at the output, N m",
-                       system.rate_state(gear).torque, J2 * (g + w_per_u) * u / 1.0, 1e-10,
-                       "Lagrange's equations");
+  verification::verify("gear pair in a free housing", "torque at the output, N m", system.rate_state(gear).torque,
+                       J2 * (g + w_per_u) * u / 1.0, 1e-10, "Lagrange's equations");
   EXPECT_LT(system.angular_momentum(Vec3::Zero()).norm(), 1e-11);
   EXPECT_NEAR(system.rate_state(motor).work, system.kinetic_energy(), 1e-10 * system.kinetic_energy());
   EXPECT_NEAR(system.rate_state(gear).work, 0.0, 1e-10);
@@ -77,8 +75,7 @@ TEST(Gear, differential_splits_the_torque_exactly_and_planetary_by_willis) {
   vehicle::System system;
   const Vec3 y = Vec3::UnitY();
   const int box = system.add_shaft("box", 0.6, kGround, y);
-  const int left = system.add_shaft("left", 0.4, kGround, y),
-            right = system.add_shaft("right", 0.9, kGround, y);
+  const int left = system.add_shaft("left", 0.4, kGround, y), right = system.add_shaft("right", 0.9, kGround, y);
   const int sun = system.add_shaft("sun", 0.1, kGround, y), ring = system.add_shaft("ring", 0.2, kGround, y);
   system.add_rate_row({"motor", {{box, 1.0}}, {}}, torque(100.0));
   const int differential = vehicle::add_differential(system, "differential", box, left, right);
@@ -88,10 +85,9 @@ TEST(Gear, differential_splits_the_torque_exactly_and_planetary_by_willis) {
   EXPECT_EQ(system.redundant_count(), 0);
   const double h = 1e-3;
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(system.step(h).ok);
-  const double split =
-      0.5 * system.rate_state(differential).torque;  // on each side, constant over the second
-  verification::verify("differential", "speed of the left shaft after 1 s, rad/s",
-                       system.shaft(left).state.speed, split / 0.4, 1e-10, "half of the box's torque");
+  const double split = 0.5 * system.rate_state(differential).torque;  // on each side, constant over the second
+  verification::verify("differential", "speed of the left shaft after 1 s, rad/s", system.shaft(left).state.speed,
+                       split / 0.4, 1e-10, "half of the box's torque");
   verification::verify("differential", "speed of the box after 1 s, rad/s", system.shaft(box).state.speed,
                        (100.0 - 2 * split) / 0.6, 1e-10, "what the outputs leave");
   const double lambda = system.rate_state(set).torque;
@@ -139,10 +135,8 @@ struct Gyroscope {
     system.add_joint(vehicle::JointKind::spherical, "pivot", kGround, frame, pivot);
     if (as_body) {
       state.angular_velocity += speed * Vec3::UnitX();
-      const int rotor =
-          system.add_body("rotor", rotor_mass, Vec3(J, transverse, transverse).asDiagonal(), state);
-      system.add_joint(vehicle::JointKind::revolute, "bearing", frame, rotor,
-                       slide(state.position, Vec3::UnitX()));
+      const int rotor = system.add_body("rotor", rotor_mass, Vec3(J, transverse, transverse).asDiagonal(), state);
+      system.add_joint(vehicle::JointKind::revolute, "bearing", frame, rotor, slide(state.position, Vec3::UnitX()));
     } else {
       system.add_shaft("rotor", J, frame, Vec3::UnitX(), speed);
     }
@@ -160,8 +154,8 @@ TEST(Shaft, gyroscope_moves_like_one_whose_rotor_is_a_body) {
   const Vec3 reference = Gyroscope(true).after(0.5, 40000);
   const double coarse = (Gyroscope(false).after(0.5, 500) - reference).norm();
   const double fine = (Gyroscope(false).after(0.5, 1000) - reference).norm();
-  verification::verify("gyroscope, 0.5 s in 1000 steps", "distance to one whose rotor is a body, m", fine,
-                       0.0, 1e-4, "40,000 steps", 1.0);
+  verification::verify("gyroscope, 0.5 s in 1000 steps", "distance to one whose rotor is a body, m", fine, 0.0, 1e-4,
+                       "40,000 steps", 1.0);
   verification::verify("gyroscope", "error of steps twice as long", coarse / fine, 4.0, 0.1, "second order");
 }
 

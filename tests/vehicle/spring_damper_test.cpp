@@ -43,17 +43,15 @@ TEST(SpringDamper, follows_its_discrete_recurrence) {
     EXPECT_TRUE(slider.system.step(h).ok);
     ASSERT_NEAR(slider.x(), x, 1e-12) << i;
     ASSERT_NEAR(slider.v(), v, 1e-11) << i;
-    ASSERT_NEAR(slider.system.element_force(slider.element), force + 0.5 * (-k * (x - rest) - c * half), 1e-6)
-        << i;
+    ASSERT_NEAR(slider.system.element_force(slider.element), force + 0.5 * (-k * (x - rest) - c * half), 1e-6) << i;
   }
 }
 
 TEST(SpringDamper, damped_oscillation_matches_closed_form_with_second_order) {
   const double m = 10.0, k = 4000.0, c = 80.0, x0 = 0.2, end = 0.7;
-  const double equilibrium = -m * kStandardGravity / k, decay = 0.5 * c / m,
-               w = std::sqrt(k / m - decay * decay);
-  const double reference = equilibrium + std::exp(-decay * end) * (x0 - equilibrium) *
-                                             (std::cos(w * end) + decay / w * std::sin(w * end));
+  const double equilibrium = -m * kStandardGravity / k, decay = 0.5 * c / m, w = std::sqrt(k / m - decay * decay);
+  const double reference =
+      equilibrium + std::exp(-decay * end) * (x0 - equilibrium) * (std::cos(w * end) + decay / w * std::sin(w * end));
   const auto error_of = [&](int steps) {
     Slider slider(m, k, 0.0, c, x0, 0.0);
     for (int i = 0; i < steps; ++i) EXPECT_TRUE(slider.system.step(end / steps).ok);

@@ -17,9 +17,8 @@ namespace {
 const std::vector<std::pair<double, double>> kSpring = {
     {0.02, 3629.923},  {0.04, 8991.945},   {0.06, 17818.165},  {0.08, 31840.681},  {0.10, 52791.592},
     {0.12, 82402.997}, {0.14, 122406.996}, {0.16, 174535.686}, {0.18, 240521.166}, {0.20, 322095.536}};
-const std::vector<std::pair<double, double>> kStop = {{0.0, 0.0},      {0.01, 1000.0}, {0.02, 2500.0},
-                                                      {0.03, 4500.0},  {0.04, 7500.0}, {0.05, 12500.0},
-                                                      {0.06, 125000.0}};
+const std::vector<std::pair<double, double>> kStop = {{0.0, 0.0},     {0.01, 1000.0},  {0.02, 2500.0},  {0.03, 4500.0},
+                                                      {0.04, 7500.0}, {0.05, 12500.0}, {0.06, 125000.0}};
 
 vehicle::ShockOptions hmmwv_shock() {
   vehicle::ShockOptions o;
@@ -78,15 +77,9 @@ TEST(Table, wrong_tables_are_refused_with_what_was_expected) {
     return std::string("accepted");
   };
   EXPECT_NE(text_of([] { Table("map", {{0, 1}}); }).find("two points"), std::string::npos);
-  EXPECT_NE(text_of([] {
-              Table("map", {{0, 1}, {2, 1}, {2, 3}});
-            }).find("expected rising"),
-            std::string::npos);
+  EXPECT_NE(text_of([] { Table("map", {{0, 1}, {2, 1}, {2, 3}}); }).find("expected rising"), std::string::npos);
   EXPECT_NE(text_of([] { Table("map", {{0, 1}, {2, std::nan("")}}); }).find("finite"), std::string::npos);
-  EXPECT_NE(text_of([] {
-              Table::odd("map", {{-1, 1}, {2, 3}});
-            }).find("expected a positive"),
-            std::string::npos);
+  EXPECT_NE(text_of([] { Table::odd("map", {{-1, 1}, {2, 3}}); }).find("expected a positive"), std::string::npos);
 }
 
 namespace {
@@ -105,8 +98,7 @@ struct Strut {
                                        slide(state.position, Vec3::UnitZ()));
     (void)guide;
     if (spring)
-      element =
-          system.add_line_element("spring", vehicle::kGround, mass, Vec3::Zero(), state.position, spring),
+      element = system.add_line_element("spring", vehicle::kGround, mass, Vec3::Zero(), state.position, spring),
       system.track_energy(element);
     if (damper)
       shock = system.add_line_element("shock", vehicle::kGround, mass, Vec3::Zero(), state.position, damper),
@@ -149,8 +141,7 @@ TEST(Spring, mass_that_bounces_between_the_stops_keeps_energy_to_second_order) {
     double worst = 0.0;
     for (int i = 0; i < steps; ++i) {
       EXPECT_TRUE(strut.system.step(0.5 / steps).ok);
-      worst = std::max(worst,
-                       std::abs(strut.energy() + strut.system.element_energy(strut.element).stored - start));
+      worst = std::max(worst, std::abs(strut.energy() + strut.system.element_energy(strut.element).stored - start));
     }
     // The elastic part's own work is what kinetic and gravity energy gained, and nothing is dissipated.
     const vehicle::ElementEnergy energy = strut.system.element_energy(strut.element);

@@ -38,8 +38,7 @@ TEST(FreeBody, symmetric_body_precesses_at_the_closed_form_rate) {
     const Vec3 momentum = system.angular_momentum(Vec3::Zero());
     const double end = 2.0;
     for (int i = 0; i < steps; ++i) EXPECT_TRUE(system.step(end / steps).ok);
-    const Vec3 reference =
-        Eigen::AngleAxisd(momentum.norm() / transverse * end, momentum.normalized()) * Vec3::UnitZ();
+    const Vec3 reference = Eigen::AngleAxisd(momentum.norm() / transverse * end, momentum.normalized()) * Vec3::UnitZ();
     return (system.body(0).R.col(2) - reference).norm();
   };
   const double coarse = error_of(1000), fine = error_of(2000);
@@ -52,8 +51,7 @@ TEST(FreeBody, symmetric_body_precesses_at_the_closed_form_rate) {
 TEST(Top, steady_precession_matches_goldstein) {
   const double m = 1.2, l = 0.15, axial = 4e-3, central = 3e-3, tilt = 0.6, precession = 2.0;
   const double transverse = central + m * l * l;
-  const double spin =
-      (m * 9.81 * l + transverse * precession * precession * std::cos(tilt)) / (axial * precession);
+  const double spin = (m * 9.81 * l + transverse * precession * precession * std::cos(tilt)) / (axial * precession);
   vehicle::System system;
   vehicle::BodyState state;
   state.orientation = Quat(Eigen::AngleAxisd(tilt, Vec3::UnitY()));
@@ -62,8 +60,7 @@ TEST(Top, steady_precession_matches_goldstein) {
   state.angular_velocity = precession * (Vec3::UnitZ() - std::cos(tilt) * axis) + spin * axis;
   state.velocity = state.angular_velocity.cross(state.position);
   const int top = system.add_body("top", m, Vec3(central, central, axial).asDiagonal(), state);
-  const int tip =
-      system.add_joint(vehicle::JointKind::spherical, "tip", vehicle::kGround, top, vehicle::JointPlace{});
+  const int tip = system.add_joint(vehicle::JointKind::spherical, "tip", vehicle::kGround, top, vehicle::JointPlace{});
   system.assemble(0.0);
   const int steps = 20000;
   const double end = 1.0;
@@ -81,6 +78,5 @@ TEST(Top, steady_precession_matches_goldstein) {
   EXPECT_NEAR(force.head<2>().norm(), m * precession * precession * l * std::sin(tilt), 2e-3 * m * 9.81);
   EXPECT_LT(system.reaction(tip).moment.norm(), 1e-10);
   EXPECT_NEAR(system.angular_momentum(Vec3::Zero()).z(),
-              axial * spin * std::cos(tilt) + transverse * precession * std::sin(tilt) * std::sin(tilt),
-              1e-12);
+              axial * spin * std::cos(tilt) + transverse * precession * std::sin(tilt) * std::sin(tilt), 1e-12);
 }

@@ -56,18 +56,17 @@ TEST(Trim, hmmwv_stands_at_the_drawn_height_with_the_axle_loads_of_hand_statics)
                             1.605 * (1244.98 + 64.5 * std::cos(18.5 * std::numbers::pi / 180.0));
     const double front =
         2.0 * ((14.705 + 18.8 + 19.45) * (1688.965 - 40.0) + 5.813 * (1688.965 - 106.0) + 23.965 * 1688.965);
-    const double rear = 2.0 * ((14.705 + 18.8 + 19.45) * (-1688.965 + 36.0) + 5.813 * (-1688.965 + 124.0) -
-                               23.965 * 1688.965);
+    const double rear =
+        2.0 * ((14.705 + 18.8 + 19.45) * (-1688.965 + 36.0) + 5.813 * (-1688.965 + 124.0) - 23.965 * 1688.965);
     const double mass = 2422.739;
     const double x = (2086.52 * 56.0 + steering + front + rear) / mass;
     const double by_hand = mass * kStandardGravity * (x + 1652.965) / 3301.93;
-    verification::verify(std::string(name) + " at rest", "load of the front axle, N", trim.axle_loads[0],
-                         by_hand, 2e-3, "hand statics of the drawn points");
+    verification::verify(std::string(name) + " at rest", "load of the front axle, N", trim.axle_loads[0], by_hand, 2e-3,
+                         "hand statics of the drawn points");
     // In the posture itself: the sums are exact.
     EXPECT_NEAR(trim.axle_loads[0] + trim.axle_loads[1], car.mass() * kStandardGravity, 1e-6);
     const double xf = car.rim(0).position.x(), xr = car.rim(2).position.x();
-    EXPECT_NEAR(trim.axle_loads[0],
-                car.mass() * kStandardGravity * (center_of_mass(car).x() - xr) / (xf - xr), 0.5)
+    EXPECT_NEAR(trim.axle_loads[0], car.mass() * kStandardGravity * (center_of_mass(car).x() - xr) / (xf - xr), 0.5)
         << name;
     EXPECT_NEAR(trim.wheels[0].load, trim.wheels[1].load, 3.0) << name;  // the Pitman arm is on the left
     EXPECT_NEAR(trim.roll, 0.0, 1e-3);
@@ -92,8 +91,7 @@ TEST(Trim, struts_know_their_stops_and_the_vehicle_stays_where_it_was_put) {
   // At rest it stays: accelerations of the whole are zero with the trim's wheel loads.
   for (int k = 0; k < 4; ++k) {
     const Vec3 axle = car.rim(k).orientation * Vec3::UnitY();
-    const Vec3 arm =
-        (car.rim(k).position.z() - 0.3) / (1.0 - axle.z() * axle.z()) * (axle.z() * axle - Vec3::UnitZ());
+    const Vec3 arm = (car.rim(k).position.z() - 0.3) / (1.0 - axle.z() * axle.z()) * (axle.z() * axle - Vec3::UnitZ());
     const Vec3 force(0, 0, trim.wheels[k].load);
     car.set_wrench(k, {force, arm.cross(force)});
   }
@@ -120,8 +118,8 @@ TEST(Trim, on_a_slope_axles_and_sides_carry_what_hand_statics_say) {
     double load = 0.0;
     for (int k = 0; k < 4; ++k) {
       const Vec3 axle = car.rim(k).orientation * Vec3::UnitY();
-      const Vec3 touches = car.rim(k).position + car.rim(k).position.z() / (1.0 - axle.z() * axle.z()) *
-                                                     (axle.z() * axle - Vec3::UnitZ());
+      const Vec3 touches = car.rim(k).position +
+                           car.rim(k).position.z() / (1.0 - axle.z() * axle.z()) * (axle.z() * axle - Vec3::UnitZ());
       moment += touches.cross(Vec3(0.0, 0.0, trim.wheels[k].load));
       load += trim.wheels[k].load;
     }
@@ -133,8 +131,8 @@ TEST(Trim, on_a_slope_axles_and_sides_carry_what_hand_statics_say) {
   }
 }
 
-// A chassis on four wheels in fixed bearings is one rigid body on four springs k at x = a, −b and y = ±s, whose centre of
-// mass lies h above the wheels' centres and H above the ground:
+// A chassis on four wheels in fixed bearings is one rigid body on four springs k at x = a, −b and y = ±s, whose centre
+// of mass lies h above the wheels' centres and H above the ground:
 //   heave and pitch  M = diag(m, J_y), K = [2(k + k), −2k(a − b); ., 2k(a² + b²) − W h]
 //   roll             4 k s² − W H, since a wheel that leans goes down on its edge
 TEST(Trim, modes_of_a_rigid_vehicle_on_four_springs_match_the_closed_form) {
@@ -166,21 +164,20 @@ TEST(Trim, modes_of_a_rigid_vehicle_on_four_springs_match_the_closed_form) {
   Eigen::Matrix2d K, M;
   K << 4.0 * k, -2.0 * k * (xf + xr), -2.0 * k * (xf + xr), 2.0 * k * (xf * xf + xr * xr) - W * h;
   M << m, 0.0, 0.0, J(1, 1);
-  const Eigen::Vector2d squares =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(K, M).eigenvalues();
+  const Eigen::Vector2d squares = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d>(K, M).eigenvalues();
   EXPECT_NEAR(trim.pitch, 0.0, 1e-3);
   std::vector<double> found{mode(trim, "heave").frequency, mode(trim, "pitch").frequency};
   std::sort(found.begin(), found.end());
   for (const int k : {0, 1})
-    verification::verify("rigid vehicle on four springs, vibrations", k == 0 ? "heave, Hz" : "pitch, Hz",
-                         found[k], hertz(squares[k]), 1e-5, "closed form");
+    verification::verify("rigid vehicle on four springs, vibrations", k == 0 ? "heave, Hz" : "pitch, Hz", found[k],
+                         hertz(squares[k]), 1e-5, "closed form");
   EXPECT_NEAR(trim.wheels[0].load, W * -xr / (xf - xr) / 2.0, 1e-6 * W);
   EXPECT_NEAR(mode(trim, "roll").frequency, hertz((4.0 * k * s * s - W * centre.z()) / J(0, 0)),
               2e-3 * mode(trim, "roll").frequency);
 }
 
-// Half-car: body (heave, pitch) on wheel rates k_w with unsprung masses on tires k_t. The arms' masses are shared by their
-// ends here, and links do not add to the rates, so that a few per cent remain.
+// Half-car: body (heave, pitch) on wheel rates k_w with unsprung masses on tires k_t. The arms' masses are shared by
+// their ends here, and links do not add to the rates, so that a few per cent remain.
 TEST(Trim, ride_frequencies_of_the_hmmwv_match_a_model_of_two_axles_with_its_wheel_rates) {
   const vehicle::VehicleSpec spec = shipped("hmmwv_tr.json");
   Vehicle car(spec);
@@ -208,13 +205,11 @@ TEST(Trim, ride_frequencies_of_the_hmmwv_match_a_model_of_two_axles_with_its_whe
     K(2 + axle, 2 + axle) += 2.0 * kt;
   }
   const Eigen::Matrix4d mass = M.asDiagonal();
-  const Eigen::Vector4d squares =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d>(K, mass).eigenvalues();
+  const Eigen::Vector4d squares = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d>(K, mass).eigenvalues();
   std::vector<double> body{mode(trim, "heave").frequency, mode(trim, "pitch").frequency};
   std::sort(body.begin(), body.end());
   const auto verify = [](const char* what, double value, double reference) {
-    verification::verify("hmmwv_tr.json, vibrations", what, value, reference, 0.05,
-                         "half-car on its wheel rates");
+    verification::verify("hmmwv_tr.json, vibrations", what, value, reference, 0.05, "half-car on its wheel rates");
   };
   verify("lower of heave and pitch, Hz", body[0], hertz(squares[0]));
   verify("upper of heave and pitch, Hz", body[1], hertz(squares[1]));

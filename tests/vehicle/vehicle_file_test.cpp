@@ -1,5 +1,5 @@
-// Vehicle files: what is shipped follows the schema, the schema has the keys of the specs, and every mistake names file,
-// key and what was expected.
+// Vehicle files: what is shipped follows the schema, the schema has the keys of the specs, and every mistake names
+// file, key and what was expected.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -157,7 +157,8 @@ TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
   EXPECT_EQ(h("/axles/1/name", "front"), "key 'axles[1].name': 'front' is taken, expected another name");
   EXPECT_EQ(h("/axles/0/wheel", nullptr), "key 'axles[0].wheel': is missing, expected an object { }");
   EXPECT_EQ(h("/axles/0/wheel/tire", nullptr), "key 'axles[0].wheel.tire': is missing, expected a text");
-  EXPECT_EQ(h("/axles/0/brake/torque", 0), "key 'axles[0].brake.torque': is 0, expected a number above zero and at most 1e8");
+  EXPECT_EQ(h("/axles/0/brake/torque", 0),
+            "key 'axles[0].brake.torque': is 0, expected a number above zero and at most 1e8");
   EXPECT_EQ(h((s + "/type").c_str(), "mcpherson"),
             "key 'axles[0].suspension.type': is 'mcpherson', expected 'double_wishbone', 'trailing_arm', "
             "'rigid_axle' or 'fixed'");
@@ -173,27 +174,22 @@ TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
   EXPECT_EQ(h((s + "/tie_rod/outer").c_str(), {-0.250, 0.448, 0.054}),
             "key 'axles[0].suspension.tie_rod.outer': is the point of axles[0].suspension.tie_rod.inner, "
             "expected another one");
-  EXPECT_EQ(
-      h((s + "/spring/on").c_str(), "chassis"),
-      "key 'axles[0].suspension.spring.on': is 'chassis', the body of its other end, expected 'lower_arm', "
-      "'upper_arm' or 'upright'");
-  EXPECT_EQ(
-      h((s + "/spring/end").c_str(), {0.104, 0.510, 0.197}),
-      "key 'axles[0].suspension.spring.end': is the point of axles[0].suspension.spring.chassis, expected "
-      "another one");
+  EXPECT_EQ(h((s + "/spring/on").c_str(), "chassis"),
+            "key 'axles[0].suspension.spring.on': is 'chassis', the body of its other end, expected 'lower_arm', "
+            "'upper_arm' or 'upright'");
+  EXPECT_EQ(h((s + "/spring/end").c_str(), {0.104, 0.510, 0.197}),
+            "key 'axles[0].suspension.spring.end': is the point of axles[0].suspension.spring.chassis, expected "
+            "another one");
   EXPECT_EQ(h((s + "/spring/free_length").c_str(), 0),
             "key 'axles[0].suspension.spring.free_length': is 0, expected a number above zero");
-  EXPECT_EQ(
-      h((s + "/spring/force").c_str(), nullptr),
-      "key 'axles[0].suspension.spring.force': is missing, expected a table of forces, or the key rate");
+  EXPECT_EQ(h((s + "/spring/force").c_str(), nullptr),
+            "key 'axles[0].suspension.spring.force': is missing, expected a table of forces, or the key rate");
   EXPECT_EQ(h((s + "/spring/rate").c_str(), 1e5),
             "key 'axles[0].suspension.spring.force': is given beside rate, expected one of the two");
-  EXPECT_EQ(
-      h((s + "/spring/force/2/0").c_str(), 0.01),
-      "key 'axles[0].suspension.spring.force[2]': begins with 0.01 after 0.02, expected a table that rises");
-  EXPECT_EQ(
-      h((s + "/spring/force/2/1").c_str(), 100),
-      "key 'axles[0].suspension.spring.force[2]': ends with 100 after 3629.923, expected forces that rise");
+  EXPECT_EQ(h((s + "/spring/force/2/0").c_str(), 0.01),
+            "key 'axles[0].suspension.spring.force[2]': begins with 0.01 after 0.02, expected a table that rises");
+  EXPECT_EQ(h((s + "/spring/force/2/1").c_str(), 100),
+            "key 'axles[0].suspension.spring.force[2]': ends with 100 after 3629.923, expected forces that rise");
   EXPECT_EQ(h((s + "/spring/force").c_str(), json::array({json::array({0, 0})})),
             "key 'axles[0].suspension.spring.force': has 1 points, expected at least two pairs [x, y]");
   EXPECT_EQ(h((s + "/spring/stop/longest").c_str(), 0.1),
@@ -216,14 +212,12 @@ TEST(VehicleFile, mistakes_in_steering_links_and_hosts_name_their_key) {
   EXPECT_EQ(changed("buggy.json", "/axles/1/steering", shipped_text("buggy.json")["axles"][0]["steering"]),
             "key 'axles[1].steering': is given for a suspension without tie rods, expected the type "
             "double_wishbone");
-  EXPECT_EQ(
-      changed("buggy.json", "/axles/1/suspension/links/1/mirrored", true),
-      "key 'axles[1].suspension.links': has 5 rods (a mirrored one counts twice), expected 4: the axle rises "
-      "and rolls");
-  EXPECT_EQ(
-      changed("rover.json", "/axles/0/suspension/pivot_outer", {-0.10, 0.10, 0.03}),
-      "key 'axles[0].suspension.pivot_outer': is the point of axles[0].suspension.pivot_inner, expected "
-      "another one");
+  EXPECT_EQ(changed("buggy.json", "/axles/1/suspension/links/1/mirrored", true),
+            "key 'axles[1].suspension.links': has 5 rods (a mirrored one counts twice), expected 4: the axle rises "
+            "and rolls");
+  EXPECT_EQ(changed("rover.json", "/axles/0/suspension/pivot_outer", {-0.10, 0.10, 0.03}),
+            "key 'axles[0].suspension.pivot_outer': is the point of axles[0].suspension.pivot_inner, expected "
+            "another one");
   EXPECT_EQ(changed("rover.json", "/axles/2/suspension/on", "last"),
             "key 'axles[2].suspension.on': is 'last', expected the name of an axle with trailing arms");
 }
@@ -238,15 +232,12 @@ TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
             "key 'driveline.gearbox.reverse': is 0.1, expected a number below zero");
   EXPECT_EQ(h("/driveline/gearbox/up_rpm", 1000),
             "key 'driveline.gearbox.up_rpm': is 1000, expected more than down_rpm, 1200");
-  EXPECT_EQ(h("/driveline/engine/torque", nullptr),
-            "key 'driveline.engine.torque': is missing, expected a list");
+  EXPECT_EQ(h("/driveline/engine/torque", nullptr), "key 'driveline.engine.torque': is missing, expected a list");
   EXPECT_EQ(h("/driveline/engine/torque/3/0", 850),
             "key 'driveline.engine.torque[3]': begins with 850 after 900, expected a table that rises");
-  EXPECT_EQ(
-      h("/driveline/engine/losses/3/1", 50),
-      "key 'driveline.engine.losses[3]': drives the engine with 50 N m, expected a torque against its speed");
-  EXPECT_EQ(h("/driveline/engine", nullptr),
-            "key 'driveline.engine': is missing, expected an engine for the clutch");
+  EXPECT_EQ(h("/driveline/engine/losses/3/1", 50),
+            "key 'driveline.engine.losses[3]': drives the engine with 50 N m, expected a torque against its speed");
+  EXPECT_EQ(h("/driveline/engine", nullptr), "key 'driveline.engine': is missing, expected an engine for the clutch");
   EXPECT_EQ(h("/driveline/converter/torque_ratio/3/1", 2),
             "key 'driveline.converter.torque_ratio[3]': gives 1.5 times the power that it takes, expected at "
             "most 1");
@@ -299,9 +290,14 @@ TEST(VehicleFile, magnitudes_beyond_any_vehicle_are_refused_as_the_schema_says) 
   } kTable[] = {
       {"hmmwv.json", "/chassis/mass", 1e9, "key 'chassis.mass': is 1e9, expected a number above zero and at most 1e7",
        "/chassis/mass: is out of range"},
-      {"hmmwv.json", "/chassis/inertia", {1e9, 1e9, 1e9},
-       "key 'chassis.inertia': gives a body of 2086.52 kg a radius of gyration of 848 m, expected at most 100 m", ""},
-      {"hmmwv.json", "/axles/0/wheel/inertia", {1e9, 1e9, 1e9},
+      {"hmmwv.json",
+       "/chassis/inertia",
+       {1e9, 1e9, 1e9},
+       "key 'chassis.inertia': gives a body of 2086.52 kg a radius of gyration of 848 m, expected at most 100 m",
+       ""},
+      {"hmmwv.json",
+       "/axles/0/wheel/inertia",
+       {1e9, 1e9, 1e9},
        "key 'axles[0].wheel.inertia': gives a body of 18.8 kg a radius of gyration of 8.93e+03 m, expected at most "
        "100 m",
        ""},
@@ -337,13 +333,13 @@ TEST(VehicleFile, magnitudes_beyond_any_vehicle_are_refused_as_the_schema_says) 
 TEST(VehicleFile, names_that_are_given_twice_are_refused) {
   const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
   const json gears = shipped_text("hmmwv.json")["driveline"]["gears"];
-  EXPECT_EQ(h("/driveline/gears/1/name", gears[0]["name"]),
-            "key 'driveline.gears[1].name': '" + gears[0]["name"].get<std::string>() +
-                "' is given twice, expected another name");
+  EXPECT_EQ(h("/driveline/gears/1/name", gears[0]["name"]), "key 'driveline.gears[1].name': '" +
+                                                                gears[0]["name"].get<std::string>() +
+                                                                "' is given twice, expected another name");
   const json boxes = shipped_text("hmmwv.json")["driveline"]["differentials"];
-  EXPECT_EQ(h("/driveline/differentials/2/name", boxes[0]["name"]),
-            "key 'driveline.differentials[2].name': '" + boxes[0]["name"].get<std::string>() +
-                "' is given twice, expected another name");
+  EXPECT_EQ(h("/driveline/differentials/2/name", boxes[0]["name"]), "key 'driveline.differentials[2].name': '" +
+                                                                        boxes[0]["name"].get<std::string>() +
+                                                                        "' is given twice, expected another name");
   const json links = shipped_text("buggy.json")["axles"][1]["suspension"]["links"];
   EXPECT_EQ(changed("buggy.json", "/axles/1/suspension/links/1/name", links[0]["name"]),
             "key 'axles[1].suspension.links[1].name': '" + links[0]["name"].get<std::string>() +
@@ -377,7 +373,10 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
       {"hmmwv.json", s + "/spindle/toe_deg", 44.9, "axles[0].suspension.spindle.toe_deg",
        "is 44.9 degrees, usual is up to 10 in magnitude"},
       {"hmmwv.json", s + "/upright/inertia", {1e6, 1e6, 1e6}, "", ""},  // refused
-      {"hmmwv.json", s + "/upright/inertia", {1656, 1934, 436.7}, "axles[0].suspension.upright.inertia",
+      {"hmmwv.json",
+       s + "/upright/inertia",
+       {1656, 1934, 436.7},
+       "axles[0].suspension.upright.inertia",
        "gives a part of 19.45 kg a radius of gyration of 10.2 m in a vehicle of "},
       {"hmmwv.json", "/axles/0/brake/torque", 4e6, "axles[0].brake.torque",
        "gives 4000000 N m: one wheel's brake would lift the whole vehicle of 2423 kg on a lever of 168 m"},
@@ -419,11 +418,8 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
 TEST(VehicleFile, a_clutch_beside_the_converter_is_named) {
   json document = shipped_text("hmmwv.json");
   const json converter = document["driveline"]["converter"];
-  document["driveline"]["clutch"] = {{"in", converter["in"]},
-                                     {"out", converter["out"]},
-                                     {"torque", 500},
-                                     {"open_rpm", 1500},
-                                     {"closed_rpm", 2000}};
+  document["driveline"]["clutch"] = {
+      {"in", converter["in"]}, {"out", converter["out"]}, {"torque", 500}, {"open_rpm", 1500}, {"closed_rpm", 2000}};
   const vehicle::VehicleSpec spec = vehicle::read_vehicle(document, "car.json");
   const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
   ASSERT_EQ(odd.size(), 1U);
@@ -439,7 +435,9 @@ TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {
     const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
     return odd.size() == 1 ? odd.front().first : std::to_string(odd.size()) + " keys";
   };
-  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->ratios = {0.8, 0.4, 0.2}; }),
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) {
+              line.gearbox->ratios = {0.8, 0.4, 0.2};
+            }),
             "driveline.gearbox.ratios");
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->shift_time = 400.0; }),
             "driveline.gearbox.shift_time");
@@ -457,8 +455,7 @@ TEST(VehicleFile, a_gearbox_whose_mark_the_engine_does_not_reach_is_unlikely) {
   const auto odd = vehicle::unlikely_values(spec, mass);
   ASSERT_EQ(odd.size(), 1U);
   EXPECT_EQ(odd[0].first, "driveline.gearbox.up_rpm");
-  EXPECT_EQ(odd[0].second,
-            "is 2600, above the 2599 rpm to which the engine drives it: it will never shift up");
+  EXPECT_EQ(odd[0].second, "is 2600, above the 2599 rpm to which the engine drives it: it will never shift up");
   spec.driveline.engine->torque.back().second = 500;  // an engine without a highest speed
   EXPECT_TRUE(vehicle::unlikely_values(spec, mass).empty());
 }
@@ -469,8 +466,7 @@ TEST(VehicleFile, loops_of_gears_and_trains_that_reach_no_wheel_are_refused) {
   EXPECT_EQ(complaint(text),
             "key 'driveline.shafts[12].name': 'pump' reaches no wheel, expected a train of gears to one");
   text = shipped_text("hmmwv.json");
-  text["driveline"]["gears"].push_back(
-      {{"name", "bypass"}, {"in", "front box"}, {"out", "front drive"}, {"ratio", 5}});
+  text["driveline"]["gears"].push_back({{"name", "bypass"}, {"in", "front box"}, {"out", "front drive"}, {"ratio", 5}});
   EXPECT_EQ(complaint(text),
             "key 'driveline.gears[3]': 'bypass' closes a loop of gears, expected a train without loops");
 }

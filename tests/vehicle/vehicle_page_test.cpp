@@ -42,8 +42,8 @@ TEST(VehiclePage, of_the_hmmwv_has_its_counts_masses_and_stops) {
   EXPECT_EQ(json["wheels"][0]["spring"]["to_shortest_m"], page.trim.wheels[0].spring->to_shortest);
   EXPECT_EQ(json["modes"].size(), page.trim.modes.size());
   const std::string text = vehicle::page_text(page);
-  for (const char* part : {"19, 100 rows, 14 degrees of freedom", "12, 1 more degree",
-                           "4 × a tire, 25.00 kg each", "front left, spring"})
+  for (const char* part :
+       {"19, 100 rows, 14 degrees of freedom", "12, 1 more degree", "4 × a tire, 25.00 kg each", "front left, spring"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
@@ -120,8 +120,7 @@ TEST(VehiclePage, springs_that_rest_in_their_stops_are_named_with_how_far) {
   };
   vehicle::VehicleSpec spec = shipped("hmmwv.json");
   EXPECT_TRUE(stops(spec).empty()) << stops(spec)[0].second;
-  const double length =
-      vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5)).trim.wheels[2].spring->length;
+  const double length = vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5)).trim.wheels[2].spring->length;
   for (vehicle::CornerSpec& corner : spec.axles[1].corners) {
     vehicle::StopSpec& stop = *std::get<vehicle::DoubleWishboneSpec>(corner.suspension).spring->stop;
     stop.shortest = length + 0.02;

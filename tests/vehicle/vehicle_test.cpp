@@ -20,10 +20,8 @@ Wrench simple_tire(const RimState& rim, double radius, double stiffness) {
   Wrench wrench;
   const Vec3 arm(0, 0, -rim.position.z());
   const Vec3 sliding = rim.velocity + rim.angular_velocity.cross(arm);
-  const double load =
-      std::max(0.0, stiffness * (radius - rim.position.z()) - 0.01 * stiffness * rim.velocity.z());
-  wrench.force =
-      Vec3(-0.9 * load * std::tanh(2.0 * sliding.x()), -0.9 * load * std::tanh(2.0 * sliding.y()), load);
+  const double load = std::max(0.0, stiffness * (radius - rim.position.z()) - 0.01 * stiffness * rim.velocity.z());
+  wrench.force = Vec3(-0.9 * load * std::tanh(2.0 * sliding.x()), -0.9 * load * std::tanh(2.0 * sliding.y()), load);
   wrench.moment = arm.cross(wrench.force);
   return wrench;
 }
@@ -44,8 +42,8 @@ void drive(Vehicle& car, int steps, double radius, double stiffness, double h = 
 
 }  // namespace
 
-// 19 bodies with 100 rows and no redundancy leave 14 freedoms: 6 of the chassis, 4 wheels that bounce and 4 that spin. The
-// crank in front of the converter is one more.
+// 19 bodies with 100 rows and no redundancy leave 14 freedoms: 6 of the chassis, 4 wheels that bounce and 4 that spin.
+// The crank in front of the converter is one more.
 TEST(Vehicle, hmmwv_with_pitman_arm_has_19_bodies_100_rows_and_14_and_1_freedoms_and_does_not_drift) {
   Vehicle car(shipped("hmmwv.json"));
   EXPECT_EQ(car.system().body_count(), 19);
@@ -71,7 +69,8 @@ TEST(Vehicle, hmmwv_with_pitman_arm_has_19_bodies_100_rows_and_14_and_1_freedoms
 }
 
 TEST(Vehicle, every_template_leaves_the_wheels_their_travel) {
-  // Buggy: 6 + 2 wishbones + heave and roll of the axle + 4 spins; 7 shafts less gearbox, 2 gears, differential, 2 hubs.
+  // Buggy: 6 + 2 wishbones + heave and roll of the axle + 4 spins; 7 shafts less gearbox, 2 gears, differential, 2
+  // hubs.
   Vehicle buggy(shipped("buggy.json"));
   EXPECT_EQ(buggy.freedoms(), 6 + 2 + 2 + 4 + 7 - 6);
   // Rover: 6 + 2 sprung arms + 2 beams + 6 spins, each with the rotor of its motor.
@@ -119,8 +118,8 @@ TEST(Vehicle, drive_shift_steering_and_brakes_leave_momentum_and_angular_momentu
   }
 }
 
-// Over a step with constant wrenches, the step's own sums: ΔL = h Σ (x̄ × F + M), x̄ the mean of the positions before and
-// after. Gravity acts in each body's centre of mass.
+// Over a step with constant wrenches, the step's own sums: ΔL = h Σ (x̄ × F + M), x̄ the mean of the positions before
+// and after. Gravity acts in each body's centre of mass.
 TEST(Vehicle, moments_of_the_whole_vehicle_about_the_ground_balance_at_every_step) {
   for (const char* name : {"hmmwv.json", "hmmwv_tr.json", "buggy.json"}) {
     Vehicle car(shipped(name));

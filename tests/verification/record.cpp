@@ -15,8 +15,8 @@ double relative_error(double value, double reference, double scale) {
   return std::abs(value - reference) / (scale > 0.0 ? scale : std::abs(reference));
 }
 
-void append(const std::string& test_case, const std::string& quantity, double value, double reference,
-            double error, double tolerance, const std::string& source) {
+void append(const std::string& test_case, const std::string& quantity, double value, double reference, double error,
+            double tolerance, const std::string& source) {
   const char* path = std::getenv("FURROW_VERIFICATION_CSV");
   if (path == nullptr || *path == '\0') return;
   std::ofstream out(path, std::ios::app);
@@ -29,23 +29,19 @@ void append(const std::string& test_case, const std::string& quantity, double va
 
 }  // namespace
 
-void verify(const std::string& test_case, const std::string& quantity, double value, double reference,
-            double tolerance, const std::string& source, double scale) {
+void verify(const std::string& test_case, const std::string& quantity, double value, double reference, double tolerance,
+            const std::string& source, double scale) {
   const double error = relative_error(value, reference, scale);
   append(test_case, quantity, value, reference, error, tolerance, source);
   // Written so that a NaN fails.
-  EXPECT_TRUE(error <= tolerance) << test_case << ", " << quantity << ": " << value << ", reference "
-                                  << reference << " [" << source << "], relative error " << error
-                                  << ", tolerance " << tolerance;
+  EXPECT_TRUE(error <= tolerance) << test_case << ", " << quantity << ": " << value << ", reference " << reference
+                                  << " [" << source << "], relative error " << error << ", tolerance " << tolerance;
 }
 
 std::string brief(double x) { return fmt::format("{:.4g}", x); }
 
 Worst::Worst(std::string test_case, std::string quantity, double tolerance, std::string source)
-    : case_(std::move(test_case)),
-      quantity_(std::move(quantity)),
-      source_(std::move(source)),
-      tolerance_(tolerance) {}
+    : case_(std::move(test_case)), quantity_(std::move(quantity)), source_(std::move(source)), tolerance_(tolerance) {}
 
 void Worst::add(double value, double reference, double scale, const std::string& where) {
   const double error = relative_error(value, reference, scale);

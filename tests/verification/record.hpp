@@ -8,8 +8,8 @@
 namespace furrow::verification {
 
 /// Compares one value. The relative error is |value − reference| / scale; scale 0 takes |reference|.
-void verify(const std::string& test_case, const std::string& quantity, double value, double reference,
-            double tolerance, const std::string& source, double scale = 0.0);
+void verify(const std::string& test_case, const std::string& quantity, double value, double reference, double tolerance,
+            const std::string& source, double scale = 0.0);
 
 /// A short form of a number, for names of points.
 std::string brief(double x);

@@ -55,8 +55,8 @@ void AncfTire::set_pressure(double pressure) {
   const double before = integrator_.shell().pressure();
   if (pressure == before) return;
   if (placed_)
-    pressure_work_ += (pressure - before) *
-                      (integrator_.shell().volume(integrator_.q(), rim_.position) - undeformed_volume_);
+    pressure_work_ +=
+        (pressure - before) * (integrator_.shell().volume(integrator_.q(), rim_.position) - undeformed_volume_);
   integrator_.set_pressure(pressure);
 }
 
@@ -102,8 +102,8 @@ Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, i
   FURROW_ASSERT(placed_, substeps);
   FURROW_ASSERT(substeps > 0 && rim.duration() > 0.0, substeps, rim.duration());
   FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
-  FURROW_ASSERT(forces.tangent.empty() || forces.tangent.size() == forces.vertex.size(),
-                forces.tangent.size(), forces.vertex.size());
+  FURROW_ASSERT(forces.tangent.empty() || forces.tangent.size() == forces.vertex.size(), forces.tangent.size(),
+                forces.vertex.size());
   FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
                             [&](int v) { return in_range(v, surface_mesh_.vertex_count); }),
                 surface_mesh_.vertex_count);
@@ -124,14 +124,12 @@ Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, i
     if (vertex < ring_.nodes()) {
       const int i = vertex / ring_.rows, j = vertex % ring_.rows;
       layout.set(force_, i, j, 0, forces.force[k]);
-      const bool answers =
-          !forces.tangent.empty() && j > 0 && j + 1 < ring_.rows &&
-          !(forces.tangent[k].stiffness.isZero(0.0) && forces.tangent[k].damping.isZero(0.0));
+      const bool answers = !forces.tangent.empty() && j > 0 && j + 1 < ring_.rows &&
+                           !(forces.tangent[k].stiffness.isZero(0.0) && forces.tangent[k].damping.isZero(0.0));
       if (answers) answering_.emplace_back(k, contact.add(i, j, forces.force[k], forces.tangent[k]));
       continue;
     }
-    const Mat3 mean =
-        0.5 * (rim.start().orientation.toRotationMatrix() + rim.end().orientation.toRotationMatrix());
+    const Mat3 mean = 0.5 * (rim.start().orientation.toRotationMatrix() + rim.end().orientation.toRotationMatrix());
     disc.force += forces.force[k];
     disc.moment += (mean * ring_.disc_centre(vertex - ring_.nodes())).cross(forces.force[k]);
   }
@@ -149,8 +147,7 @@ void AncfTire::acted(NodalForces& forces) const {
   FURROW_ASSERT(answering_.empty() || interval_ > 0.0, answering_.size(), interval_);
   FURROW_ASSERT(answering_.empty() || answering_.back().first < forces.force.size(), answering_.size(),
                 forces.force.size());
-  for (const auto& [k, entry] : answering_)
-    forces.force[k] = integrator_.contact().impulse(entry) / interval_;
+  for (const auto& [k, entry] : answering_) forces.force[k] = integrator_.contact().impulse(entry) / interval_;
 }
 
 /// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.

@@ -15,8 +15,7 @@ namespace furrow::tire {
 class AncfTire final : public Tire {
  public:
   /// @param alive  called now and then while the tire is inflated; may throw to stop
-  explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {},
-                    std::function<void()> alive = {});
+  explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {}, std::function<void()> alive = {});
 
   const SurfaceMesh& mesh() const override { return surface_mesh_; }
   ContactMaterial material() const override { return material_; }
@@ -64,7 +63,7 @@ class AncfTire final : public Tire {
   double pressure_work_ = 0.0;
   Field force_;  // of the running interval
   std::vector<std::pair<std::size_t, std::size_t>>
-      answering_;  // of the last interval: forces that answered to the motion, and their numbers there
+      answering_;              // of the last interval: forces that answered to the motion, and their numbers there
   double interval_ = 0.0;      // s
   Vec3 about_ = Vec3::Zero();  // where its moments are taken, m
 };

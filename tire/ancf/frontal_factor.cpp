@@ -87,8 +87,7 @@ bool FrontalFactor::factorize(std::span<const float> values, std::span<const cha
   return std::none_of(fronts_.begin(), fronts_.end(), failed);
 }
 
-void FrontalFactor::eliminate(const std::vector<int>& supernodes, std::span<const float> values,
-                              Front& front) {
+void FrontalFactor::eliminate(const std::vector<int>& supernodes, std::span<const float> values, Front& front) {
   for (const int s : supernodes)
     if (dirty_[s] && !eliminate(s, values, front)) {
       front.failed = true;
@@ -112,10 +111,9 @@ void FrontalFactor::gather(int s, std::span<const float> values, std::vector<flo
     const int n = static_cast<int>(to.size());
     for (int c = 0; c < n; ++c) {
       const float* from = passed_[child].data() + static_cast<std::size_t>(c) * n;
-      float* column =
-          to[c] < p.columns
-              ? columns.data() + static_cast<std::size_t>(to[c]) * rows
-              : passed_[s].data() + static_cast<std::size_t>(to[c] - p.columns) * p.below - p.columns;
+      float* column = to[c] < p.columns
+                          ? columns.data() + static_cast<std::size_t>(to[c]) * rows
+                          : passed_[s].data() + static_cast<std::size_t>(to[c] - p.columns) * p.below - p.columns;
       for (int r = c; r < n; ++r) column[to[r]] += from[r];
     }
   }

@@ -62,7 +62,7 @@ class FrontalFactor {
   std::vector<std::vector<int>> place_in_parent_;  // of the rows below, in the parent's front
   std::vector<std::vector<Place>> entries_;        // of each supernode
   std::vector<std::vector<char>> holds_;           // [supernode][group]
-  std::vector<std::vector<float>> passed_;  // Schur complement of each supernode, lower triangle by columns
+  std::vector<std::vector<float>> passed_;         // Schur complement of each supernode, lower triangle by columns
   std::vector<char> dirty_;
   std::vector<float> factor_, work_;
   std::vector<Front> fronts_;  // of each branch

@@ -61,8 +61,7 @@ PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_star
     panel.rows = static_cast<int>(row_.size());
     panel.data = values_;
     row_.insert(row_.end(), row_number + row_start[s] + panel.columns, row_number + row_start[s + 1]);
-    values_ += triangle_values(panel.columns) +
-               static_cast<std::size_t>(kStrip) * strips(panel.below) * panel.columns;
+    values_ += triangle_values(panel.columns) + static_cast<std::size_t>(kStrip) * strips(panel.below) * panel.columns;
     widest = std::max(widest, panel.columns);
     tallest = std::max(tallest, panel.below);
     panels_.push_back(panel);
@@ -71,8 +70,7 @@ PanelPattern::PanelPattern(int supernodes, const int* super, const int* row_star
   work_ = kStrip * static_cast<std::size_t>(strips(widest) + strips(tallest)) +
           kFloatLanes * static_cast<std::size_t>(widest) + 4 * kStrip;
   std::vector<int> panel_of(size_);
-  for (int s = 0; s < supernodes; ++s)
-    std::fill_n(panel_of.begin() + panels_[s].first, panels_[s].columns, s);
+  for (int s = 0; s < supernodes; ++s) std::fill_n(panel_of.begin() + panels_[s].first, panels_[s].columns, s);
   for (const Panel& p : panels_) parent_.push_back(p.below > 0 ? panel_of[rows(p)[0]] : -1);
   cut();
 }
@@ -164,8 +162,7 @@ void PanelPattern::forward(const std::vector<int>& panels, const float* values, 
   }
 }
 
-void PanelPattern::backward(const std::vector<int>& panels, const float* values, float* x,
-                            float* work) const {
+void PanelPattern::backward(const std::vector<int>& panels, const float* values, float* x, float* work) const {
   for (std::size_t n = panels.size(); n-- > 0;) {
     const Panel& p = panels_[panels[n]];
     float* partial = work;
@@ -179,8 +176,7 @@ void PanelPattern::backward(const std::vector<int>& panels, const float* values,
       a = multiply_transposed(a, p.columns, gathered, partial);
     }
     float* own = work + kFloatLanes * p.columns;
-    for (int k = 0; k < p.columns; ++k)
-      own[k] = x[p.first + k] - simd::sum(simd::load(partial + kFloatLanes * k));
+    for (int k = 0; k < p.columns; ++k) own[k] = x[p.first + k] - simd::sum(simd::load(partial + kFloatLanes * k));
     std::fill(own + p.columns, own + strips(p.columns) * kStrip, 0.0f);
     std::fill(partial, partial + kFloatLanes * p.columns, 0.0f);
     for (int s = 0; s < strips(p.columns); ++s)
@@ -189,8 +185,7 @@ void PanelPattern::backward(const std::vector<int>& panels, const float* values,
   }
 }
 
-void PanelPattern::solve(const std::vector<float>& values, float* x, std::vector<float>& work,
-                         int threads) const {
+void PanelPattern::solve(const std::vector<float>& values, float* x, std::vector<float>& work, int threads) const {
   if (work.size() < kBranches * work_) work.resize(kBranches * work_);
   float* passed = x + size_;
 #pragma omp parallel for schedule(static, 1) num_threads(std::min(threads, kBranches)) if (threads > 1)

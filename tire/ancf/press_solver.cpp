@@ -49,8 +49,7 @@ struct PressSolver::Linear {
   Eigen::SparseMatrix<double> matrix;  // lower triangle
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> llt;
   BatchTangent tangent;
-  std::vector<std::array<int, 300>>
-      slot;  // of each element: where the lower triangle of its matrix goes; −1: a bead's
+  std::vector<std::array<int, 300>> slot;  // of each element: where the lower triangle of its matrix goes; −1: a bead's
 
   static int at(int r, int k) { return r >= k ? r * (r + 1) / 2 + k : k * (k + 1) / 2 + r; }
 
@@ -75,10 +74,8 @@ struct PressSolver::Linear {
     for (std::size_t e = 0; e < slot.size(); ++e)
       for (int r = 0; r < 24; ++r)
         for (int k = 0; k <= r; ++k) {
-          const int low = std::min(unknowns[e][r], unknowns[e][k]),
-                    high = std::max(unknowns[e][r], unknowns[e][k]);
-          slot[e][at(r, k)] =
-              low < 0 ? -1 : static_cast<int>(&matrix.coeffRef(high, low) - matrix.valuePtr());
+          const int low = std::min(unknowns[e][r], unknowns[e][k]), high = std::max(unknowns[e][r], unknowns[e][k]);
+          slot[e][at(r, k)] = low < 0 ? -1 : static_cast<int>(&matrix.coeffRef(high, low) - matrix.valuePtr());
         }
     require_blas_buffers();
     llt.cholmod().print = 0;
@@ -136,8 +133,7 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
   for (std::size_t k = layout_.free_begin(); k < layout_.free_begin() + layout_.free_size(); ++k)
     total += (r_[k] - without[k]) * (r_[k] - without[k]);
   pressure_norm_ = std::max(std::sqrt(total), 1.0);
-  rounding_ = kRounding *
-              (shell_.account(q_, strains_).elastic + shell_.pressure() * shell_.volume(q_, Vec3::Zero()));
+  rounding_ = kRounding * (shell_.account(q_, strains_).elastic + shell_.pressure() * shell_.volume(q_, Vec3::Zero()));
 }
 
 PressSolver::~PressSolver() = default;
@@ -307,8 +303,7 @@ PressPoint PressSolver::press(double deflection, const std::function<void()>& ea
     point.residual = norm / (force() > kMinLoad ? force() : pressure_norm_);
     if (definite && viscosity_ == 0.0 && point.residual <= kTolerance) {
       const Outcome outcome = clearance_.outcome(clearance_.measure(layout_, q_, RimState{}));
-      if (!outcome.ok)
-        throw physics_error(outcome, "tire", fmt::format(" at a deflection of {:.4g} m", deflection));
+      if (!outcome.ok) throw physics_error(outcome, "tire", fmt::format(" at a deflection of {:.4g} m", deflection));
       return point;
     }
     const double share = definite ? creep(norm) : 0.0;
@@ -317,10 +312,9 @@ PressPoint PressSolver::press(double deflection, const std::function<void()>& ea
     else if (share == 1.0)
       viscosity_ = viscosity_ > kMinViscosity ? 0.5 * viscosity_ : 0.0;
   }
-  const std::string how =
-      viscosity_ < kMaxViscosity
-          ? fmt::format("residual {:.2g} of the load, allowed {:.0e}", point.residual, kTolerance)
-          : std::string("its stiffness is not positive definite there, creep or not");
+  const std::string how = viscosity_ < kMaxViscosity
+                              ? fmt::format("residual {:.2g} of the load, allowed {:.0e}", point.residual, kTolerance)
+                              : std::string("its stiffness is not positive definite there, creep or not");
   throw physics_error(
       fmt::format("the tire found no static equilibrium at a deflection of {:.4g} m after {} creep steps: "
                   "{}; try smaller steps of "

@@ -33,8 +33,7 @@ namespace furrow::tire {
 
 class PressSolver {
  public:
-  PressSolver(const TireFile& file, const ShellMesh& mesh, const Field& inflated,
-              const PressObstacle& obstacle);
+  PressSolver(const TireFile& file, const ShellMesh& mesh, const Field& inflated, const PressObstacle& obstacle);
   ~PressSolver();
 
   double largest_radius() const { return largest_radius_; }  // of the inflated tire, m

@@ -26,8 +26,7 @@ RimClearance::RimClearance(const TireFile& file, const ShellMesh& mesh)
   }
 }
 
-RimClearance::Nodes RimClearance::measure(const ShellLayout& layout, const Field& q,
-                                          const RimState& rim) const {
+RimClearance::Nodes RimClearance::measure(const ShellLayout& layout, const Field& q, const RimState& rim) const {
   FURROW_ASSERT(q.size() == layout.size(), q.size(), layout.size());
   FURROW_ASSERT(inside_.size() == static_cast<std::size_t>(layout.rows), inside_.size(), layout.rows);
   const Vec3 axle = rim.orientation * Vec3::UnitY();
@@ -38,10 +37,8 @@ RimClearance::Nodes RimClearance::measure(const ShellLayout& layout, const Field
     for (int c = 0; c < 3; ++c) x[c] = q.data() + layout.offset(j, c);
     double nearest = 1e300;
     for (int i = 0; i < layout.columns; ++i) {
-      const double dx = x[0][i] - rim.position.x(), dy = x[1][i] - rim.position.y(),
-                   dz = x[2][i] - rim.position.z();
-      const double along = dx * axle.x() + dy * axle.y() + dz * axle.z(),
-                   square = dx * dx + dy * dy + dz * dz;
+      const double dx = x[0][i] - rim.position.x(), dy = x[1][i] - rim.position.y(), dz = x[2][i] - rim.position.z();
+      const double along = dx * axle.x() + dy * axle.y() + dz * axle.z(), square = dx * dx + dy * dy + dz * dz;
       if (!(square <= far)) {
         far = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
         nodes.far_column = i, nodes.far_row = j;
@@ -62,19 +59,17 @@ Outcome RimClearance::outcome(const Nodes& nodes) const {
   if (!(nodes.farthest < limit_))
     return Outcome::failure(
         "lost its shape",
-        fmt::format(
-            "its node at column {}, row {} is {:.3g} m from the rim's centre, expected below {:.3g} m; try a "
-            "smaller run.step, a lower pressure or less load",
-            nodes.far_column, nodes.far_row, nodes.farthest, limit_));
+        fmt::format("its node at column {}, row {} is {:.3g} m from the rim's centre, expected below {:.3g} m; try a "
+                    "smaller run.step, a lower pressure or less load",
+                    nodes.far_column, nodes.far_row, nodes.farthest, limit_));
   if (nodes.clearance < 0.0)
     return Outcome::failure(
         "reached its rim",
-        fmt::format(
-            "clearance {:.2g} m at the node of column {}, row {} (from the left bead), to the rim's cylinder "
-            "of "
-            "{:.4g} m radius; contact of tire and rim is not modelled: try a higher pressure, less load or a "
-            "smaller drop",
-            nodes.clearance, nodes.column, nodes.row, radius_));
+        fmt::format("clearance {:.2g} m at the node of column {}, row {} (from the left bead), to the rim's cylinder "
+                    "of "
+                    "{:.4g} m radius; contact of tire and rim is not modelled: try a higher pressure, less load or a "
+                    "smaller drop",
+                    nodes.clearance, nodes.column, nodes.row, radius_));
   return {};
 }
 

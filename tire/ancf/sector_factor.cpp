@@ -14,7 +14,7 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kDirectorWeight = 0.5;  // the age of a director counts less: what it turns is softer
-constexpr double kAlso = 0.4;  // of the age of renewal: sectors as old as this are renewed with others
+constexpr double kAlso = 0.4;            // of the age of renewal: sectors as old as this are renewed with others
 
 }  // namespace
 
@@ -107,8 +107,7 @@ void SectorFactor::build_sector(int sector) {
     }
     Double4 stress[kStrains];
     shell_.batch_stress_between(before, now, c, j, stress);
-    tangent.compute(shell_.stiffness(j), middle, stress, c, geometric_[sector] ? 0.5 : 0.0,
-                    made_pressure_[sector]);
+    tangent.compute(shell_.stiffness(j), middle, stress, c, geometric_[sector] ? 0.5 : 0.0, made_pressure_[sector]);
     factor_.add(tangent, mass_.element(j), inertia, j, sector);
   }
   if (contact_made_.empty()) return;

@@ -26,12 +26,10 @@ namespace furrow::tire {
 
 struct SectorFactorParams {
   double damping = 0.005;  // τ, s
-  double age =
-      0.01;  // of a sector at which it is renewed: largest relative change of an edge or a director; 0: always
-  double contact_age =
-      0.5;          // change of a node's contact tangent, relative to its stiffness, that counts as `age`
-  int worth = 30;   // iterations that a renewal may cost
-  int threads = 1;  // of a step; results do not depend on them
+  double age = 0.01;  // of a sector at which it is renewed: largest relative change of an edge or a director; 0: always
+  double contact_age = 0.5;  // change of a node's contact tangent, relative to its stiffness, that counts as `age`
+  int worth = 30;            // iterations that a renewal may cost
+  int threads = 1;           // of a step; results do not depend on them
 
   /// 1 + τ/h: stress of a step of h by its strains, relative to the static one.
   double coefficient(double h) const { return 1.0 + damping / h; }

@@ -99,8 +99,7 @@ struct BatchForces {
       fa2[k] = s2[0] * s.a2[k] + s2[1] * s.d2[k];
       fd2[k] = s2[1] * s.a2[k] + s2[2] * s.d2[k];
     }
-    for (int c = 0; c < 4; ++c)
-      d[c] = stress[e33(c)] * n.d[c], r[c] = Triple<Double4>{Double4{}, Double4{}, Double4{}};
+    for (int c = 0; c < 4; ++c) d[c] = stress[e33(c)] * n.d[c], r[c] = Triple<Double4>{Double4{}, Double4{}, Double4{}};
     for (int k = 0; k < 2; ++k)
       for (int l = 0; l < 2; ++l) {
         const Double4* t = stress + e12(k, l);
@@ -118,10 +117,8 @@ struct BatchForces {
     add_shear(stress + e13(1), s.at, s.dt, n.d[3], n.d[2], fat, fdt, d[3], d[2]);
     add_shear(stress + e23(0), s.al, s.dl, n.d[0], n.d[3], fal, fdl, d[0], d[3]);
     add_shear(stress + e23(1), s.ar, s.dr, n.d[1], n.d[2], far, fdr, d[1], d[2]);
-    r[0] += -0.5 * (fab + fal), r[1] += 0.5 * (fab - far), r[2] += 0.5 * (fat + far),
-        r[3] += 0.5 * (fal - fat);
-    d[0] += -0.5 * (fdb + fdl), d[1] += 0.5 * (fdb - fdr), d[2] += 0.5 * (fdt + fdr),
-        d[3] += 0.5 * (fdl - fdt);
+    r[0] += -0.5 * (fab + fal), r[1] += 0.5 * (fab - far), r[2] += 0.5 * (fat + far), r[3] += 0.5 * (fal - fat);
+    d[0] += -0.5 * (fdb + fdl), d[1] += 0.5 * (fdb - fdr), d[2] += 0.5 * (fdt + fdr), d[3] += 0.5 * (fdl - fdt);
   }
 
   void add(const ShellLayout& layout, double* field, int i, int j) const {

@@ -45,14 +45,12 @@ std::size_t ShellCarcass::strains_size() const {
 
 Double4 ShellCarcass::mask(int batch) const {
   Double4 m;
-  for (int lane = 0; lane < kDoubleLanes; ++lane)
-    m[lane] = batch * kDoubleLanes + lane < layout_.columns ? 1.0 : 0.0;
+  for (int lane = 0; lane < kDoubleLanes; ++lane) m[lane] = batch * kDoubleLanes + lane < layout_.columns ? 1.0 : 0.0;
   return m;
 }
 
 void ShellCarcass::batch_strains_at(const Field& q, int j, int batch, Double4* e) const {
-  FURROW_ASSERT(in_range(j, reference_.size()) && in_range(batch, layout_.batches()), j, reference_.size(),
-                batch);
+  FURROW_ASSERT(in_range(j, reference_.size()) && in_range(batch, layout_.batches()), j, reference_.size(), batch);
   BatchNodes nodes;
   nodes.read(layout_, q.data(), batch * kDoubleLanes, j);
   batch_strains(nodes, e);
@@ -94,10 +92,9 @@ void ShellCarcass::batch_stress_between(const BatchNodes& before, const BatchNod
   batch_stress(stiffness_[j].data(), e, stress);
 }
 
-void ShellCarcass::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c,
-                          Field& f) const {
-  FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(),
-                q_force.size(), layout_.size());
+void ShellCarcass::forces(const Field& q_new, const Field& q_force, const Field& e_old, double c, Field& f) const {
+  FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(), q_force.size(),
+                layout_.size());
   FURROW_ASSERT(e_old.size() == strains_size() && f.size() == layout_.size(), e_old.size(), f.size());
   std::fill(f.begin(), f.end(), 0.0);
   Double4 stress[kStrains];
@@ -130,8 +127,7 @@ void ShellCarcass::begin(const Field& q, Step& step) const {
       const std::size_t at = batch_of(step.strains, j, b) - step.strains.data();
       for (int k = 0; k < kStrains; ++k) e[k] = load(step.strains.data() + at + k * kDoubleLanes);
       batch_stress(stiffness_[j].data(), e, stress);
-      for (int k = 0; k < kStrains; ++k)
-        store(step.stress.data() + at + k * kDoubleLanes, mask(b) * stress[k]);
+      for (int k = 0; k < kStrains; ++k) store(step.stress.data() + at + k * kDoubleLanes, mask(b) * stress[k]);
     }
 }
 
@@ -149,13 +145,11 @@ void ShellCarcass::prepare(Step& step, double h) const {
   std::copy(step.stress.begin(), step.stress.end(), step.relaxed_stress.begin());
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const double decay = BranchStep(branches_[i], h).decay;
-    for (std::size_t k = 0; k < step.stress.size(); ++k)
-      step.relaxed_stress[k] += decay * step.branch_stress[i][k];
+    for (std::size_t k = 0; k < step.stress.size(); ++k) step.relaxed_stress[k] += decay * step.branch_stress[i][k];
   }
 }
 
-void ShellCarcass::row_forces(const Field& q_new, const Field& q_force, Step& step, double c, int j,
-                              Field& f) const {
+void ShellCarcass::row_forces(const Field& q_new, const Field& q_force, Step& step, double c, int j, Field& f) const {
   Double4 e[kStrains], u[kStrains];
   Double4 elastic = {}, change = {};
   for (int b = 0; b < layout_.batches(); ++b) {
@@ -186,22 +180,19 @@ void ShellCarcass::row_forces(const Field& q_new, const Field& q_force, Step& st
 }
 
 // Row j adds to the nodes of rows j and j + 1: first the even rows, then the odd ones, so that no two threads meet.
-void ShellCarcass::forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f,
-                          int threads) const {
+void ShellCarcass::forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f, int threads) const {
   FURROW_ASSERT(step.h > 0.0 && threads > 0, step.h, threads);
-  FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(),
-                q_force.size(), layout_.size());
+  FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(), q_force.size(),
+                layout_.size());
   FURROW_ASSERT(f.size() == layout_.size(), f.size(), layout_.size());
   const double with_branches = c + branch_gain(step.h);
   std::fill(f.begin(), f.end(), 0.0);
   for (const int parity : {0, 1}) {
     if (threads > 1) {
 #pragma omp parallel for schedule(static) num_threads(threads)
-      for (int j = parity; j < layout_.rows - 1; j += 2)
-        row_forces(q_new, q_force, step, with_branches, j, f);
+      for (int j = parity; j < layout_.rows - 1; j += 2) row_forces(q_new, q_force, step, with_branches, j, f);
     } else {
-      for (int j = parity; j < layout_.rows - 1; j += 2)
-        row_forces(q_new, q_force, step, with_branches, j, f);
+      for (int j = parity; j < layout_.rows - 1; j += 2) row_forces(q_new, q_force, step, with_branches, j, f);
     }
   }
   layout_.fold_padding(f);
@@ -209,8 +200,7 @@ void ShellCarcass::forces(const Field& q_new, const Field& q_force, Step& step, 
 
 ShellCarcass::Energies ShellCarcass::accept(Step& step) const {
   FURROW_ASSERT(step.strains.size() == step.new_strains.size(), step.strains.size(), step.new_strains.size());
-  FURROW_ASSERT(step.stress.size() == step.stress_change.size(), step.stress.size(),
-                step.stress_change.size());
+  FURROW_ASSERT(step.stress.size() == step.stress_change.size(), step.stress.size(), step.stress_change.size());
   Energies total;
   for (const Energies& row : step.rows) total.elastic += row.elastic, total.change += row.change;
   accept_branches(step, total);
@@ -309,8 +299,7 @@ Wrench ShellCarcass::pressure_resultant(const Field& q, const Vec3& centre) cons
     const int j = side == 0 ? 0 : layout_.rows - 1;
     const double sense = side == 0 ? pressure_ : -pressure_;
     for (int i = 0; i < layout_.columns; ++i) {
-      const Vec3 a = layout_.get(q, i, j, 0) - centre,
-                 b = layout_.get(q, (i + 1) % layout_.columns, j, 0) - centre;
+      const Vec3 a = layout_.get(q, i, j, 0) - centre, b = layout_.get(q, (i + 1) % layout_.columns, j, 0) - centre;
       w.force += 0.5 * sense * a.cross(b);
       w.moment -= sense / 6.0 * (a.squaredNorm() + a.dot(b) + b.squaredNorm()) * (b - a);
     }

@@ -78,10 +78,8 @@ class ShellCarcass {
   Wrench pressure_resultant(const Field& q, const Vec3& centre) const;
 
   /// Stress D̂ [E_old + c (E_new − E_old)] of a batch at width position j.
-  void batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch,
-                       Double4* stress) const;
-  void batch_stress_between(const BatchNodes& before, const BatchNodes& now, double c, int j,
-                            Double4* stress) const;
+  void batch_stress_at(const Field& q_new, const Field& e_old, double c, int j, int batch, Double4* stress) const;
+  void batch_stress_between(const BatchNodes& before, const BatchNodes& now, double c, int j, Double4* stress) const;
 
  private:
   void accept_branches(Step& step, Energies& total) const;

@@ -103,8 +103,7 @@ ShellFactor::ShellFactor(const ShellLayout& layout)
 }
 
 std::size_t ShellFactor::block(int sector, int column, int row, int kind) const {
-  return 36 *
-         ((static_cast<std::size_t>(sector * (kDoubleLanes + 1) + column) * across_ + row) * kKinds + kind);
+  return 36 * ((static_cast<std::size_t>(sector * (kDoubleLanes + 1) + column) * across_ + row) * kKinds + kind);
 }
 
 void ShellFactor::clear(int sector) {
@@ -113,19 +112,15 @@ void ShellFactor::clear(int sector) {
   changed_[sector] = 1;
 }
 
-void ShellFactor::add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j,
-                      int sector) {
-  FURROW_ASSERT(in_range(sector, sectors()) && in_range(j, layout_.rows - 1), sector, sectors(), j,
-                layout_.rows);
+void ShellFactor::add(const BatchTangent& tangent, const ElementMass& mass, double mass_factor, int j, int sector) {
+  FURROW_ASSERT(in_range(sector, sectors()) && in_range(j, layout_.rows - 1), sector, sectors(), j, layout_.rows);
   for (int lane = 0; lane < kDoubleLanes && sector * kDoubleLanes + lane < layout_.columns; ++lane)
     for (int n = 0; n < 4; ++n)
       for (int m = 0; m < 4; ++m) {
         const int row = j + kRow[m] - 1, other = j + kRow[n] - 1;
         if (row < 0 || row >= across_ || other < 0 || other >= across_) continue;
         int kind = 0;
-        while (kind < kKinds &&
-               (kKindColumn[kind] != kColumn[n] - kColumn[m] || kKindRow[kind] != other - row))
-          ++kind;
+        while (kind < kKinds && (kKindColumn[kind] != kColumn[n] - kColumn[m] || kKindRow[kind] != other - row)) ++kind;
         if (kind == kKinds) continue;  // the transposed block holds it
         float* to = values_.data() + block(sector, lane + kColumn[m], row, kind);
         for (int r = 0; r < 6; ++r)
@@ -156,8 +151,7 @@ bool ShellFactor::factorize(int threads) {
 }
 
 void ShellFactor::solve(const Mat3& turn, const Field& rhs, Field& x, int threads) {
-  FURROW_ASSERT(rhs.size() == layout_.size() && x.size() == layout_.size(), rhs.size(), x.size(),
-                layout_.size());
+  FURROW_ASSERT(rhs.size() == layout_.size() && x.size() == layout_.size(), rhs.size(), x.size(), layout_.size());
   const int columns = layout_.columns, stride = layout_.stride();
   const Mat3 back = turn.transpose();
   for (int j = 0; j < across_; ++j)

@@ -25,16 +25,14 @@ double dot(const Field& a, const Field& b, const ShellLayout& layout) {
 
 }  // namespace
 
-ShellIntegrator::ShellIntegrator(const TireFile& file, const ShellMesh& mesh,
-                                 const ShellIntegratorParams& params)
+ShellIntegrator::ShellIntegrator(const TireFile& file, const ShellMesh& mesh, const ShellIntegratorParams& params)
     : params_(params),
       mesh_(mesh),
       layout_{mesh.columns, mesh.rows},
       shell_(file, mesh),
       mass_(mesh, element_masses(file, mesh)),
       factor_(layout_, shell_, mass_, params) {
-  for (Field* f :
-       {&q_, &v_, &v_before_, &p_, &q_new_, &v_new_, &p_new_, &moved_, &q_force_, &change_, &r_, &d_})
+  for (Field* f : {&q_, &v_, &v_before_, &p_, &q_new_, &v_new_, &p_new_, &moved_, &q_force_, &change_, &r_, &d_})
     f->assign(layout_.size(), 0.0);
   s_.assign(kPairs, r_);
   y_.assign(kPairs, r_);
@@ -125,9 +123,7 @@ void ShellIntegrator::evaluate(double h, const Field& force) {
 void ShellIntegrator::direction(const Mat3& turn, int pairs) {
   const Stopwatch watch(times_.solve);
   const std::size_t first = layout_.free_begin();
-  const auto part = [&](Field& f) {
-    return Eigen::Map<Eigen::VectorXd>(f.data() + first, layout_.free_size());
-  };
+  const auto part = [&](Field& f) { return Eigen::Map<Eigen::VectorXd>(f.data() + first, layout_.free_size()); };
   double weight[kPairs];
   part(change_) = part(r_);
   for (int k = pairs - 1; k >= 0; --k) {
@@ -140,8 +136,7 @@ void ShellIntegrator::direction(const Mat3& turn, int pairs) {
 
 /// `careful`: a correction that makes the residual grow is halved.
 /// @returns true when converged; false when slow, growing or not finite
-bool ShellIntegrator::iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count,
-                              double& norm) {
+bool ShellIntegrator::iterate(double h, const Field& force, const Mat3& turn, bool careful, int& count, double& norm) {
   int pairs = 0;
   double best = norm;
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
@@ -190,8 +185,7 @@ Outcome ShellIntegrator::step(double h, const RimState& start, const RimState& e
                               const Vec3& about, Wrench& on_rim) {
   FURROW_ASSERT(h > 0.0, h);
   FURROW_ASSERT(force.size() == layout_.size(), force.size(), layout_.size());
-  FURROW_ASSERT(q_.size() == layout_.size() && v_.size() == layout_.size(), q_.size(), v_.size(),
-                layout_.size());
+  FURROW_ASSERT(q_.size() == layout_.size() && v_.size() == layout_.size(), q_.size(), v_.size(), layout_.size());
   set_bead(end);
   shell_.prepare(shell_step_, h);
   layout_.fill_padding(v_new_);
@@ -210,8 +204,7 @@ Outcome ShellIntegrator::step(double h, const RimState& start, const RimState& e
     }
     bool converged = norm <= params_.tolerance * reference_;
     if (!converged) {
-      converged =
-          factor_.prepare(now, attempt) && iterate(h, force, orientation, attempt >= kCareful, count, norm);
+      converged = factor_.prepare(now, attempt) && iterate(h, force, orientation, attempt >= kCareful, count, norm);
       factor_.note_iterations(count);
     }
     if (converged) {
@@ -231,8 +224,7 @@ Outcome ShellIntegrator::step(double h, const RimState& start, const RimState& e
 
 /// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What
 /// is left of the free residual is counted with the beads, so that momentum balances to round-off.
-void ShellIntegrator::finish(double h, const RimState& start, const RimState& end, const Vec3& about,
-                             Wrench& on_rim) {
+void ShellIntegrator::finish(double h, const RimState& start, const RimState& end, const Vec3& about, Wrench& on_rim) {
   const Stopwatch watch(times_.other);
   on_rim = {};
   for (int j = 0; j < layout_.rows; ++j)
@@ -251,8 +243,7 @@ void ShellIntegrator::finish(double h, const RimState& start, const RimState& en
   for (int j = 0; j < layout_.rows; ++j)
     for (int i = 0; i < layout_.columns; ++i)
       for (const int s : {0, 3})
-        on_rim.moment -=
-            (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
+        on_rim.moment -= (layout_.get(q_new_, i, j, s) - layout_.get(q_, i, j, s)).cross(layout_.get(d_, i, j, s));
   book_losses(h, start, end);
   contact_.accept(layout_, q_force_, v_new_, h);
   p_.swap(p_new_);
@@ -274,9 +265,7 @@ void ShellIntegrator::finish(double h, const RimState& start, const RimState& en
 void ShellIntegrator::book_losses(double h, const RimState& start, const RimState& end) {
   using Map = Eigen::Map<const Eigen::VectorXd>;
   const auto all = [](const Field& f) { return Map(f.data(), static_cast<Eigen::Index>(f.size())); };
-  const auto line = [&](const Field& f, int j, int c) {
-    return Map(f.data() + layout_.offset(j, c), layout_.columns);
-  };
+  const auto line = [&](const Field& f, int j, int c) { return Map(f.data() + layout_.offset(j, c), layout_.columns); };
   const auto cross = [&](const Field& a, const Field& b, int j, int s) {
     const Map x = line(a, j, s), y = line(a, j, s + 1), z = line(a, j, s + 2);
     const Map u = line(b, j, s), v = line(b, j, s + 1), w = line(b, j, s + 2);
@@ -336,10 +325,8 @@ void ShellIntegrator::restore(const Archive& archive) {
   shell_.begin(q_, shell_step_);
   shell_step_.stress = archive.get<double>("stress", shell_.strains_size());
   for (std::size_t i = 0; i < shell_step_.branch_strain.size(); ++i) {
-    shell_step_.branch_strain[i] =
-        archive.get<double>(fmt::format("branch/{}/strain", i), shell_.strains_size());
-    shell_step_.branch_stress[i] =
-        archive.get<double>(fmt::format("branch/{}/stress", i), shell_.strains_size());
+    shell_step_.branch_strain[i] = archive.get<double>(fmt::format("branch/{}/strain", i), shell_.strains_size());
+    shell_step_.branch_stress[i] = archive.get<double>(fmt::format("branch/{}/stress", i), shell_.strains_size());
   }
   shell_.set_pressure(archive.get_double("pressure"));
   restore_fields(archive, "sums", *this);

@@ -22,8 +22,7 @@ Mat6 strain_transformation(const Mat3& jac) {
   for (int r = 0; r < 6; ++r)
     for (int s = 0; s < 6; ++s) {
       const int a = kPair[r][0], b = kPair[r][1], i = kPair[s][0], j = kPair[s][1];
-      const double value =
-          i == j ? jac(a, i) * jac(b, i) : 0.5 * (jac(a, i) * jac(b, j) + jac(a, j) * jac(b, i));
+      const double value = i == j ? jac(a, i) * jac(b, i) : 0.5 * (jac(a, i) * jac(b, j) + jac(a, j) * jac(b, i));
       t(r, s) = a == b ? value : 2.0 * value;
     }
   return t;
@@ -87,8 +86,7 @@ std::vector<ShellPoint> shell_points(const ElementNodes& x, const std::vector<Sh
           const double j = g.determinant();
           ShellPoint p;
           p.strain_map = strain_transformation(axes * g.inverse().transpose()) * covariant_map(k, l, z);
-          p.enhanced_map =
-              strain_transformation(axes) * t0 * enhanced_modes(xi, eta, 2.0 * z / total) * (j0 / j);
+          p.enhanced_map = strain_transformation(axes) * t0 * enhanced_modes(xi, eta, 2.0 * z / total) * (j0 / j);
           p.volume = j * half * kWeight3[c];
           p.layer = static_cast<int>(layer);
           points.push_back(p);

@@ -20,10 +20,7 @@ struct InflatedCarcass {
 
   /// @param each_step as in inflate(). @throws Error(physics) as inflate()
   explicit InflatedCarcass(const TireFile& tire, const std::function<void()>& each_step = {})
-      : file(tire),
-        mesh(make_shell_mesh(file)),
-        shell(file, mesh),
-        q(inflate(shell, mesh, report, each_step)) {}
+      : file(tire), mesh(make_shell_mesh(file)), shell(file, mesh), q(inflate(shell, mesh, report, each_step)) {}
 
   /// Unknowns: position x, y, z and director x, y, z of each row between the beads, in the axes of column 0.
   Eigen::MatrixXcd stiffness(int order) const;  // per column, N/m

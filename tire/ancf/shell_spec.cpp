@@ -17,15 +17,13 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kBytesPerCoordinate = 20e3;  // shell matrices, tangent and its factors
-constexpr double kBytesPerSavedCoordinate =
-    110.0;  // coordinates, velocities, and those that factors were made from
+constexpr double kBytesPerCoordinate = 20e3;        // shell matrices, tangent and its factors
+constexpr double kBytesPerSavedCoordinate = 110.0;  // coordinates, velocities, and those that factors were made from
 // Of τ that the step may be, without and with contact tangents: tests/studies/README.md, "Step of the flexible tire".
 constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
 int most_layers(const TireFile& file) {
-  return static_cast<int>(
-      std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
+  return static_cast<int>(std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
 }
 
 class ShellPress final : public StaticTest {
@@ -91,8 +89,8 @@ TireDescription ShellSpec::describe() const {
   d.model = {{"layers", static_cast<double>(most_layers(file_))}};
   PressureSchedule pressure = options().pressure;
   if (pressure.empty()) pressure.knots = {{0.0, file_.pressure}};
-  d.details = fmt::format("{} × {} elements, {} coordinates, {}", mesh.columns, mesh.elements_width(),
-                          d.coordinates, pressure_text(pressure));
+  d.details = fmt::format("{} × {} elements, {} coordinates, {}", mesh.columns, mesh.elements_width(), d.coordinates,
+                          pressure_text(pressure));
   return d;
 }
 

@@ -45,8 +45,7 @@ void subtract_pressure(const BatchSlopes& s, double factor, Double4 (*k)[24]) {
     }
     for (int i = 0; i < 4; ++i)
       for (int m = 0; m < i; ++m) {
-        const double u = 0.5 * factor * (n[i] * n2[m] - n[m] * n2[i]),
-                     v = 0.5 * factor * (n[i] * n1[m] - n[m] * n1[i]);
+        const double u = 0.5 * factor * (n[i] * n2[m] - n[m] * n2[i]), v = 0.5 * factor * (n[i] * n1[m] - n[m] * n1[i]);
         const Triple<Double4> w = u * a1 - v * a2;  // [w]×
         Double4(*block)[24] = k + 6 * i;
         block[0][6 * m + 1] += w.z, block[0][6 * m + 2] -= w.y;
@@ -58,8 +57,8 @@ void subtract_pressure(const BatchSlopes& s, double factor, Double4 (*k)[24]) {
 
 }  // namespace
 
-void BatchTangent::compute(const StrainMatrix& d, const BatchNodes& nodes, const Double4* stress,
-                           double material, double geometric, double pressure) {
+void BatchTangent::compute(const StrainMatrix& d, const BatchNodes& nodes, const Double4* stress, double material,
+                           double geometric, double pressure) {
   static thread_local Double4 b[kStrains][24], db[kStrains][24];
   strain_gradients(Scalars(nodes), b);
   for (int r = 0; r < kStrains; ++r)

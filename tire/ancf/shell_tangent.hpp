@@ -16,8 +16,8 @@ struct BatchNodes;
 struct BatchTangent {
   Double4 k[24][24];  // lower triangle
 
-  void compute(const StrainMatrix& d, const BatchNodes& nodes, const Double4* stress, double material,
-               double geometric, double pressure);
+  void compute(const StrainMatrix& d, const BatchNodes& nodes, const Double4* stress, double material, double geometric,
+               double pressure);
 };
 
 }  // namespace furrow::tire

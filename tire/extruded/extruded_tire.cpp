@@ -26,10 +26,7 @@ struct Rigid {
 class ExtrudedTire final : public Tire {
  public:
   ExtrudedTire(std::unique_ptr<PlaneModel> model, TireShape shape, const Vec3& gravity)
-      : model_(std::move(model)),
-        shape_(std::move(shape)),
-        gravity_(gravity),
-        load_(model_->position().size()) {
+      : model_(std::move(model)), shape_(std::move(shape)), gravity_(gravity), load_(model_->position().size()) {
     const auto nodes = static_cast<double>(model_->tread().size());
     FURROW_ASSERT(shape_.mesh.vertex_count == 2 * static_cast<int>(nodes) + 2, shape_.mesh.vertex_count, nodes);
     const double facet = 2.0 * shape_.radius * std::sin(std::numbers::pi / nodes);
@@ -267,8 +264,7 @@ void ExtrudedTire::restore(const Archive& archive) {
 
 }  // namespace
 
-std::unique_ptr<Tire> make_extruded_tire(std::unique_ptr<PlaneModel> model, TireShape shape,
-                                         const Vec3& gravity) {
+std::unique_ptr<Tire> make_extruded_tire(std::unique_ptr<PlaneModel> model, TireShape shape, const Vec3& gravity) {
   return std::make_unique<ExtrudedTire>(std::move(model), std::move(shape), gravity);
 }
 

@@ -17,7 +17,6 @@
 namespace furrow::tire {
 
 /// @pre the shape is that of cylinder(), with as many facets as the model has nodes on its tread
-std::unique_ptr<Tire> make_extruded_tire(std::unique_ptr<PlaneModel> model, TireShape shape,
-                                         const Vec3& gravity);
+std::unique_ptr<Tire> make_extruded_tire(std::unique_ptr<PlaneModel> model, TireShape shape, const Vec3& gravity);
 
 }  // namespace furrow::tire

@@ -7,8 +7,8 @@
 
 #include "protocol/core/archive.hpp"
 #include "protocol/core/outcome.hpp"
-#include "tire/named_values.hpp"
 #include "tire/extruded/plane_vectors.hpp"
+#include "tire/named_values.hpp"
 
 namespace furrow::tire {
 
@@ -51,15 +51,15 @@ class PlaneModel {
   /// Whether the tire is within what the model is meant for.
   virtual Outcome check() const = 0;
 
-  virtual const PlanarField& position() const = 0;     // m
-  virtual const PlanarField& velocity() const = 0;     // m/s
-  virtual PlanarPoint centre_velocity() const = 0;     // of the last step, m/s
-  virtual PlanarPoint first_moment() const = 0;        // Σ m r, kg m
-  virtual PlanarPoint momentum() const = 0;            // kg m/s
-  virtual double angular_momentum() const = 0;         // about the rim's centre, kg m²/s
-  virtual double kinetic_energy() const = 0;           // J
-  virtual double elastic_energy() const = 0;           // J
-  virtual double pressure_energy() const = 0;          // J
+  virtual const PlanarField& position() const = 0;  // m
+  virtual const PlanarField& velocity() const = 0;  // m/s
+  virtual PlanarPoint centre_velocity() const = 0;  // of the last step, m/s
+  virtual PlanarPoint first_moment() const = 0;     // Σ m r, kg m
+  virtual PlanarPoint momentum() const = 0;         // kg m/s
+  virtual double angular_momentum() const = 0;      // about the rim's centre, kg m²/s
+  virtual double kinetic_energy() const = 0;        // J
+  virtual double elastic_energy() const = 0;        // J
+  virtual double pressure_energy() const = 0;       // J
 
   virtual NamedValues figures() const = 0;
   virtual void save(Archive& archive) const = 0;

@@ -12,10 +12,10 @@ namespace furrow::tire::handling {
 
 /// λ: 1 leaves the formula as it is.
 struct ScalingFactors {
-  double lfzo = 1.0, lcx = 1.0, lmux = 1.0, lex = 1.0, lkx = 1.0, lhx = 1.0, lvx = 1.0, lgax = 1.0,
-      lcy = 1.0, lmuy = 1.0, ley = 1.0, lky = 1.0, lhy = 1.0, lvy = 1.0, lgay = 1.0, ltr = 1.0,
-      lres = 1.0, lgaz = 1.0, lxal = 1.0, lyka = 1.0, lvyka = 1.0, ls = 1.0, lsgkp = 1.0,
-      lsgal = 1.0, lgyr = 1.0, lmx = 1.0, lvmx = 1.0, lmy = 1.0;
+  double lfzo = 1.0, lcx = 1.0, lmux = 1.0, lex = 1.0, lkx = 1.0, lhx = 1.0, lvx = 1.0, lgax = 1.0, lcy = 1.0,
+         lmuy = 1.0, ley = 1.0, lky = 1.0, lhy = 1.0, lvy = 1.0, lgay = 1.0, ltr = 1.0, lres = 1.0, lgaz = 1.0,
+         lxal = 1.0, lyka = 1.0, lvyka = 1.0, ls = 1.0, lsgkp = 1.0, lsgal = 1.0, lgyr = 1.0, lmx = 1.0, lvmx = 1.0,
+         lmy = 1.0;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ScalingFactors> auto& s) {
@@ -51,10 +51,9 @@ void visit_fields(Visit&& visit, FieldsOf<ScalingFactors> auto& s) {
 
 /// Of F_x: p of pure slip, r of combined slip, ptx of the relaxation length.
 struct LongitudinalCoefficients {
-  double pcx1 = 0.0, pdx1 = 0.0, pdx2 = 0.0, pdx3 = 0.0, pex1 = 0.0, pex2 = 0.0, pex3 = 0.0,
-      pex4 = 0.0, pkx1 = 0.0, pkx2 = 0.0, pkx3 = 0.0, phx1 = 0.0, phx2 = 0.0, pvx1 = 0.0,
-      pvx2 = 0.0, rbx1 = 0.0, rbx2 = 0.0, rcx1 = 0.0, rex1 = 0.0, rex2 = 0.0, rhx1 = 0.0,
-      ptx1 = 0.0, ptx2 = 0.0, ptx3 = 0.0;
+  double pcx1 = 0.0, pdx1 = 0.0, pdx2 = 0.0, pdx3 = 0.0, pex1 = 0.0, pex2 = 0.0, pex3 = 0.0, pex4 = 0.0, pkx1 = 0.0,
+         pkx2 = 0.0, pkx3 = 0.0, phx1 = 0.0, phx2 = 0.0, pvx1 = 0.0, pvx2 = 0.0, rbx1 = 0.0, rbx2 = 0.0, rcx1 = 0.0,
+         rex1 = 0.0, rex2 = 0.0, rhx1 = 0.0, ptx1 = 0.0, ptx2 = 0.0, ptx3 = 0.0;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<LongitudinalCoefficients> auto& s) {
@@ -97,11 +96,10 @@ void visit_fields(Visit&& visit, FieldsOf<OverturningCoefficients> auto& s) {
 
 /// Of F_y, likewise.
 struct LateralCoefficients {
-  double pcy1 = 0.0, pdy1 = 0.0, pdy2 = 0.0, pdy3 = 0.0, pey1 = 0.0, pey2 = 0.0, pey3 = 0.0,
-      pey4 = 0.0, pky1 = 0.0, pky2 = 0.0, pky3 = 0.0, phy1 = 0.0, phy2 = 0.0, phy3 = 0.0,
-      pvy1 = 0.0, pvy2 = 0.0, pvy3 = 0.0, pvy4 = 0.0, rby1 = 0.0, rby2 = 0.0, rby3 = 0.0,
-      rcy1 = 0.0, rey1 = 0.0, rey2 = 0.0, rhy1 = 0.0, rhy2 = 0.0, rvy1 = 0.0, rvy2 = 0.0,
-      rvy3 = 0.0, rvy4 = 0.0, rvy5 = 0.0, rvy6 = 0.0, pty1 = 0.0, pty2 = 0.0;
+  double pcy1 = 0.0, pdy1 = 0.0, pdy2 = 0.0, pdy3 = 0.0, pey1 = 0.0, pey2 = 0.0, pey3 = 0.0, pey4 = 0.0, pky1 = 0.0,
+         pky2 = 0.0, pky3 = 0.0, phy1 = 0.0, phy2 = 0.0, phy3 = 0.0, pvy1 = 0.0, pvy2 = 0.0, pvy3 = 0.0, pvy4 = 0.0,
+         rby1 = 0.0, rby2 = 0.0, rby3 = 0.0, rcy1 = 0.0, rey1 = 0.0, rey2 = 0.0, rhy1 = 0.0, rhy2 = 0.0, rvy1 = 0.0,
+         rvy2 = 0.0, rvy3 = 0.0, rvy4 = 0.0, rvy5 = 0.0, rvy6 = 0.0, pty1 = 0.0, pty2 = 0.0;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<LateralCoefficients> auto& s) {
@@ -156,11 +154,10 @@ void visit_fields(Visit&& visit, FieldsOf<RollingCoefficients> auto& s) {
 /// Of M_z: q of trail and residual moment, s of the arm of F_x. QTZ1 and MBELT, of the gyroscopic moment, are kept
 /// and not used.
 struct AligningCoefficients {
-  double qbz1 = 0.0, qbz2 = 0.0, qbz3 = 0.0, qbz4 = 0.0, qbz5 = 0.0, qbz9 = 0.0, qbz10 = 0.0,
-      qcz1 = 0.0, qdz1 = 0.0, qdz2 = 0.0, qdz3 = 0.0, qdz4 = 0.0, qdz6 = 0.0, qdz7 = 0.0,
-      qdz8 = 0.0, qdz9 = 0.0, qez1 = 0.0, qez2 = 0.0, qez3 = 0.0, qez4 = 0.0, qez5 = 0.0,
-      qhz1 = 0.0, qhz2 = 0.0, qhz3 = 0.0, qhz4 = 0.0, ssz1 = 0.0, ssz2 = 0.0, ssz3 = 0.0,
-      ssz4 = 0.0, qtz1 = 0.0, mbelt = 0.0;
+  double qbz1 = 0.0, qbz2 = 0.0, qbz3 = 0.0, qbz4 = 0.0, qbz5 = 0.0, qbz9 = 0.0, qbz10 = 0.0, qcz1 = 0.0, qdz1 = 0.0,
+         qdz2 = 0.0, qdz3 = 0.0, qdz4 = 0.0, qdz6 = 0.0, qdz7 = 0.0, qdz8 = 0.0, qdz9 = 0.0, qez1 = 0.0, qez2 = 0.0,
+         qez3 = 0.0, qez4 = 0.0, qez5 = 0.0, qhz1 = 0.0, qhz2 = 0.0, qhz3 = 0.0, qhz4 = 0.0, ssz1 = 0.0, ssz2 = 0.0,
+         ssz3 = 0.0, ssz4 = 0.0, qtz1 = 0.0, mbelt = 0.0;
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<AligningCoefficients> auto& s) {
@@ -199,8 +196,8 @@ void visit_fields(Visit&& visit, FieldsOf<AligningCoefficients> auto& s) {
 
 /// [VERTICAL]
 struct VerticalCoefficients {
-  double vertical_stiffness = 0.0;  // C_z, N/m
-  double vertical_damping = 0.0;    // K_z, N s/m
+  double vertical_stiffness = 0.0;               // C_z, N/m
+  double vertical_damping = 0.0;                 // K_z, N s/m
   double breff = 0.0, dreff = 0.0, freff = 0.0;  // of the effective rolling radius
   double fnomin = 0.0;                           // F_z0, N
 };
@@ -253,10 +250,10 @@ struct MagicFormula {
   Dimensions dimension;
   VerticalCoefficients vertical;
   TireInertia inertia;
-  double low_speed = 1.0;        // VXLOW, below which slip is regularised, m/s
-  double reference_speed = 0.0;  // LONGVL, V_0, m/s
-  Range slip{-1.5, 1.5};         // κ, -
-  Range slip_angle{-1.5, 1.5};   // α, rad
+  double low_speed = 1.0;         // VXLOW, below which slip is regularised, m/s
+  double reference_speed = 0.0;   // LONGVL, V_0, m/s
+  Range slip{-1.5, 1.5};          // κ, -
+  Range slip_angle{-1.5, 1.5};    // α, rad
   Range camber{-0.2618, 0.2618};  // γ, rad
   Range load;                     // F_z, N
   ScalingFactors scaling;

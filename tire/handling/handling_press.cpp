@@ -13,9 +13,8 @@ PressResults press_handling(const MagicFormula& tire, const MassProperties& mass
   if (options.obstacle.camber != 0.0)
     throw input_error(
         options.camber_from, options.camber_key,
-        fmt::format(
-            "is {:g} rad, expected 0: a handling tire's file says nothing of pressing at a camber angle",
-            options.obstacle.camber));
+        fmt::format("is {:g} rad, expected 0: a handling tire's file says nothing of pressing at a camber angle",
+                    options.obstacle.camber));
   const double most = tire.dimension.unloaded_radius - tire.dimension.rim_radius;
   if (options.deflection >= most)
     throw input_error(options.deflection_from, options.deflection_key,
@@ -31,7 +30,8 @@ PressResults press_handling(const MagicFormula& tire, const MassProperties& mass
   results.mass = mass;
   results.start_height = tire.dimension.unloaded_radius;
   results.stiffness_missing = "a handling tire's file says nothing of a ground that sticks";
-  measure_press(options, model, [](double) {}, results);
+  measure_press(
+      options, model, [](double) {}, results);
   return results;
 }
 

@@ -42,9 +42,7 @@ class HandlingSpec final : public TireSpec, public HasOwnContact, public NamesFi
     return std::make_unique<handling::HandlingTire>(file_.formula, shape(), context.gravity, file_.tir.string());
   }
   TireShape shape() const override;
-  std::unique_ptr<StaticTest> static_test() const override {
-    return std::make_unique<HandlingStatic>(file_, mass());
-  }
+  std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<HandlingStatic>(file_, mass()); }
   std::string own_contact() const override {
     return "its forces are those of the Magic Formula, which holds for hard level ground";
   }
@@ -67,9 +65,9 @@ TireDescription HandlingSpec::describe() const {
   TireDescription d;
   d.kind = "handling";
   d.name = "handling (Magic Formula)";
-  d.details = fmt::format("{}, {:g} N, {:g} kN/m, relaxation {:.3g} m along, {:.3g} m across",
-                          file_.tir.filename().string(), t.vertical.fnomin, 1e-3 * t.vertical.vertical_stiffness,
-                          s.longitudinal, s.lateral);
+  d.details =
+      fmt::format("{}, {:g} N, {:g} kN/m, relaxation {:.3g} m along, {:.3g} m across", file_.tir.filename().string(),
+                  t.vertical.fnomin, 1e-3 * t.vertical.vertical_stiffness, s.longitudinal, s.lateral);
   d.radius = t.dimension.unloaded_radius;
   d.width = d.tread_width = t.dimension.width;
   d.coordinates = 2;
@@ -85,8 +83,12 @@ TireShape HandlingSpec::shape() const {
   const handling::Dimensions& size = file_.formula.dimension;
   TireShape shape = cylinder(kFacets, size.unloaded_radius, size.width, kRows);
   // For tire.rigid alone, on any ground: rubber.
-  shape.material = {.young_modulus = 2.47e7, .poisson_ratio = 0.45, .friction = kTreadFriction, .restitution = 0.2,
-                    .normal_stiffness = 2e6, .normal_damping = 13.0};
+  shape.material = {.young_modulus = 2.47e7,
+                    .poisson_ratio = 0.45,
+                    .friction = kTreadFriction,
+                    .restitution = 0.2,
+                    .normal_stiffness = 2e6,
+                    .normal_damping = 13.0};
   if (options().friction >= 0.0) shape.material.friction = options().friction;
   shape.mass = mass();
   return shape;
@@ -134,12 +136,12 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
   const auto take = [&](const char* key, double in_tir, const char* name) {
     const double value = reader.has(key) ? reader.positive(key) : in_tir;
     if (!(value > 0.0))
-      throw input_error(
-          path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
-          is_tir(path) ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
-                         "model handling that names this file and says them"
-                       : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}",
-                                     name, f.tir.string()));
+      throw input_error(path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
+                        is_tir(path)
+                            ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
+                              "model handling that names this file and says them"
+                            : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}", name,
+                                          f.tir.string()));
     return value;
   };
   f.mass = take("mass", said.mass, "MASS");

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -15,8 +15,8 @@
 namespace furrow::tire::handling {
 namespace {
 
-constexpr double kNear = 4e-3;   // ε of the weights, of the radius
-constexpr double kAhead = 1.5;   // communication steps from a statement to the middle of the interval in which it acts
+constexpr double kNear = 4e-3;  // ε of the weights, of the radius
+constexpr double kAhead = 1.5;  // communication steps from a statement to the middle of the interval in which it acts
 
 /// A rim that goes on as it does.
 RimState later(const RimState& rim, double duration) {
@@ -99,9 +99,9 @@ Outcome HandlingTire::advance(const RimTrajectory& rim, const NodalForces& force
   if (!std::isfinite(now.deflection + now.load))
     return Outcome::failure("has a rim whose motion is not finite", "try a smaller run.step");
   if (now.deflection >= most)
-    return Outcome::failure(fmt::format("is pressed by {:.4g} m, down to its rim", now.deflection),
-                            fmt::format("{}: [DIMENSION] RIM_RADIUS leaves {:.4g} m; expected less load or drop",
-                                        file_, most));
+    return Outcome::failure(
+        fmt::format("is pressed by {:.4g} m, down to its rim", now.deflection),
+        fmt::format("{}: [DIMENSION] RIM_RADIUS leaves {:.4g} m; expected less load or drop", file_, most));
   state_contact(kAhead * duration, duration);
   return {};
 }
@@ -111,11 +111,9 @@ void HandlingTire::state_contact(double ahead, double duration) {
   const RimState rim = later(rim_, ahead);
   const ContactMotion motion = contact_motion(formula_, rim);
   if (!on_ground(motion) || !(motion.load > 0.0)) return;
-  const HandlingForces f =
-      contact_forces(formula_, motion, advanced(formula_, motion, patch_, ahead));
+  const HandlingForces f = contact_forces(formula_, motion, advanced(formula_, motion, patch_, ahead));
   const WheelAxes& axes = motion.axes;
-  const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z,
-                      f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
+  const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z, f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
   move(rim, before_, &moving_);
   distribute(wanted, axes.origin);
   double power = -formula_.vertical.vertical_stiffness * motion.deflection * motion.rate;

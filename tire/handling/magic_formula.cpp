@@ -32,10 +32,10 @@ double steepness(double stiffness, double shape, double height) {
 struct Terms {
   const MagicFormula& tire;
   SlipState at;
-  double nominal = 0.0;   // F'_z0 = λ_Fz0 F_z0, (4.E1)
-  double dfz = 0.0;       // (4.E2a)
-  double tan_alpha = 0.0; // α* (4.E3)
-  double radius = 0.0;    // R_0
+  double nominal = 0.0;    // F'_z0 = λ_Fz0 F_z0, (4.E1)
+  double dfz = 0.0;        // (4.E2a)
+  double tan_alpha = 0.0;  // α* (4.E3)
+  double radius = 0.0;     // R_0
 
   Terms(const MagicFormula& mf, const SlipState& state)
       : tire(mf),
@@ -52,7 +52,7 @@ struct Pure {
   double shift = 0.0;      // S_H
   double lift = 0.0;       // S_V, N
   double b = 0.0, c = 0.0, d = 0.0;
-  double friction = 0.0;   // μ
+  double friction = 0.0;  // μ
 };
 
 /// (4.E9) to (4.E18)
@@ -61,17 +61,17 @@ Pure longitudinal(const Terms& t) {
   const auto& l = t.tire.scaling;
   const double gamma = l.lgax * t.at.camber;
   Pure x;
-  x.c = p.pcx1 * l.lcx;                                                                      // (4.E11)
-  x.friction = (p.pdx1 + p.pdx2 * t.dfz) * (1.0 - p.pdx3 * square(gamma)) * l.lmux;          // (4.E13)
-  x.d = x.friction * t.at.load;                                                              // (4.E12)
-  x.stiffness = t.at.load * (p.pkx1 + p.pkx2 * t.dfz) * std::exp(p.pkx3 * t.dfz) * l.lkx;    // (4.E15)
-  x.b = steepness(x.stiffness, x.c, x.d);                                                    // (4.E16)
-  x.shift = (p.phx1 + p.phx2 * t.dfz) * l.lhx;                                               // (4.E17)
-  x.lift = t.at.load * (p.pvx1 + p.pvx2 * t.dfz) * l.lvx * l.lmux;                           // (4.E18)
-  const double kappa = t.at.slip + x.shift;                                                  // (4.E10)
-  const double e = std::min(1.0, (p.pex1 + p.pex2 * t.dfz + p.pex3 * square(t.dfz)) *
-                                     (1.0 - p.pex4 * sign(kappa)) * l.lex);                  // (4.E14)
-  x.force = x.d * sin(curve(x.b, x.c, e, kappa)) + x.lift;                                   // (4.E9)
+  x.c = p.pcx1 * l.lcx;                                                                    // (4.E11)
+  x.friction = (p.pdx1 + p.pdx2 * t.dfz) * (1.0 - p.pdx3 * square(gamma)) * l.lmux;        // (4.E13)
+  x.d = x.friction * t.at.load;                                                            // (4.E12)
+  x.stiffness = t.at.load * (p.pkx1 + p.pkx2 * t.dfz) * std::exp(p.pkx3 * t.dfz) * l.lkx;  // (4.E15)
+  x.b = steepness(x.stiffness, x.c, x.d);                                                  // (4.E16)
+  x.shift = (p.phx1 + p.phx2 * t.dfz) * l.lhx;                                             // (4.E17)
+  x.lift = t.at.load * (p.pvx1 + p.pvx2 * t.dfz) * l.lvx * l.lmux;                         // (4.E18)
+  const double kappa = t.at.slip + x.shift;                                                // (4.E10)
+  const double e = std::min(
+      1.0, (p.pex1 + p.pex2 * t.dfz + p.pex3 * square(t.dfz)) * (1.0 - p.pex4 * sign(kappa)) * l.lex);  // (4.E14)
+  x.force = x.d * sin(curve(x.b, x.c, e, kappa)) + x.lift;                                              // (4.E9)
   return x;
 }
 
@@ -81,18 +81,18 @@ Pure lateral(const Terms& t, double camber) {
   const auto& l = t.tire.scaling;
   const double gamma = l.lgay * camber, load = t.at.load;
   Pure y;
-  y.c = p.pcy1 * l.lcy;                                                                   // (4.E21)
-  y.friction = (p.pdy1 + p.pdy2 * t.dfz) * (1.0 - p.pdy3 * square(gamma)) * l.lmuy;       // (4.E23)
-  y.d = y.friction * load;                                                                // (4.E22)
+  y.c = p.pcy1 * l.lcy;                                                              // (4.E21)
+  y.friction = (p.pdy1 + p.pdy2 * t.dfz) * (1.0 - p.pdy3 * square(gamma)) * l.lmuy;  // (4.E23)
+  y.d = y.friction * load;                                                           // (4.E22)
   y.stiffness = p.pky1 * t.tire.vertical.fnomin * sin(2.0 * atan(load / (p.pky2 * t.nominal))) *
-                (1.0 - p.pky3 * std::abs(gamma)) * l.lfzo * l.lky;                        // (4.E25)
-  y.b = steepness(y.stiffness, y.c, y.d);                                                 // (4.E26)
-  y.shift = (p.phy1 + p.phy2 * t.dfz) * l.lhy + p.phy3 * gamma;                           // (4.E27)
+                (1.0 - p.pky3 * std::abs(gamma)) * l.lfzo * l.lky;                                   // (4.E25)
+  y.b = steepness(y.stiffness, y.c, y.d);                                                            // (4.E26)
+  y.shift = (p.phy1 + p.phy2 * t.dfz) * l.lhy + p.phy3 * gamma;                                      // (4.E27)
   y.lift = load * ((p.pvy1 + p.pvy2 * t.dfz) * l.lvy + (p.pvy3 + p.pvy4 * t.dfz) * gamma) * l.lmuy;  // (4.E29)
-  const double alpha = t.tan_alpha + y.shift;                                             // (4.E20)
-  const double e = std::min(1.0, (p.pey1 + p.pey2 * t.dfz) *
-                                     (1.0 - (p.pey3 + p.pey4 * gamma) * sign(alpha)) * l.ley);  // (4.E24)
-  y.force = y.d * sin(curve(y.b, y.c, e, alpha)) + y.lift;                                // (4.E19)
+  const double alpha = t.tan_alpha + y.shift;                                                        // (4.E20)
+  const double e =
+      std::min(1.0, (p.pey1 + p.pey2 * t.dfz) * (1.0 - (p.pey3 + p.pey4 * gamma) * sign(alpha)) * l.ley);  // (4.E24)
+  y.force = y.d * sin(curve(y.b, y.c, e, alpha)) + y.lift;                                                 // (4.E19)
   return y;
 }
 
@@ -105,9 +105,9 @@ double weight(double b, double c, double e, double x, double shift) {
 /// (4.E50) to (4.E57)
 double combined_longitudinal(const Terms& t, const Pure& x) {
   const auto& p = t.tire.longitudinal;
-  const double b = p.rbx1 * cos(atan(p.rbx2 * t.at.slip)) * t.tire.scaling.lxal;       // (4.E54)
-  const double e = std::min(1.0, p.rex1 + p.rex2 * t.dfz);                             // (4.E56)
-  return x.force * std::max(0.0, weight(b, p.rcx1, e, t.tan_alpha, p.rhx1));           // (4.E50) to (4.E53)
+  const double b = p.rbx1 * cos(atan(p.rbx2 * t.at.slip)) * t.tire.scaling.lxal;  // (4.E54)
+  const double e = std::min(1.0, p.rex1 + p.rex2 * t.dfz);                        // (4.E56)
+  return x.force * std::max(0.0, weight(b, p.rcx1, e, t.tan_alpha, p.rhx1));      // (4.E50) to (4.E53)
 }
 
 struct Combined {
@@ -120,13 +120,13 @@ Combined combined_lateral(const Terms& t, const Pure& y) {
   const auto& p = t.tire.lateral;
   const auto& l = t.tire.scaling;
   const double gamma = l.lgay * t.at.camber;
-  const double b = p.rby1 * cos(atan(p.rby2 * (t.tan_alpha - p.rby3))) * l.lyka;       // (4.E62)
-  const double e = std::min(1.0, p.rey1 + p.rey2 * t.dfz);                             // (4.E64)
-  const double shift = p.rhy1 + p.rhy2 * t.dfz;                                        // (4.E65)
-  const double height = y.friction * t.at.load * (p.rvy1 + p.rvy2 * t.dfz + p.rvy3 * gamma) *
-                        cos(atan(p.rvy4 * t.tan_alpha));                               // (4.E67)
+  const double b = p.rby1 * cos(atan(p.rby2 * (t.tan_alpha - p.rby3))) * l.lyka;  // (4.E62)
+  const double e = std::min(1.0, p.rey1 + p.rey2 * t.dfz);                        // (4.E64)
+  const double shift = p.rhy1 + p.rhy2 * t.dfz;                                   // (4.E65)
+  const double height =
+      y.friction * t.at.load * (p.rvy1 + p.rvy2 * t.dfz + p.rvy3 * gamma) * cos(atan(p.rvy4 * t.tan_alpha));  // (4.E67)
   Combined out;
-  out.lift = height * sin(p.rvy5 * atan(p.rvy6 * t.at.slip)) * l.lvyka;                // (4.E66)
+  out.lift = height * sin(p.rvy5 * atan(p.rvy6 * t.at.slip)) * l.lvyka;                    // (4.E66)
   out.force = y.force * std::max(0.0, weight(b, p.rcy1, e, t.at.slip, shift)) + out.lift;  // (4.E58) to (4.E61)
   return out;
 }
@@ -138,32 +138,31 @@ double aligning(const Terms& t, const Pure& x, const Pure& y, double fx, const C
   const double gamma = l.lgaz * t.at.camber, load = t.at.load;
   const double stiffness = l.lky / l.lmuy;
   const double cos_alpha = cos(t.at.slip_angle);
-  const double longitudinal_slip =
-      y.stiffness != 0.0 ? square(x.stiffness / y.stiffness) * square(t.at.slip) : 0.0;
-  const auto equivalent = [&](double alpha) {                                          // (4.E77), (4.E78)
+  const double longitudinal_slip = y.stiffness != 0.0 ? square(x.stiffness / y.stiffness) * square(t.at.slip) : 0.0;
+  const auto equivalent = [&](double alpha) {  // (4.E77), (4.E78)
     return std::sqrt(square(alpha) + longitudinal_slip) * sign(alpha);
   };
   const double alpha_t = equivalent(t.tan_alpha + q.qhz1 + q.qhz2 * t.dfz + (q.qhz3 + q.qhz4 * t.dfz) * gamma);
   const double bt = (q.qbz1 + q.qbz2 * t.dfz + q.qbz3 * square(t.dfz)) *
-                    (1.0 + q.qbz4 * gamma + q.qbz5 * std::abs(gamma)) * stiffness;     // (4.E40)
-  const double ct = q.qcz1;                                                            // (4.E41)
+                    (1.0 + q.qbz4 * gamma + q.qbz5 * std::abs(gamma)) * stiffness;  // (4.E40)
+  const double ct = q.qcz1;                                                         // (4.E41)
   const double dt = load * (q.qdz1 + q.qdz2 * t.dfz) * (1.0 + q.qdz3 * gamma + q.qdz4 * square(gamma)) *
-                    (t.radius / t.tire.vertical.fnomin) * l.ltr;                       // (4.E42), (4.E43)
-  const double et = std::min(1.0, (q.qez1 + q.qez2 * t.dfz + q.qez3 * square(t.dfz)) *
-                                      (1.0 + (q.qez4 + q.qez5 * gamma) * 2.0 / std::numbers::pi *
-                                                 atan(bt * ct * alpha_t)));            // (4.E44)
-  const double trail = dt * cos(curve(bt, ct, et, alpha_t)) * cos_alpha;               // (4.E73)
+                    (t.radius / t.tire.vertical.fnomin) * l.ltr;  // (4.E42), (4.E43)
+  const double et = std::min(
+      1.0, (q.qez1 + q.qez2 * t.dfz + q.qez3 * square(t.dfz)) *
+               (1.0 + (q.qez4 + q.qez5 * gamma) * 2.0 / std::numbers::pi * atan(bt * ct * alpha_t)));  // (4.E44)
+  const double trail = dt * cos(curve(bt, ct, et, alpha_t)) * cos_alpha;                               // (4.E73)
 
-  const double shift = y.shift + (y.stiffness != 0.0 ? y.lift / y.stiffness : 0.0);    // (4.E38)
+  const double shift = y.shift + (y.stiffness != 0.0 ? y.lift / y.stiffness : 0.0);  // (4.E38)
   const double alpha_r = equivalent(t.tan_alpha + shift);
-  const double br = q.qbz9 * stiffness + q.qbz10 * y.b * y.c;                          // (4.E45)
-  const double dr = load * ((q.qdz6 + q.qdz7 * t.dfz) * l.lres + (q.qdz8 + q.qdz9 * t.dfz) * gamma) *
-                    t.radius * l.lmuy;                                                 // (4.E47)
-  const double residual = dr * cos(atan(br * alpha_r)) * cos_alpha;                    // (4.E75), C_r = 1
+  const double br = q.qbz9 * stiffness + q.qbz10 * y.b * y.c;  // (4.E45)
+  const double dr =
+      load * ((q.qdz6 + q.qdz7 * t.dfz) * l.lres + (q.qdz8 + q.qdz9 * t.dfz) * gamma) * t.radius * l.lmuy;  // (4.E47)
+  const double residual = dr * cos(atan(br * alpha_r)) * cos_alpha;  // (4.E75), C_r = 1
   const double arm = t.radius *
-                     (q.ssz1 + q.ssz2 * side.force / t.tire.vertical.fnomin +
-                      (q.ssz3 + q.ssz4 * t.dfz) * gamma) * l.ls;                       // (4.E76)
-  return -trail * (side.force - side.lift) + residual + arm * fx;                      // (4.E71), (4.E72), (4.E74)
+                     (q.ssz1 + q.ssz2 * side.force / t.tire.vertical.fnomin + (q.ssz3 + q.ssz4 * t.dfz) * gamma) *
+                     l.ls;                                         // (4.E76)
+  return -trail * (side.force - side.lift) + residual + arm * fx;  // (4.E71), (4.E72), (4.E74)
 }
 
 }  // namespace
@@ -187,15 +186,14 @@ HandlingForces evaluate_formula(const MagicFormula& tire, const SlipState& state
   const auto& r = tire.rolling;
   const double speed = tire.reference_speed > 0.0 ? state.speed / tire.reference_speed : 0.0;
   f.my = -state.load * t.radius *
-         (r.qsy1 + r.qsy2 * f.fx / fz0 + r.qsy3 * std::abs(speed) + r.qsy4 * square(square(speed))) *
-         l.lmy;  // (4.E70)
+         (r.qsy1 + r.qsy2 * f.fx / fz0 + r.qsy3 * std::abs(speed) + r.qsy4 * square(square(speed))) * l.lmy;  // (4.E70)
   f.mz = aligning(t, x, y, f.fx, side);
   return f;
 }
 
 HandlingForces evaluate(const MagicFormula& tire, const SlipState& state) {
-  FURROW_ASSERT(std::isfinite(state.load + state.slip + state.slip_angle + state.camber + state.speed),
-                state.load, state.slip, state.slip_angle);
+  FURROW_ASSERT(std::isfinite(state.load + state.slip + state.slip_angle + state.camber + state.speed), state.load,
+                state.slip, state.slip_angle);
   if (!(state.load > 0.0)) return {};
   const auto held = [](double value, const Range& range) { return std::clamp(value, range.least, range.most); };
   SlipState at = state;
@@ -221,8 +219,8 @@ RelaxationLengths relaxation_lengths(const MagicFormula& tire, double load, doub
   RelaxationLengths s;
   s.longitudinal = load * (x.ptx1 + x.ptx2 * dfz) * std::exp(-x.ptx3 * dfz) * (radius / fz0) * l.lsgkp;
   if (y.pty2 != 0.0)
-    s.lateral = y.pty1 * sin(2.0 * atan(load / (y.pty2 * nominal))) *
-                (1.0 - y.pky3 * std::abs(l.lgay * camber)) * radius * l.lfzo * l.lsgal;
+    s.lateral = y.pty1 * sin(2.0 * atan(load / (y.pty2 * nominal))) * (1.0 - y.pky3 * std::abs(l.lgay * camber)) *
+                radius * l.lfzo * l.lsgal;
   s.longitudinal = std::max(0.0, s.longitudinal);
   s.lateral = std::max(0.0, s.lateral);
   return s;

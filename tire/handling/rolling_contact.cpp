@@ -10,9 +10,9 @@
 namespace furrow::tire::handling {
 namespace {
 
-constexpr double kDampingRatio = 0.1;    // of the standing patch
-constexpr double kLeastLength = 1e-3;    // m, of a relaxation length under a light load
-constexpr double kSmall = 1e-9;          // exponent below which the exact solution is taken as a line
+constexpr double kDampingRatio = 0.1;  // of the standing patch
+constexpr double kLeastLength = 1e-3;  // m, of a relaxation length under a light load
+constexpr double kSmall = 1e-9;        // exponent below which the exact solution is taken as a line
 
 /// x after `duration` of ẋ = −slide − speed x/length.
 double relaxed(double x, double slide, double speed, double length, double duration) {
@@ -79,14 +79,13 @@ HandlingForces contact_forces(const MagicFormula& tire, const ContactMotion& mot
   SlipState at{.load = motion.load, .camber = motion.axes.camber_angle, .speed = motion.travel};
   const double speed = std::max(std::abs(motion.travel), tire.low_speed);
   const HandlingForces still = evaluate(tire, at);
-  at.slip = s.longitudinal > 0.0
-                ? patch.along / s.longitudinal -
-                      standing(tire, motion, still.slip_stiffness, s.longitudinal) * motion.slip_x
-                : -motion.slip_x / speed;
+  at.slip = s.longitudinal > 0.0 ? patch.along / s.longitudinal -
+                                       standing(tire, motion, still.slip_stiffness, s.longitudinal) * motion.slip_x
+                                 : -motion.slip_x / speed;
   const double tangent =
-      s.lateral > 0.0 ? -patch.across / s.lateral +
-                            standing(tire, motion, -still.cornering_stiffness, s.lateral) * motion.slip_y
-                      : motion.slip_y / speed;
+      s.lateral > 0.0
+          ? -patch.across / s.lateral + standing(tire, motion, -still.cornering_stiffness, s.lateral) * motion.slip_y
+          : motion.slip_y / speed;
   at.slip_angle = std::atan(tangent);
   HandlingForces f = evaluate(tire, at);
   // Rolling resistance turns with the wheel's direction, and is none at rest.

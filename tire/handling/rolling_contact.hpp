@@ -39,10 +39,10 @@ void visit_fields(Visit&& visit, FieldsOf<PatchState> auto& s) {
 /// What the rim's motion is to the contact.
 struct ContactMotion {
   WheelAxes axes;
-  double deflection = 0.0;  // ρ, m; not above 0: in the air
-  double rate = 0.0;        // ρ̇, m/s
-  double load = 0.0;        // F_z, N
-  double travel = 0.0;      // V_Cx, m/s
+  double deflection = 0.0;            // ρ, m; not above 0: in the air
+  double rate = 0.0;                  // ρ̇, m/s
+  double load = 0.0;                  // F_z, N
+  double travel = 0.0;                // V_Cx, m/s
   double slip_x = 0.0, slip_y = 0.0;  // V_sx, V_sy, m/s
 };
 

@@ -17,13 +17,13 @@
 namespace furrow::tire::handling {
 namespace {
 
-constexpr double kStraight = 1e-6;  // rad
+constexpr double kStraight = 1e-6;                        // rad
 constexpr double kMostLoad = 1e9;                         // N
 constexpr double kLeastRadius = 1e-3, kMostRadius = 1e3;  // m
-constexpr auto kColumns = std::to_array<const char*>(
-    {"iso_w.force_N.0", "iso_w.force_N.1", "iso_w.force_N.2", "iso_w.moment_Nm.0", "iso_w.moment_Nm.1",
-     "iso_w.moment_Nm.2", "iso_w.slip_angle_rad", "iso_w.camber_angle_rad", "iso_w.loaded_radius_m",
-     "effective_rolling_radius_m"});
+constexpr auto kColumns =
+    std::to_array<const char*>({"iso_w.force_N.0", "iso_w.force_N.1", "iso_w.force_N.2", "iso_w.moment_Nm.0",
+                                "iso_w.moment_Nm.1", "iso_w.moment_Nm.2", "iso_w.slip_angle_rad",
+                                "iso_w.camber_angle_rad", "iso_w.loaded_radius_m", "effective_rolling_radius_m"});
 
 /// Of a line of CSV with quotes (RFC 4180).
 std::vector<std::string> cells_of(const std::string& line) {
@@ -95,10 +95,10 @@ std::vector<SweepPoint> read_sweep_table(const std::filesystem::path& file) {
     p.rolling_radius = v[9];
     if (!(p.state.load > 0.0 && p.state.load <= kMostLoad && p.rolling_radius >= kLeastRadius &&
           p.rolling_radius <= kMostRadius))
-      throw wrong(fmt::format(
-          "has a load of {:g} N and a rolling radius of {:g} m, expected a wheel that rolls on the ground: "
-          "above 0 to {:g} N, {:g} to {:g} m",
-          p.state.load, p.rolling_radius, kMostLoad, kLeastRadius, kMostRadius));
+      throw wrong(
+          fmt::format("has a load of {:g} N and a rolling radius of {:g} m, expected a wheel that rolls on the ground: "
+                      "above 0 to {:g} N, {:g} to {:g} m",
+                      p.state.load, p.rolling_radius, kMostLoad, kLeastRadius, kMostRadius));
     const bool free = cells[at("rig.mode")] == "free_rolling";
     p.rolls_freely = free && std::abs(p.state.slip_angle) < kStraight && std::abs(p.state.camber) < kStraight;
     p.state.slip = free ? 0.0 : std::numeric_limits<double>::quiet_NaN();

@@ -56,8 +56,7 @@ class Sections {
   bool has(const std::string& section) const { return sections_.contains(section); }
   const Section& at(const std::string& section) const {
     const auto found = sections_.find(section);
-    if (found == sections_.end())
-      throw input_error(file_, "[" + section + "]", "is missing, expected this section");
+    if (found == sections_.end()) throw input_error(file_, "[" + section + "]", "is missing, expected this section");
     return found->second;
   }
   Error wrong(const std::string& section, const std::string& key, const std::string& what) const {
@@ -137,8 +136,7 @@ class SectionReader {
   void finish() const {
     const std::vector<std::string> known(used_.begin(), used_.end());
     for (const auto& [key, value] : section_)
-      if (!used_.contains(key))
-        throw wrong(printable(key), unknown_text(nearest_words(key, known), known));
+      if (!used_.contains(key)) throw wrong(printable(key), unknown_text(nearest_words(key, known), known));
   }
   Error wrong(const std::string& key, const std::string& what) const { return sections_.wrong(name_, key, what); }
 
@@ -151,8 +149,8 @@ class SectionReader {
 
 void read_units(const Sections& sections) {
   SectionReader units(sections, "UNITS");
-  for (const auto& [key, unit] : {std::pair{"LENGTH", "METER"}, {"FORCE", "NEWTON"}, {"ANGLE", "RADIANS"},
-                                  {"MASS", "KG"}, {"TIME", "SECOND"}}) {
+  for (const auto& [key, unit] :
+       {std::pair{"LENGTH", "METER"}, {"FORCE", "NEWTON"}, {"ANGLE", "RADIANS"}, {"MASS", "KG"}, {"TIME", "SECOND"}}) {
     const std::string given = units.text(key);
     const std::string name = upper(given);
     if (name != unit && name + "S" != unit && name != std::string(unit) + "S")
@@ -187,8 +185,8 @@ Range read_range(const Sections& sections, const std::string& name, const std::s
   SectionReader reader(sections, name);
   const Range range{reader.number(prefix + "MIN"), reader.number(prefix + "MAX")};
   if (!(range.least < range.most))
-    throw reader.wrong(prefix + "MIN", fmt::format("is {:g}, expected less than {}MAX of {:g}", range.least,
-                                                   prefix, range.most));
+    throw reader.wrong(prefix + "MIN",
+                       fmt::format("is {:g}, expected less than {}MAX of {:g}", range.least, prefix, range.most));
   if (limit > 0.0 && (range.least < -limit || range.most > limit))
     throw reader.wrong(range.least < -limit ? prefix + "MIN" : prefix + "MAX",
                        fmt::format("is {:g}, expected between {:g} and {:g} rad",
@@ -252,9 +250,8 @@ MagicFormula parse_tir(const std::string& text, const std::string& name) {
   }
   if (sections.has("INERTIA")) {
     SectionReader inertia(sections, "INERTIA");
-    visit_fields(
-        [&](const Field& field, double& value) { value = inertia.not_negative_or(field.name, value); },
-        t.inertia);
+    visit_fields([&](const Field& field, double& value) { value = inertia.not_negative_or(field.name, value); },
+                 t.inertia);
   }
   t.slip = read_range(sections, "LONG_SLIP_RANGE", "KPU", 0.0);
   t.slip_angle = read_range(sections, "SLIP_ANGLE_RANGE", "ALP", kMostAngle);
@@ -283,11 +280,9 @@ std::string tir_text(const MagicFormula& t, const std::vector<std::string>& comm
   };
   const auto all = [&](const char* name, const auto& coefficients) {
     section(name);
-    visit_fields(
-        [&](const Field& field, double value) {
-          line(field.name, value, std::string_view(field.unit) == "-" ? "" : field.unit);
-        },
-        coefficients);
+    visit_fields([&](const Field& field,
+                     double value) { line(field.name, value, std::string_view(field.unit) == "-" ? "" : field.unit); },
+                 coefficients);
   };
   const auto range = [&](const char* name, const std::string& prefix, const Range& r, const char* unit) {
     section(name);

@@ -131,8 +131,8 @@ Outcome PlanarCarcass::step(double h, const PlaneRimStep& rim, const PlanarField
   const bool sound = elements_.force(r_, u_, internal_);
   double change = 0.0;  // Σ (F_int' − F_int)·Δr
   for (std::size_t n = 0; n < r_.size(); ++n)
-    change += h * ((internal_.x[n] - internal_before_.x[n]) * u_.x[n] +
-                   (internal_.z[n] - internal_before_.z[n]) * u_.z[n]);
+    change +=
+        h * ((internal_.x[n] - internal_before_.x[n]) * u_.x[n] + (internal_.z[n] - internal_before_.z[n]) * u_.z[n]);
   const double power = elements_.viscous_power(r_, u_);
   sums.numerical_loss += 0.5 * (squares + change);
   sums.dissipation += 0.5 * h * (power_ + power);
@@ -145,12 +145,11 @@ Outcome PlanarCarcass::step(double h, const PlaneRimStep& rim, const PlanarField
 
 Outcome PlanarCarcass::check() const {
   const double least = least_radius();
-  if (!std::isfinite(least))
-    return Outcome::failure("has a motion that is not finite", "try a smaller run.step");
+  if (!std::isfinite(least)) return Outcome::failure("has a motion that is not finite", "try a smaller run.step");
   if (least < kLeastRadius * rim_radius_)
-    return Outcome::failure("was pressed to its rim",
-                            fmt::format("a node of the tread is {:.4g} m from the axle, the rim {:.4g} m",
-                                        least, rim_radius_));
+    return Outcome::failure(
+        "was pressed to its rim",
+        fmt::format("a node of the tread is {:.4g} m from the axle, the rim {:.4g} m", least, rim_radius_));
   return {};
 }
 

@@ -42,8 +42,8 @@ void PlanarContact::find_corners(const PlanarField& x) {
   for (const int n : outer_)
     left = std::min(left, x.x[n]), right = std::max(right, x.x[n]), low = std::min(low, x.z[n]);
   const auto& corners = ground_.corners();
-  auto corner = std::lower_bound(corners.begin(), corners.end(), left,
-                                 [](const PlanarPoint& p, double at) { return p.x < at; });
+  auto corner =
+      std::lower_bound(corners.begin(), corners.end(), left, [](const PlanarPoint& p, double at) { return p.x < at; });
   for (; corner != corners.end() && corner->x <= right; ++corner) {
     if (corner->z <= low) continue;
     PlanarTouch touch;
@@ -65,8 +65,7 @@ void PlanarContact::find_corners(const PlanarField& x) {
   }
 }
 
-void PlanarContact::load(const PlanarState& state, const std::vector<double>& mass, double step,
-                         PlanarField& force) {
+void PlanarContact::load(const PlanarState& state, const std::vector<double>& mass, double step, PlanarField& force) {
   touches_.clear();
   find_nodes(state.x);
   find_corners(state.x);
@@ -79,8 +78,7 @@ void PlanarContact::load(const PlanarState& state, const std::vector<double>& ma
     const double sliding = vx * t.push_z - vz * t.push_x;
     t.force = planar_normal_force(law_.stiffness, t.depth, vx * t.push_x + vz * t.push_z, m, step);
     t.friction = std::copysign(planar_friction_force(law_.friction, t.force, sliding, m, step), -sliding);
-    const double fx = t.force * t.push_x + t.friction * t.push_z,
-                 fz = t.force * t.push_z - t.friction * t.push_x;
+    const double fx = t.force * t.push_x + t.friction * t.push_z, fz = t.force * t.push_z - t.friction * t.push_x;
     force.x[t.a] += of_a * fx, force.z[t.a] += of_a * fz;
     force.x[b] += of_b * fx, force.z[b] += of_b * fz;
   }

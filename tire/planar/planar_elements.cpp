@@ -30,8 +30,7 @@ PlanarElements::PlanarElements(const PlanarMesh& mesh, std::span<const PlanarMat
     const double bx = p.x[t[2]] - p.x[t[0]], bz = p.z[t[2]] - p.z[t[0]];
     const double determinant = ax * bz - bx * az;
     FURROW_ASSERT(determinant > 0.0, e, determinant);
-    const std::array<double, 4> inverse{bz / determinant, -bx / determinant, -az / determinant,
-                                        ax / determinant};
+    const std::array<double, 4> inverse{bz / determinant, -bx / determinant, -az / determinant, ax / determinant};
     for (int k = 0; k < 4; ++k) inverse_[k].push_back(inverse[k]);
     const PlanarModuli moduli = planar_moduli(material, options.law);
     area_.push_back(0.5 * determinant);
@@ -74,8 +73,7 @@ void PlanarElements::average(const PlanarField& field) {
   double* volume = volume_.data();
 #pragma omp simd
   for (int e = 0; e < n; ++e)
-    volume[e] =
-        0.5 * ((x[n1[e]] - x[n0[e]]) * (z[n2[e]] - z[n0[e]]) - (x[n2[e]] - x[n0[e]]) * (z[n1[e]] - z[n0[e]]));
+    volume[e] = 0.5 * ((x[n1[e]] - x[n0[e]]) * (z[n2[e]] - z[n0[e]]) - (x[n2[e]] - x[n0[e]]) * (z[n1[e]] - z[n0[e]]));
   for (std::size_t k = 0; k < patches_.size(); ++k) {
     const Patch& patch = patches_[k];
     double sum = 0.0;
@@ -140,8 +138,8 @@ void PlanarElements::gather(PlanarField& out) const {
 }
 
 bool PlanarElements::force(const PlanarField& x, const PlanarField& v, PlanarField& out) {
-  FURROW_ASSERT(x.size() == mass_.size() && v.size() == x.size() && out.size() == x.size(), x.size(),
-                v.size(), out.size());
+  FURROW_ASSERT(x.size() == mass_.size() && v.size() == x.size() && out.size() == x.size(), x.size(), v.size(),
+                out.size());
   if (options_.averaged) average(x);
   const bool sound = options_.averaged ? stresses<true>(x, v) : stresses<false>(x, v);
   gather(out);

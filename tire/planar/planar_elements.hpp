@@ -42,8 +42,7 @@ struct PlanarStress {
 class PlanarElements {
  public:
   /// @param materials of the parts. @pre every triangle has a positive area and a part with a material
-  PlanarElements(const PlanarMesh& mesh, std::span<const PlanarMaterial> materials,
-                 const PlanarOptions& options);
+  PlanarElements(const PlanarMesh& mesh, std::span<const PlanarMaterial> materials, const PlanarOptions& options);
 
   int nodes() const { return static_cast<int>(mass_.size()); }
   int size() const { return static_cast<int>(mu_.size()); }

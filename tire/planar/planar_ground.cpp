@@ -36,9 +36,7 @@ PlanarGround::PlanarGround(std::vector<PlanarPoint> points) : points_(std::move(
   corners_.push_back(points_.back());
 }
 
-PlanarGround PlanarGround::plate(double radius) {
-  return PlanarGround({{-kFar * radius, 0.0}, {kFar * radius, 0.0}});
-}
+PlanarGround PlanarGround::plate(double radius) { return PlanarGround({{-kFar * radius, 0.0}, {kFar * radius, 0.0}}); }
 
 PlanarGround PlanarGround::bar(double width, double position) {
   FURROW_ASSERT(width > 0.0, width);

@@ -91,8 +91,7 @@ PlanarMesh planar_annulus(double inner, double outer, int rings, int around) {
   PlanarMesh mesh;
   Ring before;
   for (int k = 0; k <= rings; ++k) {
-    const Ring ring =
-        add_ring(mesh, inner + (outer - inner) * k / rings, around, (rings - k) % 2 == 0 ? 0.0 : 0.5);
+    const Ring ring = add_ring(mesh, inner + (outer - inner) * k / rings, around, (rings - k) % 2 == 0 ? 0.0 : 0.5);
     if (k == 0)
       mesh.inner = ring.node;
     else
@@ -109,10 +108,9 @@ PlanarMesh merged(const PlanarMesh& disc, const PlanarMesh& annulus) {
   std::vector<int> name(annulus.position.size(), -1);
   for (std::size_t j = 0; j < disc.outer.size(); ++j) {
     const int a = disc.outer[j], b = annulus.inner[j];
-    FURROW_ASSERT(
-        std::hypot(disc.position.x[a] - annulus.position.x[b], disc.position.z[a] - annulus.position.z[b]) <=
-            kSamePlace * std::hypot(disc.position.x[a], disc.position.z[a]),
-        j);
+    FURROW_ASSERT(std::hypot(disc.position.x[a] - annulus.position.x[b], disc.position.z[a] - annulus.position.z[b]) <=
+                      kSamePlace * std::hypot(disc.position.x[a], disc.position.z[a]),
+                  j);
     name[b] = a;
   }
   for (int n = 0; n < annulus.nodes(); ++n) {

@@ -17,9 +17,9 @@ struct PlanarMesh {
   PlanarField position;                       // undeformed, m
   std::vector<std::array<int, 3>> triangles;  // nodes, counter-clockwise
   std::vector<int> part;                      // of each triangle: its material
-  std::vector<int> outer, inner;  // nodes of the two edges, counter-clockwise; a disc has no inner edge
-  std::vector<int> rim;           // of a wheel: nodes that disc and tire share, counter-clockwise
-  int centre = -1;                // node at the axle; −1: none
+  std::vector<int> outer, inner;              // nodes of the two edges, counter-clockwise; a disc has no inner edge
+  std::vector<int> rim;                       // of a wheel: nodes that disc and tire share, counter-clockwise
+  int centre = -1;                            // node at the axle; −1: none
 
   int nodes() const { return static_cast<int>(position.size()); }
   int elements() const { return static_cast<int>(triangles.size()); }

@@ -42,13 +42,11 @@ Eigen::MatrixXcd PlanarModes::stiffness(int order) const {
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) {
         if (place(node[a]) < 0 || place(node[b]) < 0) continue;
-        k.block<2, 2>(place(node[a]), place(node[b])) += tie(p, node[a], order).adjoint() *
-                                                         m.block<2, 2>(2 * a, 2 * b).cast<Complex>() *
-                                                         tie(p, node[b], order);
+        k.block<2, 2>(place(node[a]), place(node[b])) +=
+            tie(p, node[a], order).adjoint() * m.block<2, 2>(2 * a, 2 * b).cast<Complex>() * tie(p, node[b], order);
       }
   }
-  for (const PlanarElements::Patch& patch :
-       elements.patches()) {  // b A_p U'' g gᵀ of the undeformed tire, U'' = 2 κ
+  for (const PlanarElements::Patch& patch : elements.patches()) {  // b A_p U'' g gᵀ of the undeformed tire, U'' = 2 κ
     Eigen::VectorXcd g = Eigen::VectorXcd::Zero(unknowns());
     for (const int e : patch.elements) {
       const auto part = volume_gradient(elements, p, e);

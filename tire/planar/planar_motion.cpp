@@ -23,8 +23,8 @@ PlanarMotion::PlanarMotion(PlanarElements elements, PlanarState start, PlanarInt
       mass_(elements_.mass()),
       force_(mass_.size()),
       rate_(mass_.size()) {
-  FURROW_ASSERT(state_.x.size() == mass_.size() && state_.v.size() == mass_.size(), state_.x.size(),
-                state_.v.size(), mass_.size());
+  FURROW_ASSERT(state_.x.size() == mass_.size() && state_.v.size() == mass_.size(), state_.x.size(), state_.v.size(),
+                mass_.size());
   if (integrator_ == PlanarIntegrator::runge_kutta_4) stage_ = sum_ = state_, stage_force_ = force_;
 }
 
@@ -66,8 +66,7 @@ bool PlanarMotion::runge_kutta(double h) {
     const int n = static_cast<int>(mass_.size());
     const double way = kAt[k] * h;
     for (int a = 0; a < n; ++a) {
-      stage_.x.x[a] = state_.x.x[a] + way * stage_.v.x[a],
-      stage_.x.z[a] = state_.x.z[a] + way * stage_.v.z[a];
+      stage_.x.x[a] = state_.x.x[a] + way * stage_.v.x[a], stage_.x.z[a] = state_.x.z[a] + way * stage_.v.z[a];
       stage_.v.x[a] = state_.v.x[a] + way * rate_.x[a], stage_.v.z[a] = state_.v.z[a] + way * rate_.z[a];
     }
   }

@@ -16,11 +16,10 @@ constexpr double kMinLoad = 1.0;  // N, below which the residual is relative to 
 void require_range(const PlanarParams& params, const PressOptions& options) {
   const double most = kMostPlanarDeflection * (params.size.radius - params.size.rim_radius);
   if (options.deflection > most)
-    throw input_error(
-        options.deflection_from, options.deflection_key,
-        fmt::format("is {:g} m, expected at most {:.4g} m, {:g} of the tire's height over its rim: its "
-                    "triangles turn inside out beyond",
-                    options.deflection, most, kMostPlanarDeflection));
+    throw input_error(options.deflection_from, options.deflection_key,
+                      fmt::format("is {:g} m, expected at most {:.4g} m, {:g} of the tire's height over its rim: its "
+                                  "triangles turn inside out beyond",
+                                  options.deflection, most, kMostPlanarDeflection));
 }
 
 }  // namespace
@@ -31,8 +30,7 @@ PlanarGround planar_ground(const PressObstacle& obstacle, double radius) {
     for (const auto& [x, z] : obstacle.profile) points.push_back({x, z});
     return PlanarGround(std::move(points));
   }
-  return obstacle.height > 0.0 ? PlanarGround::bar(obstacle.width, obstacle.position)
-                               : PlanarGround::plate(radius);
+  return obstacle.height > 0.0 ? PlanarGround::bar(obstacle.width, obstacle.position) : PlanarGround::plate(radius);
 }
 
 std::vector<PressSample> planar_footprint(const PlanarStatic& wheel) {
@@ -52,8 +50,7 @@ std::vector<PressSample> planar_footprint(const PlanarStatic& wheel) {
     const double area = side * wheel.elements().options().width;
     samples.push_back({(1.0 - t.share) * x.x[t.a] + t.share * x.x[b], 0.0, area, t.force / area});
   }
-  std::sort(samples.begin(), samples.end(),
-            [](const PressSample& a, const PressSample& b) { return a.x < b.x; });
+  std::sort(samples.begin(), samples.end(), [](const PressSample& a, const PressSample& b) { return a.x < b.x; });
   return samples;
 }
 
@@ -69,12 +66,12 @@ PressResults press_planar(const PlanarParams& params, const MassProperties& mass
     if (progress) progress("pressing", done);
     const PlanarReport report = wheel.move_to({0.0, top + params.size.radius - deflection});
     if (!report.converged)
-      throw physics_error(fmt::format(
-          "the planar tire has no equilibrium that can be found at a deflection of {:.4g} m: free force "
-          "{:.3g} N; see --deflection, or another mesh",
-          deflection, report.residual));
+      throw physics_error(
+          fmt::format("the planar tire has no equilibrium that can be found at a deflection of {:.4g} m: free force "
+                      "{:.3g} N; see --deflection, or another mesh",
+                      deflection, report.residual));
     const double force = wheel.force();
-    return PressPoint{deflection, force, report.residual / std::max(force, kMinLoad), report.steps,
+    return PressPoint{deflection,        force,      report.residual / std::max(force, kMinLoad), report.steps,
                       report.indefinite, wheel.rim()};
   };
   model.footprint = [&] { return planar_footprint(wheel); };

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kLeastAround = 12, kMostAround = 2000, kMostRings = 200;
 constexpr double kBytesPerElement = 3000.0;  // of the static test's factor
-constexpr double kSavedBytes = 32.0;          // of a node
+constexpr double kSavedBytes = 32.0;         // of a node
 constexpr double kLargestPoisson = 0.499;    // beyond, the step limit vanishes
 constexpr std::array<std::string_view, 2> kLaw{"printed", "consistent"}, kVolume{"averaged", "element"},
     kIntegrator{"runge_kutta_4", "semi_implicit_euler"};
@@ -37,8 +37,7 @@ PlanarMaterial read_material(JsonReader reader) {
   m.poisson_ratio = reader.not_negative("poisson_ratio");
   m.viscosity = reader.not_negative("viscosity");
   if (m.poisson_ratio > kLargestPoisson)
-    reader.fail("poisson_ratio",
-                fmt::format("is {:g}, expected 0 to {:g}", m.poisson_ratio, kLargestPoisson));
+    reader.fail("poisson_ratio", fmt::format("is {:g}, expected 0 to {:g}", m.poisson_ratio, kLargestPoisson));
   reader.finish();
   return m;
 }
@@ -46,19 +45,17 @@ PlanarMaterial read_material(JsonReader reader) {
 void check(const PlanarFile& f) {
   const PlanarWheelSize& s = f.params.size;
   if (!(s.rim_radius < s.radius))
-    throw input_error(
-        f.path, "rim_radius",
-        fmt::format("is {:g} m, expected less than the radius of {:g} m", s.rim_radius, s.radius));
+    throw input_error(f.path, "rim_radius",
+                      fmt::format("is {:g} m, expected less than the radius of {:g} m", s.rim_radius, s.radius));
   const int most = std::min(kMostRings, planar_most_rings(s.rim_radius, s.radius, s.around));
   if (s.rings > most)
-    throw input_error(f.path, "elements_radial",
-                      fmt::format("is {}, expected 1 to {} for {} elements around: more cut each other",
-                                  s.rings, most, s.around));
-  if (f.params.step_share > 1.0)
     throw input_error(
-        f.path, "step_share",
-        fmt::format("is {:g}, expected above 0 up to 1: explicit integration is not stable beyond",
-                    f.params.step_share));
+        f.path, "elements_radial",
+        fmt::format("is {}, expected 1 to {} for {} elements around: more cut each other", s.rings, most, s.around));
+  if (f.params.step_share > 1.0)
+    throw input_error(f.path, "step_share",
+                      fmt::format("is {:g}, expected above 0 up to 1: explicit integration is not stable beyond",
+                                  f.params.step_share));
 }
 
 class PlanarTest final : public StaticTest {
@@ -84,8 +81,7 @@ class PlanarSpec final : public TireSpec {
     return make_planar_tire(file_, shape(), context.gravity);
   }
   TireShape shape() const override {
-    TireShape shape =
-        cylinder(file_.params.size.around, file_.params.size.radius, file_.params.options.width);
+    TireShape shape = cylinder(file_.params.size.around, file_.params.size.radius, file_.params.options.width);
     shape.material = file_.contact;
     shape.mass = mass();
     return shape;
@@ -116,8 +112,8 @@ TireDescription PlanarSpec::describe() const {
   TireDescription d;
   d.kind = "planar";
   d.name = "planar finite-element tire";
-  d.details = fmt::format("{} x {} triangles, {} coordinates, explicit steps of at most {:.3g} s",
-                          p.size.around, 2 * p.size.rings, 2 * carcass.mesh().nodes(), p.step_share * limit);
+  d.details = fmt::format("{} x {} triangles, {} coordinates, explicit steps of at most {:.3g} s", p.size.around,
+                          2 * p.size.rings, 2 * carcass.mesh().nodes(), p.step_share * limit);
   d.radius = p.size.radius;
   d.width = d.tread_width = p.options.width;
   d.coordinates = 2 * carcass.mesh().nodes();

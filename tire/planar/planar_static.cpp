@@ -72,8 +72,7 @@ PlanarStatic::PlanarStatic(const PlanarParams& params, PlanarGround ground)
   for (double& z : x_.z) z += centre_.z;
   for (const int n : mesh_.rim)
     inertia_ += mesh_.position.x[n] * mesh_.position.x[n] + mesh_.position.z[n] * mesh_.position.z[n];
-  spring_ = kHold * params.disc.young_modulus * params.size.rim_radius * params.size.rim_radius *
-            params.options.width;
+  spring_ = kHold * params.disc.young_modulus * params.size.rim_radius * params.size.rim_radius * params.options.width;
   require_blas_buffers();
   linear_->llt.cholmod().print = 0;  // tangents that are not positive definite are dealt with
   linear_->right.resize(2 * (mesh_.nodes() - 1));
@@ -104,8 +103,7 @@ double PlanarStatic::gradient(const PlanarField& x) {
   contact_.find(x);
   for (const PlanarTouch& t : contact_.touches()) {
     const int b = t.b < 0 ? t.a : t.b;
-    force_.x[t.a] += (1.0 - t.share) * t.force * t.push_x,
-        force_.z[t.a] += (1.0 - t.share) * t.force * t.push_z;
+    force_.x[t.a] += (1.0 - t.share) * t.force * t.push_x, force_.z[t.a] += (1.0 - t.share) * t.force * t.push_z;
     force_.x[b] += t.share * t.force * t.push_x, force_.z[b] += t.share * t.force * t.push_z;
   }
   const double moment = spring_ * turn(x) / inertia_;
@@ -215,8 +213,7 @@ PlanarReport PlanarStatic::solve() {
   const double rounding = kRounding * linear_->diagonal.maxCoeff() * size;
   double energy = potential(x_);
   for (report.steps = 0; report.steps < kMostSteps && std::isfinite(report.residual); ++report.steps) {
-    report.converged =
-        report.residual <= std::max(rounding, kTolerance * std::max(kLeastForce, std::abs(force())));
+    report.converged = report.residual <= std::max(rounding, kTolerance * std::max(kLeastForce, std::abs(force())));
     if (report.converged) break;
     assemble();
     double share = 0.0;

@@ -15,8 +15,7 @@ struct Shape {
   double j = 1.0;
 };
 
-Shape shape_of(const PlanarElements& elements, const PlanarElements::Element& e, const PlanarField& x,
-               int element) {
+Shape shape_of(const PlanarElements& elements, const PlanarElements::Element& e, const PlanarField& x, int element) {
   Shape s;
   s.reference[1] = Vec2(e.inverse[0], e.inverse[1]);
   s.reference[2] = Vec2(e.inverse[2], e.inverse[3]);
@@ -33,10 +32,9 @@ PlanarMatrix tangent(const Shape& s, double scale, double mu, double alpha, doub
   PlanarMatrix k;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
-      k.block<2, 2>(2 * a, 2 * b) =
-          scale * (mu * s.reference[a].dot(s.reference[b]) * Eigen::Matrix2d::Identity() +
-                   alpha * s.deformed[b] * s.deformed[a].transpose() +
-                   beta * s.deformed[a] * s.deformed[b].transpose());
+      k.block<2, 2>(2 * a, 2 * b) = scale * (mu * s.reference[a].dot(s.reference[b]) * Eigen::Matrix2d::Identity() +
+                                             alpha * s.deformed[b] * s.deformed[a].transpose() +
+                                             beta * s.deformed[a] * s.deformed[b].transpose());
   return k;
 }
 
@@ -46,8 +44,7 @@ double largest_eigenvalue(const PlanarMatrix& m) {
 
 }  // namespace
 
-PlanarMatrix element_tangent(const PlanarElements& elements, const PlanarField& x, int element,
-                             double pressure) {
+PlanarMatrix element_tangent(const PlanarElements& elements, const PlanarField& x, int element, double pressure) {
   const PlanarElements::Element e = elements.element(element);
   const Shape s = shape_of(elements, e, x, element);
   const double scale = e.area * elements.options().width;
@@ -55,8 +52,7 @@ PlanarMatrix element_tangent(const PlanarElements& elements, const PlanarField& 
   return tangent(s, scale, e.mu, e.mu - e.kappa * (s.j * s.j - 1.0), 2.0 * e.kappa * s.j * s.j);
 }
 
-Eigen::Matrix<double, 6, 1> volume_gradient(const PlanarElements& elements, const PlanarField& x,
-                                            int element) {
+Eigen::Matrix<double, 6, 1> volume_gradient(const PlanarElements& elements, const PlanarField& x, int element) {
   const PlanarElements::Element e = elements.element(element);
   const Shape s = shape_of(elements, e, x, element);
   Eigen::Matrix<double, 6, 1> g;
@@ -70,18 +66,17 @@ double step_limit(const PlanarElements& elements, const PlanarField& x) {
     const PlanarElements::Element e = elements.element(n);
     const Shape s = shape_of(elements, e, x, n);
     const double per_mass = 3.0 / e.density;  // area and width fall out
-    const double k = largest_eigenvalue(
-        tangent(s, per_mass, e.mu, e.mu - e.kappa * (s.j * s.j - 1.0), 2.0 * e.kappa * s.j * s.j));
+    const double k =
+        largest_eigenvalue(tangent(s, per_mass, e.mu, e.mu - e.kappa * (s.j * s.j - 1.0), 2.0 * e.kappa * s.j * s.j));
     double c = 0.0;
     if (e.viscosity > 0.0) {
       // D:D = ½ Σ [(u_a·u_b)(q_a·q_b) + (u_a·q_b)(q_a·u_b)]
       PlanarMatrix damping;
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b)
-          damping.block<2, 2>(2 * a, 2 * b) =
-              0.5 * s.j * e.viscosity * per_mass *
-              (s.deformed[a].dot(s.deformed[b]) * Eigen::Matrix2d::Identity() +
-               s.deformed[b] * s.deformed[a].transpose());
+          damping.block<2, 2>(2 * a, 2 * b) = 0.5 * s.j * e.viscosity * per_mass *
+                                              (s.deformed[a].dot(s.deformed[b]) * Eigen::Matrix2d::Identity() +
+                                               s.deformed[b] * s.deformed[a].transpose());
       c = largest_eigenvalue(damping);
     }
     limit = std::min(limit, 4.0 / (c + std::sqrt(c * c + 4.0 * std::max(k, 0.0))));

@@ -22,12 +22,10 @@ namespace furrow::tire {
 using PlanarMatrix = Eigen::Matrix<double, 6, 6>;
 
 /// (1), N/m. @param pressure volumetric() of the element; used where volumes are averaged
-PlanarMatrix element_tangent(const PlanarElements& elements, const PlanarField& x, int element,
-                             double pressure);
+PlanarMatrix element_tangent(const PlanarElements& elements, const PlanarField& x, int element, double pressure);
 
 /// ∂(A J)/∂x of the corners of an element, m: its part of g is this / (3 A_p).
-Eigen::Matrix<double, 6, 1> volume_gradient(const PlanarElements& elements, const PlanarField& x,
-                                            int element);
+Eigen::Matrix<double, 6, 1> volume_gradient(const PlanarElements& elements, const PlanarField& x, int element);
 
 /// h of (2) in this shape, s; a lower bound where volumes are averaged.
 double step_limit(const PlanarElements& elements, const PlanarField& x);

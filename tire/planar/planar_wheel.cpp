@@ -37,24 +37,21 @@ PlanarElements planar_elements(const PlanarMesh& mesh, const PlanarParams& param
   return PlanarElements(mesh, std::array{params.disc, params.tire}, params.options);
 }
 
-PlanarWheel::PlanarWheel(const PlanarParams& params, PlanarGround ground, PlanarPoint centre,
-                         PlanarPoint velocity, double spin, double axle_mass, double gravity)
+PlanarWheel::PlanarWheel(const PlanarParams& params, PlanarGround ground, PlanarPoint centre, PlanarPoint velocity,
+                         double spin, double axle_mass, double gravity)
     : mesh_(planar_wheel(params.size)),
       motion_(planar_elements(mesh_, params), moving(mesh_, centre, velocity, spin), params.integrator),
       contact_(mesh_, std::move(ground), {params.contact_stiffness * params.options.width, params.friction}),
       gravity_(gravity) {
-  FURROW_ASSERT(params.step_share > 0.0 && params.step_share <= 1.0 && axle_mass >= 0.0, params.step_share,
-                axle_mass);
+  FURROW_ASSERT(params.step_share > 0.0 && params.step_share <= 1.0 && axle_mass >= 0.0, params.step_share, axle_mass);
   step_ = params.step_share * step_limit(motion_.elements(), mesh_.position);
   motion_.add_mass(mesh_.centre, axle_mass);
-  motion_.set_loads(
-      [this](const PlanarState& state, double step, PlanarField& force) { load(state, step, force); });
+  motion_.set_loads([this](const PlanarState& state, double step, PlanarField& force) { load(state, step, force); });
 }
 
 void PlanarWheel::link(const PlanarLink& link) {
   if (!linked_) motion_.hold(mesh_.centre, link.hold_x, link.hold_z);
-  FURROW_ASSERT(!linked_ || (link.hold_x == link_.hold_x && link.hold_z == link_.hold_z), link.hold_x,
-                link.hold_z);
+  FURROW_ASSERT(!linked_ || (link.hold_x == link_.hold_x && link.hold_z == link_.hold_z), link.hold_x, link.hold_z);
   linked_ = true;
   link_ = link;
   PlanarPoint v = centre_velocity();
@@ -84,11 +81,10 @@ void PlanarWheel::load(const PlanarState& state, double step, PlanarField& force
 Outcome PlanarWheel::advance() {
   if (steps_++ % kStepsBetweenChecks == 0)
     if (const double limit = step_limit(motion_.elements(), motion_.state().x); !(step_ < limit))
-      return Outcome::failure(
-          "is pressed too thin for its step",
-          fmt::format("{:.3g} s, expected less than {:.3g} s: try a smaller step_share, or a "
-                      "coarser mesh",
-                      step_, limit));
+      return Outcome::failure("is pressed too thin for its step",
+                              fmt::format("{:.3g} s, expected less than {:.3g} s: try a smaller step_share, or a "
+                                          "coarser mesh",
+                                          step_, limit));
   if (motion_.step(step_)) return {};
   return Outcome::failure("has a triangle that is turned inside out",
                           "try a smaller step_share, a stiffer tire or a coarser mesh");

@@ -33,8 +33,8 @@ class PlanarWheel {
  public:
   /// Undeformed with its centre at (x, z), moving with the velocity (m/s) and the spin (about +y, rad/s) given.
   /// @param axle_mass of what moves with the centre, kg
-  PlanarWheel(const PlanarParams& params, PlanarGround ground, PlanarPoint centre, PlanarPoint velocity,
-              double spin, double axle_mass, double gravity);
+  PlanarWheel(const PlanarParams& params, PlanarGround ground, PlanarPoint centre, PlanarPoint velocity, double spin,
+              double axle_mass, double gravity);
   PlanarWheel(const PlanarWheel&) = delete;
   PlanarWheel& operator=(const PlanarWheel&) = delete;
 
@@ -49,9 +49,7 @@ class PlanarWheel {
   const PlanarMesh& mesh() const { return mesh_; }
   const PlanarMotion& motion() const { return motion_; }
   const PlanarContact& contact() const { return contact_; }
-  PlanarPoint centre() const {
-    return {motion_.state().x.x[mesh_.centre], motion_.state().x.z[mesh_.centre]};
-  }
+  PlanarPoint centre() const { return {motion_.state().x.x[mesh_.centre], motion_.state().x.z[mesh_.centre]}; }
   PlanarPoint centre_velocity() const;
   double spin() const;  // of the rim, about +y, rad/s
   double mass() const;  // with the axle, kg

@@ -16,12 +16,11 @@ namespace {
 
 constexpr double kLoadTolerance = 1e-3;  // of the footprint's load
 constexpr int kMaxTrials = 12;
-constexpr double kOnePath = 1e-3;  // loading and unloading that differ by less are one path
+constexpr double kOnePath = 1e-3;       // loading and unloading that differ by less are one path
 constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint ends
 
 /// Deflection that carries the load, between two points of the curve; the solver is left there.
-PressPoint find_load(const std::function<PressPoint(double)>& press, PressPoint low, PressPoint high,
-                     double load) {
+PressPoint find_load(const std::function<PressPoint(double)>& press, PressPoint low, PressPoint high, double load) {
   FURROW_ASSERT(load > low.force && load <= high.force, load, low.force, high.force);
   PressPoint now = high;
   for (int n = 0; n < kMaxTrials && std::abs(now.force - load) > kLoadTolerance * load; ++n) {
@@ -55,8 +54,8 @@ struct Extent {
 
 }  // namespace
 
-void measure_press(const PressOptions& options, const PressModel& model,
-                   const std::function<void(double)>& share, PressResults& results) {
+void measure_press(const PressOptions& options, const PressModel& model, const std::function<void(double)>& share,
+                   PressResults& results) {
   FURROW_ASSERT(options.at.empty() || options.at.size() == static_cast<std::size_t>(options.points), options.at.size(),
                 options.points);
   const int total = (options.unload ? 2 : 1) * options.points;
@@ -116,9 +115,7 @@ std::string press_caution(const PressResults& results) {
     return fmt::format(
         "this tire buckles while it is pressed{}: its equilibria were reached by creep and need not be the "
         "only ones; {}",
-        first != results.loading.end() ? fmt::format(", first on the way to {:.3g} m", first->deflection)
-                                       : "",
-        end);
+        first != results.loading.end() ? fmt::format(", first on the way to {:.3g} m", first->deflection) : "", end);
   return difference > kOnePath ? end + ": there is more than one equilibrium" : "";
 }
 
@@ -149,8 +146,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   };
   double tangent = 0.0;
   for (std::size_t k = 1; k < results.loading.size(); ++k)
-    if (const PressPoint& a = results.loading[k - 1], &b = results.loading[k];
-        a.force < p.force && p.force <= b.force)
+    if (const PressPoint& a = results.loading[k - 1], &b = results.loading[k]; a.force < p.force && p.force <= b.force)
       tangent = (b.force - a.force) / (b.deflection - a.deflection);
   j["deflection_m"] = if_reached(p.deflection);
   j["axle_height_m"] = if_reached(results.start_height - p.deflection);
@@ -188,8 +184,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
   // A patch on plate or cleat holds the middle of it.
-  const double middle =
-      profile && !results.footprint.empty() ? results.footprint.front().x : options.obstacle.position;
+  const double middle = profile && !results.footprint.empty() ? results.footprint.front().x : options.obstacle.position;
   Extent length{middle, middle}, width;
   for (const PressSample& s : results.footprint) {
     force += s.pressure * s.area;
@@ -200,13 +195,11 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   const auto of_patch = [&](double value) {  // of a model that knows a patch
     return results.footprint.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
   };
-  j["footprint"] = {{"deflection_m", p.deflection},
-                    {"force_N", p.force},
-                    {"length_m", of_patch(length.size())},
-                    {"width_m", of_patch(results.footprint_width.value_or(width.size()))},
-                    {"area_m2", of_patch(area)},
-                    {"mean_pressure_Pa", of_patch(area > 0.0 ? force / area : 0.0)},
-                    {"max_pressure_Pa", of_patch(highest)}};
+  j["footprint"] = {
+      {"deflection_m", p.deflection},        {"force_N", p.force},
+      {"length_m", of_patch(length.size())}, {"width_m", of_patch(results.footprint_width.value_or(width.size()))},
+      {"area_m2", of_patch(area)},           {"mean_pressure_Pa", of_patch(area > 0.0 ? force / area : 0.0)},
+      {"max_pressure_Pa", of_patch(highest)}};
   return j;
 }
 
@@ -214,9 +207,8 @@ void write_press_tables(const std::filesystem::path& folder, const PressResults&
   std::string text = "deflection_m,force_N,residual,unloading,moment_x_Nm,moment_y_Nm\n";
   for (const auto* path : {&results.loading, &results.unloading})
     for (const PressPoint& p : *path)
-      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{},{:.9g},{:.9g}\n", p.deflection,
-                     p.force, p.residual, path == &results.unloading ? 1 : 0, p.rim.moment.x(),
-                     p.rim.moment.y());
+      fmt::format_to(std::back_inserter(text), "{:.9g},{:.12g},{:.3g},{},{:.9g},{:.9g}\n", p.deflection, p.force,
+                     p.residual, path == &results.unloading ? 1 : 0, p.rim.moment.x(), p.rim.moment.y());
   write_whole_file(folder / "press.csv", text);
   text = "x_m,y_m,area_m2,pressure_Pa\n";
   for (const PressSample& s : results.footprint)

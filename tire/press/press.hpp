@@ -21,9 +21,9 @@ struct PressOptions {
   int points = 10;           // of the curve up to it
   /// Deflections of the curve in place of equal steps, rising, m: `points` of them, the last is `deflection`.
   std::vector<double> at = {};
-  double load = 4561.65;     // of the footprint, N: 465 kg
-  bool unload = true;        // the curve also back to zero
-  bool partial = false;      // a curve that ends before its largest deflection is a result, with PressResults::ended
+  double load = 4561.65;  // of the footprint, N: 465 kg
+  bool unload = true;     // the curve also back to zero
+  bool partial = false;   // a curve that ends before its largest deflection is a result, with PressResults::ended
   std::string deflection_from = "command line", deflection_key = "--deflection";  // for messages
   std::string camber_from = "command line", camber_key = "--camber";
 };
@@ -36,12 +36,12 @@ struct PressResults {
   std::string stiffness_missing;             // why parts of it are not a number; empty: none is
   double start_height = 0.0;                 // of the rim's centre over the obstacle's top where deflection starts, m
   std::string ended;                         // why the curve ends early; empty: it does not
-  std::optional<double> inflation_growth;  // of the largest radius, axisymmetric, m; where the model has one
-  std::optional<double> footprint_width;   // m; where the model has no points across
-  std::optional<double> pressure;          // gauge, Pa; where the model has one
-  MassProperties mass;                     // of the whole tire about its centre
-  double runout = 0.0;                     // of the tire at rest before it is pressed: its wrinkles, m
-  double director_runout = 0.0;            // likewise of the angle between directors and axle, rad
+  std::optional<double> inflation_growth;    // of the largest radius, axisymmetric, m; where the model has one
+  std::optional<double> footprint_width;     // m; where the model has no points across
+  std::optional<double> pressure;            // gauge, Pa; where the model has one
+  MassProperties mass;                       // of the whole tire about its centre
+  double runout = 0.0;                       // of the tire at rest before it is pressed: its wrinkles, m
+  double director_runout = 0.0;              // likewise of the angle between directors and axle, rad
 };
 
 /// The curve, loading and unloading, and the footprint under the load, for whatever model presses.
@@ -53,8 +53,8 @@ struct PressModel {
 };
 /// @param share called with the share of the curve that is done
 /// @throws Error(physics) where an equilibrium is not found, unless the results may be partial and have a load
-void measure_press(const PressOptions& options, const PressModel& model,
-                   const std::function<void(double share)>& share, PressResults& results);
+void measure_press(const PressOptions& options, const PressModel& model, const std::function<void(double share)>& share,
+                   PressResults& results);
 
 /// Why a model that is alike across its width has neither a lateral nor a torsional stiffness.
 inline constexpr const char* kAlikeAcross =

@@ -70,8 +70,7 @@ std::optional<PressCurve> read_curve(const std::filesystem::path& file) {
   };
   const std::vector<double> radius = numbers("radius_m"), deflection = numbers("deflection_m"),
                             force = numbers("force_N");
-  if (radius.size() != 1 || deflection.size() != kPoints + 1 || force.size() != deflection.size())
-    return std::nullopt;
+  if (radius.size() != 1 || deflection.size() != kPoints + 1 || force.size() != deflection.size()) return std::nullopt;
   PressCurve curve;
   curve.radius = radius.front();
   for (std::size_t k = 0; k < force.size(); ++k) {
@@ -95,8 +94,7 @@ void write_curve(const std::filesystem::path& file, const PressCurve& curve) {
   keep_json(file, json);
 }
 
-PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection,
-                 const ProgressCall& progress) {
+PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection, const ProgressCall& progress) {
   const std::filesystem::path file = cache_file(tire, deflection);
   if (const std::optional<PressCurve> kept = read_curve(file)) return *kept;
   PressOptions options;
@@ -116,9 +114,9 @@ PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection
   for (const PressPoint& point : results.loading) {
     const bool first = curve.points.empty();
     if (!first && !(point.force > curve.points.back().second))
-      throw physics_error(fmt::format(
-          "{}: pressed by {:.4g} m this tire carries {:.4g} N, and {:.4g} N before",
-          tire.options().file.string(), point.deflection, point.force, curve.points.back().second));
+      throw physics_error(fmt::format("{}: pressed by {:.4g} m this tire carries {:.4g} N, and {:.4g} N before",
+                                      tire.options().file.string(), point.deflection, point.force,
+                                      curve.points.back().second));
     curve.points.emplace_back(point.deflection, first ? 0.0 : point.force);
   }
   write_curve(file, curve);

@@ -62,8 +62,8 @@ std::vector<std::array<double, 2>> read_press_profile(const std::filesystem::pat
     two = two && take_number(line, point[1]) && line.empty();
     if (!two) throw wrong("expected two numbers, x and z in m, with a comma between them");
     if (!points.empty() && !(point[0] > points.back()[0]))
-      throw wrong(fmt::format("x is {:g} m, expected more than that of the point before, {:g} m", point[0],
-                              points.back()[0]));
+      throw wrong(
+          fmt::format("x is {:g} m, expected more than that of the point before, {:g} m", point[0], points.back()[0]));
     if (points.size() == kMostPoints) throw wrong(fmt::format("expected at most {} points", kMostPoints));
     points.push_back(point);
   }

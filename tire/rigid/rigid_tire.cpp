@@ -40,9 +40,9 @@ Vec3 RigidTire::angular_momentum(const RimState& rim) const {
 Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
   FURROW_ASSERT(rim.duration() > 0.0, rim.duration());
   FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
-  FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
-                            [&](int v) { return in_range(v, shape_.vertex.size()); }),
-                shape_.vertex.size());
+  FURROW_ASSERT(
+      std::all_of(forces.vertex.begin(), forces.vertex.end(), [&](int v) { return in_range(v, shape_.vertex.size()); }),
+      shape_.vertex.size());
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
   spindle_.force = shape_.mass.mass * (gravity_ - (end.velocity - start.velocity) / duration);
@@ -69,8 +69,8 @@ void RigidTire::book_loss(const RimState& from, const RimState& to, double durat
 TireDiagnostics RigidTire::diagnostics() const {
   TireDiagnostics d;
   d.momentum = shape_.mass.mass * rim_.velocity;
-  d.kinetic_energy = 0.5 * shape_.mass.mass * rim_.velocity.squaredNorm() +
-                     0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
+  d.kinetic_energy =
+      0.5 * shape_.mass.mass * rim_.velocity.squaredNorm() + 0.5 * rim_.angular_velocity.dot(angular_momentum(rim_));
   d.potential_energy = -shape_.mass.mass * gravity_.dot(rim_.position);
   d.elastic_energy = d.pressure_energy = d.dissipation = d.solver_loss = 0.0;
   d.numerical_loss = numerical_loss_;

@@ -12,8 +12,7 @@ FoldedBand::FoldedBand(int segments)
       band_(static_cast<std::size_t>(kStride) * (unknowns_ + kBelow)),
       inverse_(unknowns_) {
   FURROW_ASSERT(segments >= kMinSegments, segments);
-  for (int j = 0; j < segments; ++j)
-    place_[j] = 2 * (j < (segments + 1) / 2 ? 2 * j : 2 * (segments - j) - 1);
+  for (int j = 0; j < segments; ++j) place_[j] = 2 * (j < (segments + 1) / 2 ? 2 * j : 2 * (segments - j) - 1);
 }
 
 bool FoldedBand::factorize(const RingTangent& blocks) {

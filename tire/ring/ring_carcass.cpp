@@ -172,8 +172,7 @@ bool RingCarcass::solve(double h, double turn) {
     const double left = residual(h, turn);
     residual_ = left / scale;
     const double round_off = rounding + ring_.rounding(middle_);
-    if (end.reached(left, kTolerance * scale + round_off, left <= kTolerance * scale + kStall * round_off))
-      return true;
+    if (end.reached(left, kTolerance * scale + round_off, left <= kTolerance * scale + kStall * round_off)) return true;
     if (!std::isfinite(left) || (k % kOneFactor == 0 && !factorize(h))) return false;
     correct();
     ++iterations_;
@@ -245,8 +244,7 @@ void RingCarcass::move(double h, const PlaneRimStep& rim, double turn, const Pla
   sums.solver_loss += left_on_rim - left_work;
   sums.solver_impulse.x += h * left_x, sums.solver_impulse.z += h * left_z;
   sums.dissipation += damped;
-  sums.numerical_loss +=
-      0.5 * (m * squares + rest_mass_ * (dx * dx + dz * dz) + rest_inertia_ * faster * faster);
+  sums.numerical_loss += 0.5 * (m * squares + rest_mass_ * (dx * dx + dz * dz) + rest_inertia_ * faster * faster);
 }
 
 Outcome RingCarcass::check() const {
@@ -271,8 +269,7 @@ PlanarPoint RingCarcass::first_moment() const {
 
 PlanarPoint RingCarcass::momentum() const {
   PlanarPoint sum{rest_mass_ * centre_.x, rest_mass_ * centre_.z};
-  for (int j = 0; j < n_; ++j)
-    sum.x += node_mass_ * (centre_.x + w_.x[j]), sum.z += node_mass_ * (centre_.z + w_.z[j]);
+  for (int j = 0; j < n_; ++j) sum.x += node_mass_ * (centre_.x + w_.x[j]), sum.z += node_mass_ * (centre_.z + w_.z[j]);
   return sum;
 }
 

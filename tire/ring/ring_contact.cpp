@@ -71,13 +71,11 @@ void RingContact::place(const AxlePlace& axle) {
   axle_ = axle;
   if (kinematics_ == RingKinematics::exact) return;
   for (int j = 0; j < segments(); ++j)
-    ray_[j] =
-        reaches_down(j) ? ground_.distance(axle.x, axle.z, std::atan2(sine_[j], cosine_[j])) : kInfinite;
+    ray_[j] = reaches_down(j) ? ground_.distance(axle.x, axle.z, std::atan2(sine_[j], cosine_[j])) : kInfinite;
   for (std::size_t k = 0; k < corner_ray_.size(); ++k) {
     const double x = ground_.corners()[k].x - axle.x, z = ground_.corners()[k].z - axle.z;
     const double angle = std::atan2(x, -z), rho = std::hypot(x, z);
-    const bool seen =
-        std::cos(angle) > kSteepest && !(ground_.distance(axle.x, axle.z, angle) < rho - kHidden);
+    const bool seen = std::cos(angle) > kSteepest && !(ground_.distance(axle.x, axle.z, angle) < rho - kHidden);
     corner_ray_[k] = seen ? rho : kInfinite;
   }
 }
@@ -89,14 +87,13 @@ GroundPoint RingContact::position(const RingField& q, int j) const {
 
 SegmentGap RingContact::segment(const RingField& q, int j) const {
   if (!reaches_down(j)) return {.gap = kInfinite};
-  if (kinematics_ == RingKinematics::radial)
-    return {ray_[j] - radius_ - q.u[j], -1.0, 0.0, -sine_[j], cosine_[j]};
+  if (kinematics_ == RingKinematics::radial) return {ray_[j] - radius_ - q.u[j], -1.0, 0.0, -sine_[j], cosine_[j]};
   const GroundPoint p = position(q, j);
   const int face = ground_.face(p.x + axle_.x);
   if (face < 0) return {.gap = kInfinite};
   const double m = ground_.slope(face);
-  return {p.z + axle_.z - ground_.height(face, p.x + axle_.x), -cosine_[j] - m * sine_[j],
-          sine_[j] - m * cosine_[j], -m, 1.0};
+  return {p.z + axle_.z - ground_.height(face, p.x + axle_.x), -cosine_[j] - m * sine_[j], sine_[j] - m * cosine_[j],
+          -m, 1.0};
 }
 
 bool RingContact::corners(const RingField& q, std::vector<CornerGap>& out) const {
@@ -133,8 +130,7 @@ void RingContact::exact_corner(const RingField& q, int k, std::vector<CornerGap>
   const double at = ground_.corners()[k].x - axle_.x;
   double turns = std::asin(at / radius_) / phi_;
   constexpr int kMostIterations = 30;
-  for (int i = 0; i < kMostIterations;
-       ++i) {  // where the belt is over the corner: x grows along it, smoothly
+  for (int i = 0; i < kMostIterations; ++i) {  // where the belt is over the corner: x grows along it, smoothly
     const Belt belt(*this, q, turns);
     const double change = (at - belt.x) / belt.x_s;
     turns += change;

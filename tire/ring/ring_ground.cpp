@@ -24,9 +24,7 @@ RingGround::RingGround(std::vector<GroundPoint> points) : points_(std::move(poin
   corners_.push_back(points_.back());
 }
 
-RingGround RingGround::plate(double radius) {
-  return RingGround({{-2.0 * radius, 0.0}, {2.0 * radius, 0.0}});
-}
+RingGround RingGround::plate(double radius) { return RingGround({{-2.0 * radius, 0.0}, {2.0 * radius, 0.0}}); }
 
 RingGround RingGround::bar(double width, double position) {
   return RingGround({{position - 0.5 * width, 0.0}, {position + 0.5 * width, 0.0}});
@@ -44,9 +42,7 @@ double RingGround::slope(int face) const {
   return (b.z - a.z) / (b.x - a.x);
 }
 
-double RingGround::height(int face, double x) const {
-  return points_[face].z + slope(face) * (x - points_[face].x);
-}
+double RingGround::height(int face, double x) const { return points_[face].z + slope(face) * (x - points_[face].x); }
 
 // The ray x + ρ sin θ, z − ρ cos θ meets the face's line where z − ρ cos θ = z_i + m (x + ρ sin θ − x_i).
 double RingGround::distance(double x, double z, double angle) const {

@@ -69,9 +69,8 @@ double RingMechanics::belt_energy(const RingField& q) const {
 double RingMechanics::air_energy(const RingField& q) const {
   const double change = share_ * std::accumulate(q.u.begin(), q.u.end(), 0.0);
   const double absolute = params_.pressure + params_.ambient;
-  return params_.gas == RingGas::exact
-             ? params_.ambient * change - absolute * volume_ * std::log1p(change / volume_)
-             : change * (0.5 * absolute * change / volume_ - params_.pressure);
+  return params_.gas == RingGas::exact ? params_.ambient * change - absolute * volume_ * std::log1p(change / volume_)
+                                       : change * (0.5 * absolute * change / volume_ - params_.pressure);
 }
 
 double RingMechanics::energy(const RingField& q) const {
@@ -147,8 +146,7 @@ RingForce RingMechanics::spindle(const RingField& q) const {
   RingForce sum;
   for (int j = 0; j < n_; ++j) {
     const double u = q.u[j], s = std::sin(j * phi_), c = std::cos(j * phi_);
-    const double out = phi_ * u * (s_[1] + u * (s_[2] + u * s_[3])),
-                 after = phi_ * params_.tangential * q.v[j];
+    const double out = phi_ * u * (s_[1] + u * (s_[2] + u * s_[3])), after = phi_ * params_.tangential * q.v[j];
     sum.x += out * s + after * c;
     sum.z += after * s - out * c;
   }

@@ -50,11 +50,10 @@ class Descent {
 void require_range(const RingMechanics& ring, const PressOptions& options) {
   const double most = kMostRingDeflection * ring.radius();
   if (options.deflection > most)
-    throw input_error(
-        options.deflection_from, options.deflection_key,
-        fmt::format("is {:g} m, expected at most {:.4g} m, a quarter of the radius: a flexible ring is "
-                    "not meant for more",
-                    options.deflection, most));
+    throw input_error(options.deflection_from, options.deflection_key,
+                      fmt::format("is {:g} m, expected at most {:.4g} m, a quarter of the radius: a flexible ring is "
+                                  "not meant for more",
+                                  options.deflection, most));
 }
 
 double lowest_radius(const RingSolver& solver) {
@@ -74,8 +73,7 @@ RingGround ring_ground(const PressObstacle& obstacle, double radius) {
     for (const auto& [x, z] : obstacle.profile) points.push_back({x, z});
     return RingGround(std::move(points));
   }
-  return obstacle.height > 0.0 ? RingGround::bar(obstacle.width, obstacle.position)
-                               : RingGround::plate(radius);
+  return obstacle.height > 0.0 ? RingGround::bar(obstacle.width, obstacle.position) : RingGround::plate(radius);
 }
 
 std::vector<PressSample> ring_footprint(const RingSolver& solver) {
@@ -100,8 +98,7 @@ std::vector<PressSample> ring_footprint(const RingSolver& solver) {
     const double force = solver.contacts().corner_force[k] * std::hypot(gap.push_x, gap.push_z);
     samples.push_back({solver.contact().ground().corners()[gap.corner].x, 0.0, area, force / area});
   }
-  std::sort(samples.begin(), samples.end(),
-            [](const PressSample& a, const PressSample& b) { return a.x < b.x; });
+  std::sort(samples.begin(), samples.end(), [](const PressSample& a, const PressSample& b) { return a.x < b.x; });
   return samples;
 }
 
@@ -118,11 +115,10 @@ PressResults press_ring(const RingParams& params, double rim_radius, const MassP
     if (progress) progress("pressing", done);
     const RingReport report = descent.to(ground.top() + params.radius - deflection);
     if (report.crowded)
-      throw input_error(
-          "command line", "--profile",
-          fmt::format("has more than {} corners under the tire at a deflection of {:.4g} m, expected a "
-                      "coarser profile",
-                      RingContact::kMostCornerGaps, deflection));
+      throw input_error("command line", "--profile",
+                        fmt::format("has more than {} corners under the tire at a deflection of {:.4g} m, expected a "
+                                    "coarser profile",
+                                    RingContact::kMostCornerGaps, deflection));
     if (!report.converged)
       throw physics_error(
           fmt::format("the ring has no equilibrium that can be found at a deflection of {:.4g} m: free force "

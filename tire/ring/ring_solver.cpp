@@ -26,8 +26,7 @@ RingSolver::RingSolver(const RingParams& params, const RingGround& ground)
   set_.segment.resize(n_), set_.segment_force.resize(n_);
   for (auto* corners : {&corners_, &corners_before_}) corners->reserve(RingContact::kMostCornerGaps);
   for (ContactSet* set : {&set_, &set_before_})
-    set->corner.reserve(RingContact::kMostCornerGaps),
-        set->corner_force.reserve(RingContact::kMostCornerGaps);
+    set->corner.reserve(RingContact::kMostCornerGaps), set->corner_force.reserve(RingContact::kMostCornerGaps);
 }
 
 void RingSolver::restart(const RingField& state, const std::vector<char>& closed_segments) {
@@ -49,8 +48,8 @@ RingReport RingSolver::solve(const AxlePlace& axle) {
     const double gap_tolerance = kGapTolerance * ring_.radius();
     report.residuals[report.steps] = report.residual = free_residual();
     judge(report);
-    const bool near = report.residual <= force_tolerance && report.penetration <= gap_tolerance &&
-                      report.pull <= force_tolerance;
+    const bool near =
+        report.residual <= force_tolerance && report.penetration <= gap_tolerance && report.pull <= force_tolerance;
     report.converged = end.reached(report.residual, enough, near);
     if (report.converged || report.steps == RingReport::kMostSteps) break;
     const int systems = step(force_tolerance, gap_tolerance);
@@ -75,8 +74,7 @@ int RingSolver::step(double force_tolerance, double gap_tolerance) {
     ring_.tangent(q_, tangent_);
     if (exact) add_bends();
     set_ = set_before_;
-    if (const int systems =
-            step_.solve({tangent_, gradient_, gaps_, corners_, force_tolerance, gap_tolerance}, set_))
+    if (const int systems = step_.solve({tangent_, gradient_, gaps_, corners_, force_tolerance, gap_tolerance}, set_))
       return systems;
   }
   return 0;
@@ -141,8 +139,7 @@ void RingSolver::judge(RingReport& report) const {
     if (on) report.pull = std::max(report.pull, -force);
   };
   for (int j = 0; j < n_; ++j) look(set_.segment[j], gaps_[j].gap, set_.segment_force[j]);
-  for (std::size_t k = 0; k < corners_.size(); ++k)
-    look(set_.corner[k], corners_[k].gap, set_.corner_force[k]);
+  for (std::size_t k = 0; k < corners_.size(); ++k) look(set_.corner[k], corners_[k].gap, set_.corner_force[k]);
 }
 
 /// The curvature of the closed corner gaps belongs to the tangent.

@@ -22,18 +22,17 @@ namespace {
 
 constexpr double kMostDraw = 0.5;  // of the radius: beyond, a sidewall is too soft for its pressure
 constexpr double kBytesPerSegment = 1200.0;
-constexpr double kSavedBytes = 32.0;    // of a segment
-constexpr double kDamping = 5e-3;       // τ where the file says none, s
-constexpr double kStepShare = 0.04;     // of τ: contact forces come one step late
+constexpr double kSavedBytes = 32.0;  // of a segment
+constexpr double kDamping = 5e-3;     // τ where the file says none, s
+constexpr double kStepShare = 0.04;   // of τ: contact forces come one step late
 constexpr std::array<std::string_view, 2> kGas{"linearised", "exact"}, kKinematics{"radial", "exact"};
 
 void check(const RingFile& f) {
   const RingParams& p = f.params;
   const RingMotion& m = f.motion;
   if (!(m.rim_radius < p.radius))
-    throw input_error(
-        f.path, "rim_radius",
-        fmt::format("is {:g} m, expected less than the radius of {:g} m", m.rim_radius, p.radius));
+    throw input_error(f.path, "rim_radius",
+                      fmt::format("is {:g} m, expected less than the radius of {:g} m", m.rim_radius, p.radius));
   const double least = m.mass * m.rim_radius * m.rim_radius, most = m.mass * p.radius * p.radius;
   if (!(m.spin_inertia > least && m.spin_inertia < most))
     throw input_error(
@@ -46,10 +45,9 @@ void check(const RingFile& f) {
   if (p.tension_share > 1.0)
     throw input_error(f.path, "tension_share", fmt::format("is {:g}, expected 0 to 1", p.tension_share));
   if (p.sidewall_2 * p.sidewall_2 > 3.0 * p.sidewall_1 * p.sidewall_3)
-    throw input_error(
-        f.path, "sidewall",
-        fmt::format("is {:g}, {:g}, {:g}: the force falls somewhere, expected k2² at most 3 k1 k3",
-                    p.sidewall_1, p.sidewall_2, p.sidewall_3));
+    throw input_error(f.path, "sidewall",
+                      fmt::format("is {:g}, {:g}, {:g}: the force falls somewhere, expected k2² at most 3 k1 k3",
+                                  p.sidewall_1, p.sidewall_2, p.sidewall_3));
 }
 
 void check_pressure(const RingFile& f, double pressure, const std::string& key) {
@@ -57,11 +55,10 @@ void check_pressure(const RingFile& f, double pressure, const std::string& key) 
   p.pressure = pressure;
   const double draw = sidewall_draw(p);
   if (!(draw < kMostDraw * f.params.radius))
-    throw input_error(
-        f.path, key,
-        fmt::format("at {:g} Pa the sidewall is drawn out by {:.3g} m, expected less than {:.3g} m, half "
-                    "of the radius: a stiffer sidewall or less pressure",
-                    pressure, draw, kMostDraw * f.params.radius));
+    throw input_error(f.path, key,
+                      fmt::format("at {:g} Pa the sidewall is drawn out by {:.3g} m, expected less than {:.3g} m, half "
+                                  "of the radius: a stiffer sidewall or less pressure",
+                                  pressure, draw, kMostDraw * f.params.radius));
 }
 
 class RingStatic final : public StaticTest {
@@ -83,13 +80,10 @@ class RingSpec final : public TireSpec {
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
-    return make_extruded_tire(std::make_unique<RingCarcass>(file_.params, file_.motion), shape(),
-                              context.gravity);
+    return make_extruded_tire(std::make_unique<RingCarcass>(file_.params, file_.motion), shape(), context.gravity);
   }
   TireShape shape() const override;
-  std::unique_ptr<StaticTest> static_test() const override {
-    return std::make_unique<RingStatic>(file_, mass());
-  }
+  std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<RingStatic>(file_, mass()); }
   std::unique_ptr<ModalTest> modal_test() const override {
     return std::make_unique<RingModes>(file_.params, file_.motion, mass());
   }
@@ -97,10 +91,9 @@ class RingSpec final : public TireSpec {
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     if (file_.params.segments >= file_segments_) return {};
     return {{"segments",
-             fmt::format(
-                 "of the file is {}, the scenario's tire.elements_circumference makes it {}: the force of "
-                 "fewer segments is rougher",
-                 file_segments_, file_.params.segments)}};
+             fmt::format("of the file is {}, the scenario's tire.elements_circumference makes it {}: the force of "
+                         "fewer segments is rougher",
+                         file_segments_, file_.params.segments)}};
   }
 
  private:
@@ -176,8 +169,8 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
   p.tension_share = reader.not_negative_or("tension_share", 0.0);
   const std::vector<double> k = reader.numbers("sidewall", 3);
   if (!(k[0] > 0.0 && k[1] >= 0.0 && k[2] >= 0.0))
-    reader.fail("sidewall", fmt::format("is {:g}, {:g}, {:g}, expected k1 above 0, k2 and k3 of 0 or more",
-                                        k[0], k[1], k[2]));
+    reader.fail("sidewall",
+                fmt::format("is {:g}, {:g}, {:g}, expected k1 above 0, k2 and k3 of 0 or more", k[0], k[1], k[2]));
   p.sidewall_1 = k[0], p.sidewall_2 = k[1], p.sidewall_3 = k[2];
   p.gas = choice_of<RingGas>(reader, "gas", kGas);
   p.kinematics = choice_of<RingKinematics>(reader, "kinematics", kKinematics);

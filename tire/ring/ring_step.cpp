@@ -141,8 +141,7 @@ void RingStep::fill_lanes(const Problem& p, const ContactSet& set) {
 double RingStep::on_gas(const ContactSet& set, int column) {
   const double* const x = lane(column);
   double sum = 0.0;
-  for (int j = 0; j < n_; ++j)
-    sum += (set.segment[j] ? 0.0 : x[at(j)]) - along_v_[j] * x[at(j) + FoldedBand::kLanes];
+  for (int j = 0; j < n_; ++j) sum += (set.segment[j] ? 0.0 : x[at(j)]) - along_v_[j] * x[at(j) + FoldedBand::kLanes];
   return sum;
 }
 

@@ -47,9 +47,7 @@ class RingStep {
   void collect();
   void forces(const Problem& p, ContactSet& set);
   int update(const Problem& p, ContactSet& set, bool one);
-  std::size_t at(int segment) const {
-    return static_cast<std::size_t>(FoldedBand::kLanes) * band_.place(segment);
-  }
+  std::size_t at(int segment) const { return static_cast<std::size_t>(FoldedBand::kLanes) * band_.place(segment); }
   double* lane(int column) {
     return &lanes_[(column / FoldedBand::kLanes) * band_.entries() + column % FoldedBand::kLanes];
   }

@@ -26,8 +26,7 @@ double RingTension::energy(const RingField& q) const {
   for (int j = 0; j < n_; ++j) {
     const int next = j + 1 < n_ ? j + 1 : 0;
     const Chord c = chord(q, j, next);
-    sum += line_ * c.turn * c.turn / (c.length + c.along) -
-           0.5 * sine_2_ * (q.u[j] * q.u[next] + q.v[j] * q.v[next]) -
+    sum += line_ * c.turn * c.turn / (c.length + c.along) - 0.5 * sine_2_ * (q.u[j] * q.u[next] + q.v[j] * q.v[next]) -
            0.5 * cosine_2_ * (q.u[j] * q.v[next] - q.v[j] * q.u[next]);
   }
   return strength_ * sum;
@@ -42,8 +41,7 @@ void RingTension::add_gradient(const RingField& q, RingField& out) const {
     const Chord c = chord(q, j, next);
     const double by_turn = strength_ * line_ * c.turn / c.length;
     const double by_stretch = -by_turn * c.turn / (c.length + c.along);
-    const double in = by_stretch * sine_, on = by_stretch * cosine_, across = by_turn * cosine_,
-                 back = by_turn * sine_;
+    const double in = by_stretch * sine_, on = by_stretch * cosine_, across = by_turn * cosine_, back = by_turn * sine_;
     out.u[j] += in - across - area * (sine_2_ * q.u[next] + cosine_2_ * q.v[next]);
     out.v[j] += -on - back - area * (sine_2_ * q.v[next] - cosine_2_ * q.u[next]);
     out.u[next] += in + across - area * (sine_2_ * q.u[j] - cosine_2_ * q.v[j]);
@@ -62,8 +60,7 @@ void RingTension::add_tangent(const RingField& q, double factor, RingTangent& ou
     const double u0 = -along * cosine_ - turn * sine_, v0 = -along * sine_ + turn * cosine_;
     const double u1 = along * cosine_ - turn * sine_, v1 = -along * sine_ - turn * cosine_;
     const double f = factor * strength_ * line_ / c.length;
-    out.uu[0][j] += f * u0 * u0, out.uv[0][j] += f * u0 * v0, out.vu[0][j] += f * v0 * u0,
-        out.vv[0][j] += f * v0 * v0;
+    out.uu[0][j] += f * u0 * u0, out.uv[0][j] += f * u0 * v0, out.vu[0][j] += f * v0 * u0, out.vv[0][j] += f * v0 * v0;
     out.uu[0][next] += f * u1 * u1, out.uv[0][next] += f * u1 * v1;
     out.vu[0][next] += f * v1 * u1, out.vv[0][next] += f * v1 * v1;
     out.uu[1][j] += f * u0 * u1 - area * sine_2_, out.uv[1][j] += f * u0 * v1 - area * cosine_2_;

@@ -37,8 +37,8 @@ HalfCarMatrices half_car_matrices(const HalfCarParams& car) {
 HalfCarResponse half_car_response(const HalfCarParams& car, double omega, double delay) {
   using Complex = std::complex<double>;
   const HalfCarMatrices m = half_car_matrices(car);
-  const Eigen::Matrix4cd dynamic = (m.stiffness - omega * omega * m.mass).cast<Complex>() +
-                                   Complex(0.0, omega) * m.damping.cast<Complex>();
+  const Eigen::Matrix4cd dynamic =
+      (m.stiffness - omega * omega * m.mass).cast<Complex>() + Complex(0.0, omega) * m.damping.cast<Complex>();
   Eigen::Vector4cd road = Eigen::Vector4cd::Zero();
   road[2] = Complex(car.front.tire_stiffness, omega * car.front.tire_damping);
   road[3] = Complex(car.rear.tire_stiffness, omega * car.rear.tire_damping) * std::polar(1.0, -omega * delay);

@@ -43,9 +43,9 @@ HalfCarMatrices half_car_matrices(const HalfCarParams& car);
 
 /// Of a road of amplitude 1 under the front wheel, as complex factors.
 struct HalfCarResponse {
-  std::complex<double> body;                           // at the centre
-  std::complex<double> pitch;                          // rad/m
-  std::complex<double> body_front, body_rear;          // above the axles
+  std::complex<double> body;                   // at the centre
+  std::complex<double> pitch;                  // rad/m
+  std::complex<double> body_front, body_rear;  // above the axles
   std::complex<double> wheel_front, wheel_rear;
 };
 /// @param omega rad/s. @param delay (a + b)/v, by which the rear wheel follows, s

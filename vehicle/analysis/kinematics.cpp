@@ -43,8 +43,8 @@ class Bench {
       const Wheel& wheel = vehicle_.wheel(k);
       lifts_.push_back(-1);
       if (wheel.travels)
-        lifts_.back() = statics_.hold(
-            {wheel.name + " travel", offset_row(system(), kGround, wheel.spindle, Vec3::UnitZ())});
+        lifts_.back() =
+            statics_.hold({wheel.name + " travel", offset_row(system(), kGround, wheel.spindle, Vec3::UnitZ())});
     }
   }
 
@@ -58,9 +58,9 @@ class Bench {
       if (lifts_[k] >= 0) statics_.set_target(lifts_[k], k / 2 != axle ? 0.0 : k % 2 == kLeft ? left : right);
     if (steers(axle)) vehicle_.steering(axle)->put(steering);
     if (const Outcome outcome = statics_.close(); !outcome.ok)
-      throw physics_error(outcome, "axle '" + vehicle_.spec().axles[axle].name + "'",
-                          fmt::format(" with its wheels lifted by {:.3g} and {:.3g} m", left, right) +
-                              steering_text(axle, steering));
+      throw physics_error(
+          outcome, "axle '" + vehicle_.spec().axles[axle].name + "'",
+          fmt::format(" with its wheels lifted by {:.3g} and {:.3g} m", left, right) + steering_text(axle, steering));
   }
 
   /// What a steering input asks the axle's rack or arm for; empty where it stands straight ahead.
@@ -84,8 +84,7 @@ class Bench {
  private:
   const System& system() const { return vehicle_.system(); }
   Vec3 contact_point(int k) const {
-    return system().body(vehicle_.wheel(k).spindle).state.position +
-           radii_[k] * down_in_wheel(spin_axis(vehicle_, k));
+    return system().body(vehicle_.wheel(k).spindle).state.position + radii_[k] * down_in_wheel(spin_axis(vehicle_, k));
   }
   /// Velocity of the contact point as a point of the wheel's carrier.
   Vec3 contact_rate(int k, const Eigen::VectorXd& tangent) const {
@@ -106,8 +105,7 @@ double Bench::ratio(const std::optional<int>& element, const Eigen::VectorXd& ta
   const RowJacobian J = row_jacobian(row, system().pose(row.a), system().pose(row.b));
   double rate = 0.0;
   for (const auto& [body, v, w] : {std::tuple{row.a, J.v_a, J.w_a}, std::tuple{row.b, J.v_b, J.w_b}})
-    if (body != kGround)
-      rate += v.dot(tangent.segment<3>(6 * body)) + w.dot(tangent.segment<3>(6 * body + 3));
+    if (body != kGround) rate += v.dot(tangent.segment<3>(6 * body)) + w.dot(tangent.segment<3>(6 * body + 3));
   return -rate;
 }
 
@@ -158,8 +156,7 @@ void Bench::add_slopes(int axle, KinematicsRow* rows) const {
     KinematicsRow& r = rows[side];
     // Upward on the right in the opposite motion is a rate −1.
     r.roll_center = contact_point(k).y() * contact_rate(k, opposite).y() * outward(side);
-    r.brake_slope =
-        contact_rate(k, parallel).x() * (contact_point(k).x() > vehicle_.origin().x() ? 1.0 : -1.0);
+    r.brake_slope = contact_rate(k, parallel).x() * (contact_point(k).x() > vehicle_.origin().x() ? 1.0 : -1.0);
     r.spring_ratio = ratio(wheel.spring, parallel);
     r.shock_ratio = ratio(wheel.shock, parallel);
   }
@@ -186,8 +183,8 @@ Base base_of(const Vehicle& vehicle, std::span<const double> radii) {
     front = std::max(front, center.x());
     rear = std::min(rear, center.x());
     ground += (center.z() - radii[k]) / vehicle.wheel_count();
-    base.brake_shares.push_back(
-        vehicle.wheel(k).corner->brake ? vehicle.wheel(k).corner->brake->torque / radii[k] : 0.0);
+    base.brake_shares.push_back(vehicle.wheel(k).corner->brake ? vehicle.wheel(k).corner->brake->torque / radii[k]
+                                                               : 0.0);
     brakes += base.brake_shares.back();
   }
   for (double& share : base.brake_shares) share = brakes > 0.0 ? share / brakes : KinematicsRow::kNone;
@@ -279,8 +276,8 @@ class Sweep {
       }
       bench_.add_slopes(axle, rows);
       for (int side = 0; side < 2; ++side)
-        rows[side].anti_dive = rows[side].brake_slope * 2.0 * base_.brake_shares[2 * axle + side] *
-                               base_.wheelbase / base_.height;
+        rows[side].anti_dive =
+            rows[side].brake_slope * 2.0 * base_.brake_shares[2 * axle + side] * base_.wheelbase / base_.height;
       if (steering != 0.0) add_ackermann(rows, line_);
       for (int side = 0; side < 2; ++side) both[side].push_back(rows[side]);
     }
@@ -306,8 +303,8 @@ std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const d
 
 void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress) {
   constexpr int kSteps = 8, kFineSteps = 50;
-  const auto steered = std::count_if(spec.axles.begin(), spec.axles.end(),
-                                     [](const AxleSpec& one) { return one.steering.has_value(); });
+  const auto steered =
+      std::count_if(spec.axles.begin(), spec.axles.end(), [](const AxleSpec& one) { return one.steering.has_value(); });
   PacedCall tell(progress);
   double ends = 0.0;
   for (std::size_t k = 0; k < spec.axles.size(); ++k) {

@@ -79,8 +79,7 @@ struct KinematicsOptions {
 /// @param progress may be empty; hears nothing of what is done within a few seconds
 /// @throws Error(physics) naming the wheel where a suspension cannot follow
 std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const double> radii,
-                                      const KinematicsOptions& options = {},
-                                      const ProgressCall& progress = {});
+                                      const KinematicsOptions& options = {}, const ProgressCall& progress = {});
 
 /// Every steered axle must reach both ends of its steering, step by step from straight ahead, as drawn.
 /// @throws Error(bad_input) naming the key that says where the ends are

@@ -8,10 +8,9 @@
 namespace furrow::vehicle {
 
 QuarterCarResponse quarter_car_response(const QuarterCarParams& car, double omega) {
-  FURROW_ASSERT(car.body_mass > 0.0 && car.wheel_mass > 0.0 && car.tire_stiffness > 0.0, car.body_mass,
-                car.wheel_mass, car.tire_stiffness);
-  const std::complex<double> z(car.stiffness, omega * car.damping),
-      tire(car.tire_stiffness, omega * car.tire_damping);
+  FURROW_ASSERT(car.body_mass > 0.0 && car.wheel_mass > 0.0 && car.tire_stiffness > 0.0, car.body_mass, car.wheel_mass,
+                car.tire_stiffness);
+  const std::complex<double> z(car.stiffness, omega * car.damping), tire(car.tire_stiffness, omega * car.tire_damping);
   const std::complex<double> body = z - omega * omega * car.body_mass;
   const std::complex<double> d = (z + tire - omega * omega * car.wheel_mass) * body - z * z;
   QuarterCarResponse response;

@@ -15,8 +15,8 @@
 namespace furrow::vehicle {
 
 struct QuarterCarParams {
-  double body_mass = 0.0, wheel_mass = 0.0;      // kg
-  double stiffness = 0.0, damping = 0.0;         // of the suspension, N/m, N s/m
+  double body_mass = 0.0, wheel_mass = 0.0;         // kg
+  double stiffness = 0.0, damping = 0.0;            // of the suspension, N/m, N s/m
   double tire_stiffness = 0.0, tire_damping = 0.0;  // N/m, N s/m
 };
 
@@ -30,7 +30,7 @@ QuarterCarResponse quarter_car_response(const QuarterCarParams& car, double omeg
 
 /// A suspension that suits a body: this natural frequency on a held wheel, and this share of critical damping.
 inline constexpr double kUsualBodyFrequency = 1.5, kUsualBodyDamping = 0.3;  // Hz; –
-double usual_stiffness(double body_mass);                   // N/m
-double usual_damping(double body_mass, double stiffness);  // N s/m
+double usual_stiffness(double body_mass);                                    // N/m
+double usual_damping(double body_mass, double stiffness);                    // N s/m
 
 }  // namespace furrow::vehicle

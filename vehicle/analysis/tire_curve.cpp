@@ -7,8 +7,7 @@
 
 namespace furrow::vehicle {
 
-TireCurve tire_curve(const std::string& name, double radius,
-                     const std::vector<std::pair<double, double>>& points) {
+TireCurve tire_curve(const std::string& name, double radius, const std::vector<std::pair<double, double>>& points) {
   FURROW_ASSERT(radius > 0.0, radius);
   FURROW_ASSERT(!points.empty() && points.front() == std::pair(0.0, 0.0), points.size());
   const Table table(name, points, TableCurve::monotone_cubic);

@@ -126,8 +126,7 @@ std::string mode_name(const Vehicle& vehicle, const Mode& mode) {
   double largest = -1.0;
   const auto up = [&](int k) { return mode.shape[6 * vehicle.wheel(k).spindle + 2]; };
   for (int k = 0; k < vehicle.wheel_count(); k += 2)
-    if (const double energy = up(k) * up(k) + up(k + 1) * up(k + 1); energy > largest)
-      largest = energy, most = k;
+    if (const double energy = up(k) * up(k) + up(k + 1) * up(k + 1); energy > largest) largest = energy, most = k;
   return (up(most) * up(most + 1) >= 0.0 ? "hop " : "tramp ") + vehicle.spec().axles[most / 2].name;
 }
 
@@ -151,18 +150,17 @@ std::string fault_as_drawn(const Vehicle& vehicle, double weight) {
         push += spring.law(row_value(system, spring.row), 0.0, 0.0).force;
       }
     if (vehicle.wheel(2 * axle).spring && (push < kLeastPush * weight || push > kMostPush * weight))
-      return fmt::format("; it weighs {:.0f} N, and the springs of axle '{}' push with {:.3g} N as drawn",
-                         weight, vehicle.spec().axles[axle].name, push);
+      return fmt::format("; it weighs {:.0f} N, and the springs of axle '{}' push with {:.3g} N as drawn", weight,
+                         vehicle.spec().axles[axle].name, push);
   }
   return "";
 }
 
 }  // namespace
 
-Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
-          const std::optional<Vec3>& gravity, const ProgressCall& progress) {
-  FURROW_ASSERT(tires.size() == static_cast<std::size_t>(vehicle.wheel_count()), tires.size(),
-                vehicle.wheel_count());
+Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground, const std::optional<Vec3>& gravity,
+          const ProgressCall& progress) {
+  FURROW_ASSERT(tires.size() == static_cast<std::size_t>(vehicle.wheel_count()), tires.size(), vehicle.wheel_count());
   lower_to(vehicle, tires, ground);
   Statics statics(vehicle.system());
   hold_plane_motion(vehicle, statics);
@@ -177,8 +175,7 @@ Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
       forces.segment<3>(6 * spindle) += held;
       forces.segment<3>(6 * spindle + 3) += touching.moment + Vec3(z * held.y(), -z * held.x(), 0.0);
     }
-    for (int i = 0; i < system.body_count(); ++i)
-      forces.segment<3>(6 * i) += system.body(i).mass * (felt - own);
+    for (int i = 0; i < system.body_count(); ++i) forces.segment<3>(6 * i) += system.body(i).mass * (felt - own);
   });
   const double weight = vehicle.mass() * vehicle.system().gravity().norm();
   const std::string fault = fault_as_drawn(vehicle, weight);
@@ -194,8 +191,7 @@ Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground,
   t.height = vehicle.origin().z() - ground;
   t.pitch = std::atan2(-R(2, 0), R(0, 0));
   t.roll = std::atan2(R(2, 1), R(2, 2));
-  for (const Mode& mode : statics.modes())
-    t.modes.push_back({mode_name(vehicle, mode), mode.frequency, mode.damping});
+  for (const Mode& mode : statics.modes()) t.modes.push_back({mode_name(vehicle, mode), mode.frequency, mode.damping});
   vehicle.system().assemble(vehicle.system().time());
   return t;
 }

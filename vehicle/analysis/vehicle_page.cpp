@@ -18,9 +18,8 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kStiffShare =
-    1e-3;                        // of its radius that the ground gives under a tire that does not deflect
-constexpr double kHarder = 4.0;  // times as hard ground, for the vibrations
+constexpr double kStiffShare = 1e-3;  // of its radius that the ground gives under a tire that does not deflect
+constexpr double kHarder = 4.0;       // times as hard ground, for the vibrations
 constexpr double kSameFrequency = 0.01;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -39,15 +38,13 @@ auto of_file(const VehicleSpec& spec, const Call& call) {
 std::vector<TireCurve> curves(std::span<const StandingTire> tires, double weight, double harder) {
   std::vector<TireCurve> made;
   for (const StandingTire& tire : tires)
-    made.push_back(tire.points.empty()
-                       ? stiff_curve(tire.radius, harder * weight / static_cast<double>(tires.size()) /
-                                                      (kStiffShare * tire.radius))
-                       : tire_curve(tire.text, tire.radius, tire.points));
+    made.push_back(tire.points.empty() ? stiff_curve(tire.radius, harder * weight / static_cast<double>(tires.size()) /
+                                                                      (kStiffShare * tire.radius))
+                                       : tire_curve(tire.text, tire.radius, tire.points));
   return made;
 }
 
-Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double harder,
-           const ProgressCall& progress) {
+Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double harder, const ProgressCall& progress) {
   Vehicle car(spec);
   for (int k = 0; k < car.wheel_count(); ++k) car.add_tire_mass(k, tires[k].mass);
   return trim(car, curves(tires, car.mass() * car.system().gravity().norm(), harder), 0.0, {}, progress);
@@ -58,11 +55,10 @@ void check_travel(const VehicleSpec& spec, const VehiclePage& page) {
   for (std::size_t k = 0; k < page.loaded_radii.size(); ++k) {
     const WheelTrim& wheel = page.trim.wheels[k];
     if (std::abs(wheel.travel) < page.loaded_radii[k]) continue;
-    throw input_error(
-        spec.file, fmt::format("axles[{}].suspension", k / 2),
-        fmt::format("lets the wheel '{}' stand {} m from its drawn place, expected springs that carry "
-                    "the vehicle",
-                    wheel.name, digits(wheel.travel)));
+    throw input_error(spec.file, fmt::format("axles[{}].suspension", k / 2),
+                      fmt::format("lets the wheel '{}' stand {} m from its drawn place, expected springs that carry "
+                                  "the vehicle",
+                                  wheel.name, digits(wheel.travel)));
   }
 }
 
@@ -81,8 +77,7 @@ double mass_without_tires(const VehicleSpec& spec) {
   return of_file(spec, [&] { return Vehicle(spec).mass(); });
 }
 
-VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires,
-                         const ProgressCall& progress) {
+VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires, const ProgressCall& progress) {
   FURROW_ASSERT(tires.size() == 2 * spec.axles.size(), tires.size(), spec.axles.size());
   return of_file(spec, [&] {
     const Vehicle car(spec);
@@ -97,8 +92,7 @@ VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> 
     page.shafts = system.shaft_count();
     page.shaft_freedoms = car.freedoms() - page.freedoms;
     for (const AxleSpec& axle : spec.axles) page.axles.push_back(axle.name);
-    for (const StandingTire& tire : tires)
-      page.tires.push_back(tire.text), page.tire_masses.push_back(tire.mass.mass);
+    for (const StandingTire& tire : tires) page.tires.push_back(tire.text), page.tire_masses.push_back(tire.mass.mass);
     page.trim = stand(spec, tires, 1.0, progress);
     if (std::any_of(tires.begin(), tires.end(), [](const StandingTire& t) { return t.points.empty(); }))
       page.trim.modes = lasting(page.trim.modes, stand(spec, tires, kHarder, progress).modes);
@@ -135,8 +129,7 @@ std::string tires_text(const VehiclePage& page) {
         page.tires.begin() + static_cast<long>(k))
       continue;
     const auto count = std::count(page.tires.begin(), page.tires.end(), page.tires[k]);
-    text +=
-        fmt::format("{:<12} {} × {}, {:.2f} kg each\n", "tires", count, page.tires[k], page.tire_masses[k]);
+    text += fmt::format("{:<12} {} × {}, {:.2f} kg each\n", "tires", count, page.tires[k], page.tire_masses[k]);
   }
   return text;
 }
@@ -156,17 +149,14 @@ std::string wheels_text(const Trim& trim) {
   std::string text = fmt::format(kRow, "wheel", "load", "tire", "centre", "travel", "camber", "toe");
   text += fmt::format(kRow, "", "N", "mm", "mm", "mm", "°", "°");
   for (const WheelTrim& w : trim.wheels)
-    text +=
-        fmt::format(kRow, w.name, fixed(w.load, 0), fixed(1e3 * w.deflection, 1), fixed(1e3 * w.height, 1),
-                    fixed(1e3 * w.travel, 1), fixed(kDegrees * w.camber, 2), fixed(kDegrees * w.toe, 2));
+    text += fmt::format(kRow, w.name, fixed(w.load, 0), fixed(1e3 * w.deflection, 1), fixed(1e3 * w.height, 1),
+                        fixed(1e3 * w.travel, 1), fixed(kDegrees * w.camber, 2), fixed(kDegrees * w.toe, 2));
   return text;
 }
 
 std::string struts_text(const Trim& trim) {
   constexpr const char* kRow = "{:<22} {:>8} {:>8} {:>12} {:>12}\n";
-  const auto room = [](double to_end) {
-    return std::isfinite(to_end) ? fixed(1e3 * to_end, 1) : std::string("none");
-  };
+  const auto room = [](double to_end) { return std::isfinite(to_end) ? fixed(1e3 * to_end, 1) : std::string("none"); };
   std::string text;
   for (const WheelTrim& w : trim.wheels)
     for (const auto& [kind, strut] : {std::pair{"spring", w.spring}, std::pair{"shock", w.shock}})
@@ -179,8 +169,7 @@ std::string struts_text(const Trim& trim) {
 }
 
 std::string modes_text(const Trim& trim) {
-  std::string text =
-      fmt::format("{:<14} {:>8} {:>8}\n{:<14} {:>8} {:>8}\n", "vibration", "Hz", "damping", "", "", "%");
+  std::string text = fmt::format("{:<14} {:>8} {:>8}\n{:<14} {:>8} {:>8}\n", "vibration", "Hz", "damping", "", "", "%");
   for (const TrimMode& mode : trim.modes)
     text += fmt::format("{:<14} {:>8.2f} {:>8.0f}\n", mode.name, mode.frequency, 100.0 * mode.damping);
   return text;

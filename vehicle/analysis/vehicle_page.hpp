@@ -16,9 +16,8 @@ namespace furrow::vehicle {
 struct StandingTire {
   std::string text;  // for people: its file, and where its curve is from
   MassProperties mass;
-  double radius = 0.0;  // inflated, m
-  std::vector<std::pair<double, double>>
-      points;  // of its press curve (tire_curve.hpp); none: it does not deflect
+  double radius = 0.0;                            // inflated, m
+  std::vector<std::pair<double, double>> points;  // of its press curve (tire_curve.hpp); none: it does not deflect
 };
 
 struct VehiclePage {

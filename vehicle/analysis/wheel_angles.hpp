@@ -17,9 +17,7 @@
 
 namespace furrow::vehicle {
 
-inline double camber_angle(const Vec3& a, double side) {
-  return std::asin(std::clamp(-side * a.z(), -1.0, 1.0));
-}
+inline double camber_angle(const Vec3& a, double side) { return std::asin(std::clamp(-side * a.z(), -1.0, 1.0)); }
 inline double toe_angle(const Vec3& a, double side) { return side * std::atan2(a.x(), a.y()); }
 inline double steer_angle(const Vec3& a) { return -std::atan2(a.x(), a.y()); }
 inline double caster_angle(const Vec3& u) { return std::atan2(-u.x(), u.z()); }

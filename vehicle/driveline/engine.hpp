@@ -25,10 +25,8 @@ class Engine {
 
   void set_throttle(double throttle);  // 0 to 1
   double throttle() const { return *throttle_; }
-  double torque(const System& system) const {
-    return system.rate_state(row_).torque;
-  }                                                                                 // mean over the last step
-  double work(const System& system) const { return system.rate_state(row_).work; }  // since the start, J
+  double torque(const System& system) const { return system.rate_state(row_).torque; }  // mean over the last step
+  double work(const System& system) const { return system.rate_state(row_).work; }      // since the start, J
 
   void save(Archive& archive) const { archive.put("throttle", *throttle_); }
   void restore(const Archive& archive) { *throttle_ = archive.get_double("throttle"); }

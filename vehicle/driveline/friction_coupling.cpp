@@ -7,8 +7,7 @@
 
 namespace furrow::vehicle {
 
-FrictionCoupling::FrictionCoupling(System& system, const RateRow& row, double capacity)
-    : capacity_(capacity) {
+FrictionCoupling::FrictionCoupling(System& system, const RateRow& row, double capacity) : capacity_(capacity) {
   if (!(capacity > 0.0) || !std::isfinite(capacity))
     throw physics_error("'" + row.name + "': its torque capacity must be positive");
   row_ = system.add_rate_row(row);
@@ -19,8 +18,8 @@ FrictionCoupling FrictionCoupling::clutch(System& system, const std::string& nam
   return {system, {name, {{first, 1.0}, {second, -1.0}}, {}}, capacity};
 }
 
-FrictionCoupling FrictionCoupling::brake(System& system, const std::string& name, int a, int b,
-                                         const Vec3& axis, double capacity) {
+FrictionCoupling FrictionCoupling::brake(System& system, const std::string& name, int a, int b, const Vec3& axis,
+                                         double capacity) {
   return {system, {name, {}, {{a, b, axis, 1.0}}}, capacity};
 }
 

@@ -12,8 +12,7 @@ namespace furrow::vehicle {
 class FrictionCoupling {
  public:
   /// A clutch between two shafts.
-  static FrictionCoupling clutch(System& system, const std::string& name, int first, int second,
-                                 double capacity);
+  static FrictionCoupling clutch(System& system, const std::string& name, int first, int second, double capacity);
   /// A brake of body `b` against body `a`, about an axis fixed in b (W now). The torque acts on both.
   static FrictionCoupling brake(System& system, const std::string& name, int a, int b, const Vec3& axis,
                                 double capacity);

@@ -112,8 +112,8 @@ Outcome Gearbox::advance(System& system, double h) {
     if (carries && begin < state_.phase_end - margin) {
       RateControl control;
       control.mode = RateMode::torque;
-      control.torque = state_.hand_over * smoothstep((begin + 0.5 * h - state_.phase_start) /
-                                                     (state_.phase_end - state_.phase_start));
+      control.torque = state_.hand_over *
+                       smoothstep((begin + 0.5 * h - state_.phase_start) / (state_.phase_end - state_.phase_start));
       system.set_rate_control(row, control);
       return {};
     }

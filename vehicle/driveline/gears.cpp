@@ -16,8 +16,7 @@ RateControl held() {
 }  // namespace
 
 int add_gear(System& system, const std::string& name, int in, int out, double ratio) {
-  if (ratio == 0.0 || !std::isfinite(ratio))
-    throw physics_error("gear '" + name + "': its ratio must not be zero");
+  if (ratio == 0.0 || !std::isfinite(ratio)) throw physics_error("gear '" + name + "': its ratio must not be zero");
   return system.add_rate_row({name, {{out, 1.0}, {in, -ratio}}, {}}, held());
 }
 

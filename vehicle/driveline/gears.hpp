@@ -17,8 +17,7 @@ int add_planetary(System& system, const std::string& name, int sun, int ring, in
 
 /// Open differential: u_box = share u_first + (1 − share) u_second; `share` of the box's torque goes to `first`.
 /// @throws Error(physics) unless 0 < share < 1
-int add_differential(System& system, const std::string& name, int box, int first, int second,
-                     double share = 0.5);
+int add_differential(System& system, const std::string& name, int box, int first, int second, double share = 0.5);
 
 /// A shaft turns with a body about an axis fixed in the body (W now), both relative to the shaft's carrier: the drive
 /// shaft of a wheel.

@@ -30,14 +30,12 @@ struct ConverterTorque {
   double turbine = 0.0;   // given to the turbine, N m
 };
 
-ConverterTorque converter_torque(const ConverterOptions& options, double impeller_speed,
-                                 double turbine_speed);
+ConverterTorque converter_torque(const ConverterOptions& options, double impeller_speed, double turbine_speed);
 
 class TorqueConverter {
  public:
   /// @throws Error(physics) for a capacity that is not positive or a blend out of range
-  TorqueConverter(System& system, const std::string& name, int impeller, int turbine,
-                  const ConverterOptions& options);
+  TorqueConverter(System& system, const std::string& name, int impeller, int turbine, const ConverterOptions& options);
   double impeller_torque(const System& system) const { return -system.rate_state(rows_[0]).torque; }
   double turbine_torque(const System& system) const { return system.rate_state(rows_[1]).torque; }
   /// Taken by the fluid since the start, J.

@@ -21,10 +21,8 @@ class WheelMotor {
 
   void set_command(double command);  // −1 to 1
   double command() const { return *command_; }
-  double torque(const System& system) const {
-    return system.rate_state(row_).torque;
-  }  // mean over the last step, N m
-  double work(const System& system) const { return system.rate_state(row_).work; }  // since the start, J
+  double torque(const System& system) const { return system.rate_state(row_).torque; }  // mean over the last step, N m
+  double work(const System& system) const { return system.rate_state(row_).work; }      // since the start, J
 
   void save(Archive& archive) const { archive.put("command", *command_); }
   void restore(const Archive& archive) { *command_ = archive.get_double("command"); }

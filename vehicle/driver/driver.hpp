@@ -44,14 +44,13 @@ void visit_fields(Visit&& visit, FieldsOf<DriverInputs> auto& s) {
 
 /// What a driver knows of its vehicle.
 struct DriverCar {
-  double wheelbase = 0.0;  // from the rear axle to the one that steers, m
-  double steering_lock =
-      0.0;             // mean angle of the road wheels at steering 1: that of the steering wheel there, over
-                       // the steering ratio, rad
-  double width = 0.0;  // m
-  double mass = 0.0;   // of all that moves with it, kg
-  double drive_force = 0.0;  // largest at the wheels: the smaller of engine's and grip's, N
-  double brake_force = 0.0;  // largest at the wheels, N
+  double wheelbase = 0.0;      // from the rear axle to the one that steers, m
+  double steering_lock = 0.0;  // mean angle of the road wheels at steering 1: that of the steering wheel there, over
+                               // the steering ratio, rad
+  double width = 0.0;          // m
+  double mass = 0.0;           // of all that moves with it, kg
+  double drive_force = 0.0;    // largest at the wheels: the smaller of engine's and grip's, N
+  double brake_force = 0.0;    // largest at the wheels, N
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<DriverCar> auto& s) {

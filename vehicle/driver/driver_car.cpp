@@ -26,8 +26,7 @@ double axle_x(const AxleSpec& axle) {
 int foremost(const VehicleSpec& spec, bool steered) {
   int found = -1;
   for (int k = 0; k < static_cast<int>(spec.axles.size()); ++k)
-    if ((!steered || spec.axles[k].steering) &&
-        (found < 0 || axle_x(spec.axles[k]) > axle_x(spec.axles[found])))
+    if ((!steered || spec.axles[k].steering) && (found < 0 || axle_x(spec.axles[k]) > axle_x(spec.axles[found])))
       found = k;
   return found;
 }
@@ -62,15 +61,13 @@ double engine_force(const VehicleSpec& spec, double radius) {
   if (line.converter) torque *= line.converter->torque_ratio.front().second;
   const std::vector<double> speeds = shaft_speeds(line, 0);
   double ratio = 0.0;
-  for (const WheelShaftSpec& wheel : line.wheels)
-    ratio = std::max(ratio, std::abs(speeds[line.shaft(wheel.shaft)]));
+  for (const WheelShaftSpec& wheel : line.wheels) ratio = std::max(ratio, std::abs(speeds[line.shaft(wheel.shaft)]));
   return ratio > 0.0 ? torque / ratio / radius : 0.0;
 }
 
 double motor_force(const VehicleSpec& spec, double radius) {
   double torque = 0.0;
-  for (const MotorSpec& motor : spec.driveline.motors)
-    torque += 2.0 * motor.stall_torque * std::abs(motor.gear_ratio);
+  for (const MotorSpec& motor : spec.driveline.motors) torque += 2.0 * motor.stall_torque * std::abs(motor.gear_ratio);
   return torque / radius;
 }
 
@@ -94,13 +91,10 @@ int rear_axle(const VehicleSpec& spec) {
 
 Vec3 rear_axle_middle(const VehicleSpec& spec) {
   const AxleSpec& axle = spec.axles[rear_axle(spec)];
-  return 0.5 * (spindle_of(axle.corners[kLeft].suspension).center +
-                spindle_of(axle.corners[kRight].suspension).center);
+  return 0.5 * (spindle_of(axle.corners[kLeft].suspension).center + spindle_of(axle.corners[kRight].suspension).center);
 }
 
-bool can_steer(const VehicleSpec& spec) {
-  return spec.driveline.skid_steer != 0.0 || foremost(spec, true) >= 0;
-}
+bool can_steer(const VehicleSpec& spec) { return spec.driveline.skid_steer != 0.0 || foremost(spec, true) >= 0; }
 
 bool can_brake(const VehicleSpec& spec) { return brake_force(spec, 1.0) > 0.0; }
 
@@ -111,8 +105,7 @@ DriverCar driver_car(const VehicleSpec& spec, std::span<const double> radii, dou
   FURROW_ASSERT(mass > 0.0 && tire_width >= 0.0, mass, tire_width);
   const double radius = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
   const int front = foremost(spec, true) >= 0 ? foremost(spec, true) : foremost(spec, false);
-  const double grip = kGrip * mass * kStandardGravity,
-               base = axle_x(spec.axles[front]) - rear_axle_middle(spec).x();
+  const double grip = kGrip * mass * kStandardGravity, base = axle_x(spec.axles[front]) - rear_axle_middle(spec).x();
   const auto at_most_grip = [&](double force) { return force > 0.0 ? std::min(force, grip) : grip; };
   DriverCar car;
   car.wheelbase = std::max(base, radius);

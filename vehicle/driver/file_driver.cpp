@@ -26,8 +26,8 @@ void visit_fields(Visit&& visit, FieldsOf<FileDriverState> auto& s) {
 /// The value of the last point that has been reached, or else of the first.
 int gear_at(const DriverPoints& points, double time) {
   if (points.empty()) return gear_request::automatic;
-  const auto next = std::upper_bound(points.begin(), points.end(), time,
-                                     [](double t, const auto& point) { return t < point.first; });
+  const auto next =
+      std::upper_bound(points.begin(), points.end(), time, [](double t, const auto& point) { return t < point.first; });
   return static_cast<int>(next == points.begin() ? next->second : std::prev(next)->second);
 }
 
@@ -43,8 +43,7 @@ class FileDriver final : public Driver {
   }
 
   DriverInputs drive(const DriverView& view) override {
-    FURROW_ASSERT(view.position.allFinite() && view.velocity.allFinite() && std::isfinite(view.yaw),
-                  view.time);
+    FURROW_ASSERT(view.position.allFinite() && view.velocity.allFinite() && std::isfinite(view.yaw), view.time);
     DriverRecord& record = state_.record;
     DriverInputs& inputs = record.inputs;
     inputs.gear = gear_at(gear_, view.time);
@@ -76,8 +75,7 @@ class FileDriver final : public Driver {
 }  // namespace
 
 std::unique_ptr<Driver> make_driver(const DriverSpec& spec, const DriverCar& car) {
-  visit_fields([](const Field& field, const double& value) { FURROW_ASSERT(value > 0.0, field.name, value); },
-               car);
+  visit_fields([](const Field& field, const double& value) { FURROW_ASSERT(value > 0.0, field.name, value); }, car);
   return std::make_unique<FileDriver>(spec, car);
 }
 

@@ -40,8 +40,7 @@ double Path::Piece::length(double u) const {
   constexpr std::array<double, 3> kWeight = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
   double sum = kWeight[0] * tangent(0.5 * u).norm();
   for (std::size_t i = 1; i < kPoint.size(); ++i)
-    sum += kWeight[i] *
-           (tangent(0.5 * u * (1.0 - kPoint[i])).norm() + tangent(0.5 * u * (1.0 + kPoint[i])).norm());
+    sum += kWeight[i] * (tangent(0.5 * u * (1.0 - kPoint[i])).norm() + tangent(0.5 * u * (1.0 + kPoint[i])).norm());
   return 0.5 * u * sum;
 }
 

@@ -45,8 +45,7 @@ void PathFollower::steer(const DriverView& view, PathState& s, DriverRecord& rec
     record.path_ended = true;
     record.path_end_time = view.time;
   }
-  const double angle =
-      std::visit([&](const auto& law) { return wheel_angle(law, view, s.place, record); }, spec_.law);
+  const double angle = std::visit([&](const auto& law) { return wheel_angle(law, view, s.place, record); }, spec_.law);
   const double wanted = std::clamp(angle / car_.steering_lock, -1.0, 1.0), reach = spec_.rate * step;
   s.steering = std::clamp(wanted, s.steering - reach, s.steering + reach);
   s.begun = true;
@@ -83,8 +82,7 @@ double PathFollower::wheel_angle(const Preview& law, const DriverView& view, con
   const double error = std::clamp(record.cross_track, -most, most);
   const double heading = record.heading_error - law.side_slip * v * v * halfway;
   const double wanted = ahead - (error + 2.0 * d * std::sin(heading)) / (d * d);
-  return std::atan(L * wanted) + law.understeer * v * v * ahead -
-         law.yaw_damping * (view.yaw_rate - v * halfway);
+  return std::atan(L * wanted) + law.understeer * v * v * ahead - law.yaw_damping * (view.yaw_rate - v * halfway);
 }
 
 }  // namespace furrow::vehicle

@@ -41,9 +41,7 @@ constexpr PointRule kWaypoint{"x_m", "y_m", -kMostLength, kMostLength, "at most 
 
 // Keys of each section: what they may be, and what is read apart.
 
-void finish(StraightPath& shape, JsonReader& reader) {
-  check_positive(reader, "length", shape.length, kMostLength);
-}
+void finish(StraightPath& shape, JsonReader& reader) { check_positive(reader, "length", shape.length, kMostLength); }
 
 void finish(CirclePath& shape, JsonReader& reader) {
   check_positive(reader, "radius", shape.radius, kMostLength);
@@ -67,15 +65,14 @@ void finish(WaypointPath& shape, JsonReader& reader) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const auto [x, y] = chord(i);
     if (std::hypot(x, y) < kLeastSpacing)
-      reader.fail(
-          "points",
-          fmt::format("has points {} and {} at one place, expected 1 mm between them or more", i + 1, i + 2));
+      reader.fail("points",
+                  fmt::format("has points {} and {} at one place, expected 1 mm between them or more", i + 1, i + 2));
     if (i == 0) continue;
     const auto [a, b] = chord(i - 1);
     const double turn = std::abs(std::atan2(a * y - b * x, a * x + b * y)) * 180.0 / std::numbers::pi;
     if (turn > kSharpestTurn)
-      reader.fail("points", fmt::format("turns by {:.0f}° at point {}, expected at most {:.0f}°", turn, i + 1,
-                                        kSharpestTurn));
+      reader.fail("points",
+                  fmt::format("turns by {:.0f}° at point {}, expected at most {:.0f}°", turn, i + 1, kSharpestTurn));
   }
   shape.points = points;
 }
@@ -123,9 +120,7 @@ std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key,
 
 }  // namespace
 
-void check_spec(const PathSteeringSpec& s, const JsonReader& reader) {
-  check_positive(reader, "rate", s.rate, 1e6);
-}
+void check_spec(const PathSteeringSpec& s, const JsonReader& reader) { check_positive(reader, "rate", s.rate, 1e6); }
 
 namespace {
 
@@ -171,8 +166,7 @@ constexpr std::array<std::pair<const PointRule*, DriverPoints InputSpec::*>, 4> 
 }};
 
 InputSpec read_inputs(const std::filesystem::path& file) {
-  const CsvFile csv(file, "a CSV file of a driver's inputs",
-                    {"time_s", "throttle", "brake", "steering", "gear"});
+  const CsvFile csv(file, "a CSV file of a driver's inputs", {"time_s", "throttle", "brake", "steering", "gear"});
   InputSpec spec;
   for (const auto& [rule, points] : kInputs)
     if (csv.has(rule->second)) spec.*points = read_points(csv, *rule);
@@ -192,15 +186,13 @@ InputSpec read_inputs(JsonReader reader) {
 /// What follows a loop follows no table.
 void check_parts(const DriverSpec& spec, const JsonReader& reader) {
   const auto refuse = [&](bool both, const std::string& input, const std::string& loop) {
-    if (both)
-      reader.fail("inputs", fmt::format("gives {} beside '{}', expected one of the two", input, loop));
+    if (both) reader.fail("inputs", fmt::format("gives {} beside '{}', expected one of the two", input, loop));
   };
   refuse(spec.speed && !spec.inputs.throttle.empty(), "throttle", "speed");
   refuse(spec.speed && !spec.inputs.brake.empty(), "brake", "speed");
   refuse(spec.path && !spec.inputs.steering.empty(), "steering", "path");
   const InputSpec& i = spec.inputs;
-  if (!spec.speed && !spec.path && i.throttle.empty() && i.brake.empty() && i.steering.empty() &&
-      i.gear.empty())
+  if (!spec.speed && !spec.path && i.throttle.empty() && i.brake.empty() && i.steering.empty() && i.gear.empty())
     reader.fail("", "gives the driver nothing to do, expected 'inputs', 'speed' or 'path'");
 }
 

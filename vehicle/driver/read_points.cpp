@@ -30,8 +30,7 @@ std::optional<std::string> fault_of_last(const DriverPoints& points, const Point
   return std::nullopt;
 }
 
-double second_value(const json& value, const PointRule& rule, const JsonReader& reader,
-                    const std::string& key) {
+double second_value(const json& value, const PointRule& rule, const JsonReader& reader, const std::string& key) {
   if (rule.word && value == rule.word) return rule.meaning;
   // What a word means is no number to be written.
   if (!value.is_number() || (rule.word && value.get<double>() == rule.meaning))
@@ -39,8 +38,7 @@ double second_value(const json& value, const PointRule& rule, const JsonReader& 
   return value.get<double>();
 }
 
-DriverPoints read_list(const JsonReader& reader, const std::string& key, const json& list,
-                       const PointRule& rule) {
+DriverPoints read_list(const JsonReader& reader, const std::string& key, const json& list, const PointRule& rule) {
   DriverPoints points;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string entry = fmt::format("{}[{}]", key, i);
@@ -59,8 +57,8 @@ DriverPoints read_list(const JsonReader& reader, const std::string& key, const j
 DriverPoints read_points(JsonReader& reader, const std::string& key, const PointRule& rule) {
   reader.skip(key);
   const bool time = std::string(rule.first) == "time_s";
-  const std::string forms = fmt::format("a list of [{}, {}], the name of a CSV file{}", rule.first,
-                                        rule.second, time ? std::string(" or ") + rule.expected : "");
+  const std::string forms = fmt::format("a list of [{}, {}], the name of a CSV file{}", rule.first, rule.second,
+                                        time ? std::string(" or ") + rule.expected : "");
   if (!reader.has(key)) reader.fail(key, "is missing, expected " + forms);
   const json& value = reader.object().at(key);
   if (value.is_array()) return read_list(reader, key, value, rule);
@@ -68,10 +66,9 @@ DriverPoints read_points(JsonReader& reader, const std::string& key, const Point
     if (const auto text = reader.text(key); text.find('.') == std::string::npos)
       reader.fail(key, "is " + value_text(value) + ", expected " + forms);
     const auto file = find_file(reader.text(key), reader.full(key), reader.file());
-    return read_points(
-        CsvFile(file, fmt::format("a CSV file with the columns {} and {}", rule.first, rule.second),
-                {rule.first, rule.second}),
-        rule);
+    return read_points(CsvFile(file, fmt::format("a CSV file with the columns {} and {}", rule.first, rule.second),
+                               {rule.first, rule.second}),
+                       rule);
   }
   if (!time || !(value.is_number() || value.is_string()))
     reader.fail(key, "is " + value_text(value) + ", expected " + forms);
@@ -86,8 +83,7 @@ DriverPoints read_points(const CsvFile& file, const PointRule& rule) {
     const bool is_word = rule.word && file.text(row, rule.second) == rule.word;
     const double second = is_word ? rule.meaning : file.number(row, rule.second);
     if (!is_word && rule.word && second == rule.meaning)
-      throw file.wrong(row,
-                       fmt::format("{} is {}, expected {}", rule.second, number_text(second), rule.expected));
+      throw file.wrong(row, fmt::format("{} is {}, expected {}", rule.second, number_text(second), rule.expected));
     points.emplace_back(file.number(row, rule.first), second);
     if (const auto fault = fault_of_last(points, rule)) throw file.wrong(row, *fault);
   }

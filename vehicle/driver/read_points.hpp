@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <string>
 
-#include "protocol/files/json_reader.hpp"
 #include "protocol/files/csv_file.hpp"
+#include "protocol/files/json_reader.hpp"
 #include "vehicle/driver/driver_spec.hpp"
 
 namespace furrow::vehicle {

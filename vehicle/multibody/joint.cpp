@@ -112,8 +112,7 @@ std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, con
     case JointKind::distance:
       rows.push_back(base_row(joint, RowKind::distance));
       rows.back().reference = (point_b - place.point).norm();
-      if (!(rows.back().reference > 0.0))
-        throw physics_error("joint '" + joint.name + "': its length is zero");
+      if (!(rows.back().reference > 0.0)) throw physics_error("joint '" + joint.name + "': its length is zero");
       break;
     case JointKind::revolute_spherical: {
       // Along the hinge nothing moves; across it the length stays.

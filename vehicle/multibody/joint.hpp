@@ -14,21 +14,12 @@ namespace furrow::vehicle {
 ///
 /// Two kinds stand for a massless rod: distance, with a ball at one end and a ball or a universal joint at the other;
 /// revolute–spherical, with a hinge on A and a ball on B, so that B's point stays on a circle about the hinge.
-enum class JointKind {
-  fixed,
-  revolute,
-  prismatic,
-  cylindrical,
-  universal,
-  spherical,
-  distance,
-  revolute_spherical
-};
+enum class JointKind { fixed, revolute, prismatic, cylindrical, universal, spherical, distance, revolute_spherical };
 
 /// Where a joint sits in the configuration in which it is defined, W.
 struct JointPlace {
-  Vec3 point = Vec3::Zero();  // m; of a rod: its end on A
-  Vec3 axis = Vec3::UnitZ();  // revolute, prismatic, cylindrical: the axis; universal, rod: the axis in A
+  Vec3 point = Vec3::Zero();         // m; of a rod: its end on A
+  Vec3 axis = Vec3::UnitZ();         // revolute, prismatic, cylindrical: the axis; universal, rod: the axis in A
   Vec3 second_axis = Vec3::UnitX();  // universal: the axis fixed in B
   Vec3 second_point = Vec3::Zero();  // of a rod: its end on B, m
 };

@@ -22,8 +22,7 @@ inline Motion ramped_motion(double time, double speed, double ramp) {
   FURROW_ASSERT(ramp >= 0.0, ramp);
   if (time < ramp) {
     const double u = time > 0.0 ? time / ramp : 0.0;
-    return {speed * ramp * u * u * u * u * (2.5 + u * (u - 3.0)),
-            speed * u * u * u * (10.0 + u * (6.0 * u - 15.0))};
+    return {speed * ramp * u * u * u * u * (2.5 + u * (u - 3.0)), speed * u * u * u * (10.0 + u * (6.0 * u - 15.0))};
   }
   return {speed * (time - 0.5 * ramp), speed};
 }
@@ -34,8 +33,7 @@ inline Motion step_motion(double time, double change, double duration) {
   if (!(time > 0.0)) return {};
   if (time >= duration) return {change, 0.0};
   const double u = time / duration;
-  return {change * u * u * u * (10.0 + u * (6.0 * u - 15.0)),
-          change / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u)};
+  return {change * u * u * u * (10.0 + u * (6.0 * u - 15.0)), change / duration * 30.0 * u * u * (1.0 - u) * (1.0 - u)};
 }
 
 }  // namespace furrow::vehicle

@@ -74,8 +74,7 @@ void visit_fields(Visit&& visit, FieldsOf<RateState> auto& s) {
 }
 
 /// λ of several rows from their speeds u (rad/s) at a time (s), each with its damping −∂λ/∂u ≥ 0, N m s.
-using RateLaw =
-    std::function<void(std::span<const double> speeds, double time, std::span<ElementForce> torques)>;
+using RateLaw = std::function<void(std::span<const double> speeds, double time, std::span<ElementForce> torques)>;
 
 /// What a row has of one body (∂u/∂ω, W) and of one shaft (∂u/∂Ω).
 struct SpinSide {

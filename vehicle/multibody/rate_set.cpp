@@ -64,8 +64,7 @@ void RateSet::set_factor(int row, int term, double factor) {
   FURROW_ASSERT(in_range(row, rows_.size()), row, rows_.size());
   FURROW_ASSERT(in_range(term, rows_[row].shafts.size()), rows_[row].name, term);
   rows_[row].shafts[term].factor = factor;
-  if (first_shaft_.size() > static_cast<std::size_t>(row))
-    shaft_sides_[first_shaft_[row] + term].factor = factor;
+  if (first_shaft_.size() > static_cast<std::size_t>(row)) shaft_sides_[first_shaft_[row] + term].factor = factor;
 }
 
 void RateSet::set_speed(int shaft, double speed) {

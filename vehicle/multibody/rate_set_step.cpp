@@ -105,8 +105,7 @@ void RateSet::begin(RateStage stage, double h, double mid_time, std::span<const 
   base_scale_ = largest_speed();
   for (const SpinSide& side : spin_sides_)
     base_scale_ = std::max(
-        base_scale_,
-        (bodies[side.body].inertia_inverse_W * bodies[side.body].angular_momentum).cwiseAbs().maxCoeff());
+        base_scale_, (bodies[side.body].inertia_inverse_W * bodies[side.body].angular_momentum).cwiseAbs().maxCoeff());
   for (std::size_t s = 0; s < shafts_.size(); ++s) base_[s] = shafts_[s].state;
   if (stage == RateStage::assembly) return;
   for (int i = 0; i < row_count(); ++i) speed_before_[i] = speed(i, spin_sides_, bodies);
@@ -135,8 +134,7 @@ void RateSet::fill_compliance(std::span<double> compliance) const {
       if (is_ideal(i)) compliance[i] = 0.0;
     } else if (controls_[i].mode == RateMode::hold) {
       if (states_[i].side == 0 && !fixed(controls_[i])) compliance[i] = 0.0;
-    } else if (controls_[i].mode == RateMode::law && stage_ == RateStage::first_half &&
-               law_damping_[i] > 0.0) {
+    } else if (controls_[i].mode == RateMode::law && stage_ == RateStage::first_half && law_damping_[i] > 0.0) {
       compliance[i] = 1.0 / (half_step_ * law_damping_[i]);
     }
   }
@@ -161,20 +159,18 @@ void RateSet::apply(std::span<const double> impulses, std::span<Body> bodies) {
     bodies[side.body].angular_momentum += impulses[side.row - first_row_] * side.w;
   for (std::size_t s = 0; s < shafts_.size(); ++s) shafts_[s].state.speed = base_[s].speed;
   for (const ShaftSide& side : shaft_sides_)
-    shafts_[side.shaft].state.speed +=
-        impulses[side.row - first_row_] * side.factor / shafts_[side.shaft].inertia;
+    shafts_[side.shaft].state.speed += impulses[side.row - first_row_] * side.factor / shafts_[side.shaft].inertia;
 }
 
 void RateSet::move(double h) {
-  for (std::size_t s = 0; s < shafts_.size(); ++s)
-    shafts_[s].state.angle = base_[s].angle + h * shafts_[s].state.speed;
+  for (std::size_t s = 0; s < shafts_.size(); ++s) shafts_[s].state.angle = base_[s].angle + h * shafts_[s].state.speed;
 }
 
 // A law with damping c is a row of its own, P = h/2 f(u) by Newton's method with the slope −c:
 //   δu + δP 2/(h c) = (h/2 f(u) − P) 2/(h c)
 // Without damping P ← h/2 f(u) directly.
-bool RateSet::residuals(std::span<double> impulses, std::span<const double> compliance,
-                        std::span<const Body> bodies, std::span<double> residual, double& worst) {
+bool RateSet::residuals(std::span<double> impulses, std::span<const double> compliance, std::span<const Body> bodies,
+                        std::span<double> residual, double& worst) {
   FURROW_ASSERT(stage_ != RateStage::none, rows_.size());
   worst = 0.0;
   if (stage_ == RateStage::first_half) {
@@ -208,9 +204,8 @@ bool RateSet::change_sides(std::span<const double> impulses, std::span<const Bod
     int& side = states_[i].side;
     const int before = side;
     if (side == 0) {
-      const double room =
-          kSideTolerance * half_step_ *
-          (std::isfinite(control.upper - control.lower) ? control.upper - control.lower : 0.0);
+      const double room = kSideTolerance * half_step_ *
+                          (std::isfinite(control.upper - control.lower) ? control.upper - control.lower : 0.0);
       if (impulses[i] > half_step_ * control.upper + room) side = 1;
       if (impulses[i] < half_step_ * control.lower - room) side = -1;
     } else {
@@ -237,8 +232,7 @@ void RateSet::finish(std::span<const double> impulses, std::span<const Body> bod
 void RateSet::update_rotors() {
   for (Vec3& p : rotor_momentum_) p.setZero();
   for (const Shaft& shaft : shafts_)
-    if (shaft.carrier != kGround)
-      rotor_momentum_[shaft.carrier] += shaft.inertia * shaft.state.speed * shaft.axis;
+    if (shaft.carrier != kGround) rotor_momentum_[shaft.carrier] += shaft.inertia * shaft.state.speed * shaft.axis;
 }
 
 const Vec3* RateSet::rotor_momentum(int body) const {

@@ -35,8 +35,8 @@ inline Quat rotated(const Quat& q, const Vec3& omega_W, double h) {
 ///   R½ J R½ᵀ ω = ℓ,  R½ = exp(h/2 [ω]×) R₀.
 /// In body axes W = R₀ᵀω: J W = exp(−h/2 [W]×) R₀ᵀℓ, by fixed-point iteration (contracts for h|ω| < 1).
 /// @return false when the iteration does not settle.
-inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse, const Vec3& momentum_W,
-                                      double h, Vec3& omega_W) {
+inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse, const Vec3& momentum_W, double h,
+                                      Vec3& omega_W) {
   FURROW_ASSERT(h >= 0.0, h);
   const Vec3 L = R.transpose() * momentum_W;
   Vec3 W = inertia_inverse * L;

@@ -18,10 +18,9 @@ struct Side {
 }  // namespace
 
 void SchurSolver::analyze(std::span<const Row> rows, const RateSides& rates) {
-  FURROW_ASSERT(
-      std::all_of(rows.begin(), rows.end(),
-                  [](const Row& row) { return row.a >= kGround && row.b >= kGround && row.a != row.b; }),
-      rows.size());
+  FURROW_ASSERT(std::all_of(rows.begin(), rows.end(),
+                            [](const Row& row) { return row.a >= kGround && row.b >= kGround && row.a != row.b; }),
+                rows.size());
   int body_count = 0;
   for (const Row& row : rows) body_count = std::max({body_count, row.a + 1, row.b + 1});
   for (const SpinSide& side : rates.spins) body_count = std::max(body_count, side.body + 1);
@@ -78,8 +77,7 @@ void SchurSolver::find_rate_entries(std::span<const Row> rows, const RateSides& 
   for (int body = 0; body < body_count; ++body)
     for (const Place& pi : places[body])
       for (const Place& pj : places[body])
-        if (pi.side >= 0 && pi.row >= pj.row)
-          spin_entries_.push_back({pi.row, pj.row, 0, body, pi.side, pj.side});
+        if (pi.side >= 0 && pi.row >= pj.row) spin_entries_.push_back({pi.row, pj.row, 0, body, pi.side, pj.side});
   for (int k = 0; k < static_cast<int>(rates.shafts.size()); ++k)
     for (int l = 0; l < static_cast<int>(rates.shafts.size()); ++l)
       if (rates.shafts[k].shaft == rates.shafts[l].shaft && rates.shafts[k].row >= rates.shafts[l].row)
@@ -94,7 +92,7 @@ void SchurSolver::add_rate_entries(std::span<const RowJacobian> jacobians, std::
   for (const SpinEntry& entry : spin_entries_) {
     if (compliance[entry.i] < 0.0 || compliance[entry.j] < 0.0) continue;
     const Vec3& wi = rates.spins[entry.i_side].w;
-    const Vec3& wj = entry.j_side >= 0          ? rates.spins[entry.j_side].w
+    const Vec3& wj = entry.j_side >= 0        ? rates.spins[entry.j_side].w
                      : entry.j_side == kSideB ? jacobians[entry.j].w_b
                                               : jacobians[entry.j].w_a;
     values[entry.value] += wi.dot(bodies[entry.body].inertia_inverse_W * wj);
@@ -108,8 +106,7 @@ void SchurSolver::add_rate_entries(std::span<const RowJacobian> jacobians, std::
 }
 
 bool SchurSolver::factorize(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
-                            std::span<const double> compliance, const RateSides& rates,
-                            std::span<const Shaft> shafts) {
+                            std::span<const double> compliance, const RateSides& rates, std::span<const Shaft> shafts) {
   FURROW_ASSERT(jacobians.size() + rates.count == diagonal_.size(), jacobians.size(), diagonal_.size());
   FURROW_ASSERT(compliance.size() == diagonal_.size(), compliance.size(), diagonal_.size());
   double* values = S_.valuePtr();

@@ -35,8 +35,7 @@ class SchurSolver {
   /// added to the diagonal; a negative value switches row i off (its impulse is then r_i itself: give it 0).
   /// @return false when the factorization fails. @pre one Jacobian and one compliance for each row analysed
   bool factorize(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
-                 std::span<const double> compliance, const RateSides& rates = {},
-                 std::span<const Shaft> shafts = {});
+                 std::span<const double> compliance, const RateSides& rates = {}, std::span<const Shaft> shafts = {});
 
   /// P = (S + εI)⁻¹ r.
   void solve(const Eigen::VectorXd& r, Eigen::VectorXd& P) const;
@@ -63,8 +62,7 @@ class SchurSolver {
   static constexpr int kSideA = -1, kSideB = -2;
   void find_rate_entries(std::span<const Row> rows, const RateSides& rates, int body_count);
   void add_rate_entries(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
-                        std::span<const double> compliance, const RateSides& rates,
-                        std::span<const Shaft> shafts);
+                        std::span<const double> compliance, const RateSides& rates, std::span<const Shaft> shafts);
 
   std::vector<Entry> entries_;
   std::vector<SpinEntry> spin_entries_;

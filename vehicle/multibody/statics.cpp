@@ -213,8 +213,7 @@ Outcome Statics::settle(double weight, const ProgressCall& progress) {
     const Eigen::MatrixXd N = freedoms();
     Eigen::MatrixXd K = stiffness(N);
     // Where it is not stable (a wheel in the air), as stiff as it takes to come down.
-    const double least =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues()[0];
     const double floor = 1e-4 * weight;
     if (least < floor) K.diagonal().array() += 0.5 * weight / kLongestStep * 0.02 + floor - least;
     Eigen::VectorXd step = N * K.ldlt().solve(N.transpose() * forces());

@@ -39,8 +39,7 @@ struct Mode {
 class Statics {
  public:
   /// @pre the system was assembled; it outlives this
-  explicit Statics(System& system, std::vector<HeldRow> held = {})
-      : system_(system), held_(std::move(held)) {}
+  explicit Statics(System& system, std::vector<HeldRow> held = {}) : system_(system), held_(std::move(held)) {}
 
   int hold(HeldRow row) {
     held_.push_back(std::move(row));

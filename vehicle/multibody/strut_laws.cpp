@@ -23,12 +23,10 @@ void require(bool ok, const std::string& what) {
 
 ForceLaw tabulated_spring(const SpringOptions& options) {
   require(options.force.has_value(), "spring: it has no table");
-  require(options.free_length > 0.0 && std::isfinite(options.free_length),
-          "spring: its free length must be positive");
+  require(options.free_length > 0.0 && std::isfinite(options.free_length), "spring: its free length must be positive");
   require(options.shortest < options.longest, "spring: its stops must be in rising order");
   if (options.stop)
-    require(options.stop->value(0.0) == 0.0 && options.stop->first() >= 0.0,
-            "spring: its stop must begin at (0, 0)");
+    require(options.stop->value(0.0) == 0.0 && options.stop->first() >= 0.0, "spring: its stop must begin at (0, 0)");
   return [o = options](double x, double, double) {
     ElementForce f;
     f.elastic = o.force->value(o.free_length - x);
@@ -47,8 +45,8 @@ ForceLaw tabulated_spring(const SpringOptions& options) {
 }
 
 double shock_coefficient(const ShockOptions& o, double length, double speed) {
-  const double inside = smoothstep(length, o.first_mark, o.blend_length) *
-                        (1.0 - smoothstep(length, o.last_mark, o.blend_length));
+  const double inside =
+      smoothstep(length, o.first_mark, o.blend_length) * (1.0 - smoothstep(length, o.last_mark, o.blend_length));
   const double bump = o.outer_bump + (o.bump - o.outer_bump) * inside;
   const double rebound = o.outer_rebound + (o.rebound - o.outer_rebound) * inside;
   double share = speed > 0.0 ? 1.0 : 0.0;  // of rebound
@@ -62,8 +60,7 @@ ForceLaw shock_absorber(const ShockOptions& options) {
           "shock absorber: its coefficients must not be negative");
   require(o.first_mark < o.last_mark, "shock absorber: its marks must be in rising order");
   const bool marked = std::isfinite(o.first_mark) || std::isfinite(o.last_mark);
-  require(!marked || o.blend_length > 0.0,
-          "shock absorber: the length over which it changes must be positive");
+  require(!marked || o.blend_length > 0.0, "shock absorber: the length over which it changes must be positive");
   if (std::isfinite(o.first_mark) && std::isfinite(o.last_mark))
     require(o.last_mark - o.first_mark >= o.blend_length,
             "shock absorber: its marks must lie further apart than the "

@@ -57,8 +57,7 @@ void System::set_mass_properties(int index, double mass, const Mat3& inertia) {
 }
 
 int System::add_joint(JointKind kind, const std::string& name, int a, int b, const JointPlace& place) {
-  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b,
-                body_count());
+  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b, body_count());
   FURROW_ASSERT(a != b, name, a);
   Joint joint;
   joint.name = name;
@@ -109,8 +108,7 @@ int System::add_line_element(const std::string& name, int a, int b, const Vec3& 
 }
 
 Row System::line_row(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) const {
-  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b,
-                body_count());
+  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b, body_count());
   FURROW_ASSERT(a != b, name, a);
   FURROW_ASSERT((point_b - point_a).norm() > 0.0, name);
   Row row;
@@ -171,8 +169,7 @@ double System::max_violation() const {
   for (std::size_t i = 0; i < constraint_rows_.size(); ++i) {
     const Row& row = constraint_rows_[i];
     const double value = row_value(row, pose(row.a), pose(row.b));
-    largest =
-        std::max(largest, std::abs(row_difference(row, value, target(static_cast<int>(i), time()).value)));
+    largest = std::max(largest, std::abs(row_difference(row, value, target(static_cast<int>(i), time()).value)));
   }
   return largest;
 }
@@ -232,13 +229,12 @@ void System::restore(const Archive& archive) {
   step_ = saved_finite(archive, "step");
   count_ = archive.get_int("count");
   if (step_ < 0.0 || count_ < 0 || count_ > kMostSteps)
-    throw Error(ExitCode::io, "saved state of the multibody system holds step " + std::to_string(count_) +
-                                  " of " + std::to_string(step_) + " s: it is damaged");
+    throw Error(ExitCode::io, "saved state of the multibody system holds step " + std::to_string(count_) + " of " +
+                                  std::to_string(step_) + " s: it is damaged");
   prepare();
   restore_drives(archive);
   update_jacobians();
-  if (const Outcome outcome = factorize(false); !outcome.ok)
-    throw physics_error(outcome, "restored multibody system");
+  if (const Outcome outcome = factorize(false); !outcome.ok) throw physics_error(outcome, "restored multibody system");
   find_redundancy();
   redundant_count_ = static_cast<int>(archive.get_int("redundant"));
 }

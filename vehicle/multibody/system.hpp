@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
-#include "protocol/core/constants.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/outcome.hpp"
 #include "vehicle/multibody/actuator.hpp"
 #include "vehicle/multibody/body.hpp"
@@ -51,8 +51,7 @@ class System {
   /// Acts on the free coordinate of a joint.
   int add_joint_element(const std::string& name, int joint, ForceLaw law);
   /// Acts on the distance between two points, W, m. @pre the points differ
-  int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
-                       ForceLaw law);
+  int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b, ForceLaw law);
   /// Keeps the energies of an element whose law gives its elastic part.
   void track_energy(int element);
   /// In the free coordinate of a joint; the force is the law's, or what set_actuator() says where there is none.
@@ -197,7 +196,7 @@ class System {
   double row_rate(const Row& row, const RowJacobian& J) const;
   void actuator_forces(double h, bool first_half);
   void finish_work(double h, bool first_half);  // of actuators and tracked elements
-  void turn_rotors();  // carriers feel what their rotors' turn with them takes
+  void turn_rotors();                           // carriers feel what their rotors' turn with them takes
   Outcome solve_half(bool first_half, double h, double end_time);
   bool rates_done(double& before, int iteration);
   bool dampers_done(double scale, double& before, int iteration);

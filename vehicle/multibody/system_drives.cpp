@@ -10,12 +10,11 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kRateLimit =
-    1e-9;                       // of a held speed, relative to its scale, where round-off stops the iteration
-constexpr int kMaxRounds = 60;  // in which rows change between holding and slipping
+constexpr double kRateLimit = 1e-9;  // of a held speed, relative to its scale, where round-off stops the iteration
+constexpr int kMaxRounds = 60;       // in which rows change between holding and slipping
 constexpr double kDamperTolerance = 1e-13;  // of a damper's speed and flow, or
 constexpr double kDamperFloor = 1e-14;      // of the largest speed
-constexpr int kDamperPatience = 8;           // iterations after which dampers may be as near as round-off lets them
+constexpr int kDamperPatience = 8;          // iterations after which dampers may be as near as round-off lets them
 
 }  // namespace
 
@@ -35,8 +34,7 @@ int System::add_line_actuator(const std::string& name, int a, int b, const Vec3&
 }
 
 int System::add_torque_actuator(const std::string& name, int a, int b, const Vec3& axis, ActuatorLaw law) {
-  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b,
-                body_count());
+  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b, body_count());
   FURROW_ASSERT(a != b, name, a);
   Row row;
   row.kind = RowKind::angle;
@@ -90,17 +88,14 @@ int System::add_rate_row(const RateRow& given, const RateControl& control) {
     FURROW_ASSERT(term.a >= kGround && term.a < body_count(), row.name, term.a, body_count());
     FURROW_ASSERT(term.b >= kGround && term.b < body_count(), row.name, term.b, body_count());
     const double length = term.axis.norm();
-    if (!(length > 0.0) || !std::isfinite(length))
-      throw physics_error("'" + row.name + "': its axis has no direction");
+    if (!(length > 0.0) || !std::isfinite(length)) throw physics_error("'" + row.name + "': its axis has no direction");
     term.axis = pose(term.b).R->transpose() * (term.axis / length);
   }
   prepared_ = false;
   return rates_.add_row(std::move(row), control);
 }
 
-int System::add_rate_law(const RateRow& row, RateLaw law) {
-  return add_rate_law(std::vector{row}, law).front();
-}
+int System::add_rate_law(const RateRow& row, RateLaw law) { return add_rate_law(std::vector{row}, law).front(); }
 
 std::vector<int> System::add_rate_law(const std::vector<RateRow>& rows, RateLaw law) {
   std::vector<int> indices;
@@ -169,8 +164,7 @@ void System::actuator_forces(double h, bool first_half) {
 void System::finish_work(double h, bool first_half) {
   FURROW_ASSERT(h > 0.0, h);
   for (Actuator& actuator : actuators_)
-    actuator.state.work +=
-        actuator.impulse * 0.5 * (actuator.rate_before + row_rate(actuator.row, actuator.jacobian));
+    actuator.state.work += actuator.impulse * 0.5 * (actuator.rate_before + row_rate(actuator.row, actuator.jacobian));
   for (Tracked& tracked : tracked_) {
     const std::size_t row = constraint_rows_.size() + tracked.element;
     const double mean = 0.5 * (tracked.rate_before + rate(static_cast<int>(row)));
@@ -183,16 +177,14 @@ void System::finish_work(double h, bool first_half) {
 
 void System::turn_rotors() {
   for (int i = 0; i < body_count(); ++i)
-    if (const Vec3* p = rates_.rotor_momentum(i))
-      bodies_[i].angular_momentum -= bodies_[i].R * *p - base_[i].R * *p;
+    if (const Vec3* p = rates_.rotor_momentum(i)) bodies_[i].angular_momentum -= bodies_[i].R * *p - base_[i].R * *p;
 }
 
 // Solves one half of the step, and again as long as rows change between holding and slipping.
 Outcome System::solve_half(bool first_half, double h, double end_time) {
   for (int round = 0; round < kMaxRounds; ++round) {
     Outcome outcome = first_half ? solve_positions(h, end_time) : solve_velocities(end_time);
-    if (!outcome.ok || rate_count() == 0 || !rates_.change_sides(rate_part(impulses_), bodies_, round))
-      return outcome;
+    if (!outcome.ok || rate_count() == 0 || !rates_.change_sides(rate_part(impulses_), bodies_, round)) return outcome;
     if (outcome = factorize(first_half); !outcome.ok) return outcome;
   }
   return Outcome::failure("cannot decide which of its brakes and clutches slip", "");
@@ -223,8 +215,8 @@ bool System::dampers_done(double scale, double& before, int iteration) {
     residual_[i] = -(speed + flow);
     worst = std::max(worst, std::abs(residual_[i]));
     fastest = std::max({fastest, std::abs(speed), std::abs(flow)});
-    small = small && std::abs(residual_[i]) <=
-                         kDamperTolerance * (std::abs(speed) + std::abs(flow)) + kDamperFloor * scale;
+    small =
+        small && std::abs(residual_[i]) <= kDamperTolerance * (std::abs(speed) + std::abs(flow)) + kDamperFloor * scale;
   }
   const bool settled = iteration > kDamperPatience && worst <= kRateLimit * fastest && worst > 0.25 * before;
   before = worst;

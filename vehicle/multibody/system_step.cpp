@@ -14,7 +14,7 @@ namespace {
 constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step, or
 constexpr double kPositionRounding = 8.0;     // units of the last digit of the largest coordinate, if that is more
 constexpr double kVelocityTolerance = 4e-16;  // relative to the largest speed: iterate down to round-off
-constexpr double kVelocityLimit = 1e-9;  // relative to the largest speed, beyond it the constraints clash
+constexpr double kVelocityLimit = 1e-9;       // relative to the largest speed, beyond it the constraints clash
 constexpr int kMaxIterations = 60;
 constexpr int kCleaningIterations = 3;
 
@@ -189,8 +189,7 @@ Outcome System::solve_positions(double h, double end_time) {
     bool done = true;
     for (int i = 0; i < constraints; ++i) {
       const Row& row = rows_[i];
-      const double violation =
-          row_difference(row, row_value(row, pose(row.a), pose(row.b)), targets_[i].value);
+      const double violation = row_difference(row, row_value(row, pose(row.a), pose(row.b)), targets_[i].value);
       residual_[i] = -violation / h;
       if (!(std::abs(violation) <= worst)) worst = std::abs(violation), worst_row = i;
     }
@@ -236,8 +235,8 @@ Outcome System::solve_velocities(double end_time) {
     double scale = 0.0, worst = 0.0;
     int worst_row = 0;
     for (const Body& body : bodies_)
-      scale = std::max({scale, body.state.velocity.cwiseAbs().maxCoeff(),
-                        body.state.angular_velocity.cwiseAbs().maxCoeff()});
+      scale = std::max(
+          {scale, body.state.velocity.cwiseAbs().maxCoeff(), body.state.angular_velocity.cwiseAbs().maxCoeff()});
     for (int i = 0; i < constraints; ++i) {
       residual_[i] = targets_[i].rate - rate(i);
       scale = std::max(scale, std::abs(targets_[i].rate));
@@ -286,10 +285,8 @@ void System::collect_reactions(double h, bool first_half) {
   FURROW_ASSERT(reactions_.size() == joints_.size(), reactions_.size(), joints_.size());
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const Joint& joint = joints_[j];
-    const Mat3& R_a =
-        joint.a == kGround ? *pose(kGround).R : (first_half ? base_[joint.a].R : bodies_[joint.a].R);
-    const Mat3& R_b =
-        joint.b == kGround ? *pose(kGround).R : (first_half ? base_[joint.b].R : bodies_[joint.b].R);
+    const Mat3& R_a = joint.a == kGround ? *pose(kGround).R : (first_half ? base_[joint.a].R : bodies_[joint.a].R);
+    const Mat3& R_b = joint.b == kGround ? *pose(kGround).R : (first_half ? base_[joint.b].R : bodies_[joint.b].R);
     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
     for (int i = joint.first_row; i < joint.first_row + joint.row_count; ++i) {
       force += impulses_[i] * jacobians_[i].v_b;
@@ -301,8 +298,7 @@ void System::collect_reactions(double h, bool first_half) {
     reactions_[j].force += axes.transpose() * (force / h);
     reactions_[j].moment += axes.transpose() * (moment / h);
   }
-  for (Motor& motor : motors_)
-    motor.last_force = (first_half ? 0.0 : motor.last_force) + impulses_[motor.row] / h;
+  for (Motor& motor : motors_) motor.last_force = (first_half ? 0.0 : motor.last_force) + impulses_[motor.row] / h;
   for (std::size_t e = 0; e < elements_.size(); ++e)
     elements_[e].last_force += impulses_[constraint_rows_.size() + e] / h;
 }
@@ -344,14 +340,12 @@ Outcome System::step(double h) {
 }
 
 Outcome System::check_finite() const {
-  if (!rates_.finite())
-    return Outcome::failure("has a state that is not finite", "a shaft; try a smaller run.step");
+  if (!rates_.finite()) return Outcome::failure("has a state that is not finite", "a shaft; try a smaller run.step");
   for (const Body& body : bodies_) {
     const double sum = body.state.position.sum() + body.state.velocity.sum() + body.angular_momentum.sum() +
                        body.state.orientation.coeffs().sum();
     if (!std::isfinite(sum))
-      return Outcome::failure("has a state that is not finite",
-                              "body '" + body.name + "'; try a smaller run.step");
+      return Outcome::failure("has a state that is not finite", "body '" + body.name + "'; try a smaller run.step");
   }
   return {};
 }

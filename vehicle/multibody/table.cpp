@@ -35,13 +35,11 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
 
 }  // namespace
 
-Table::Table(const std::string& name, std::vector<std::pair<double, double>> points, TableCurve curve,
-             TableEnd end)
+Table::Table(const std::string& name, std::vector<std::pair<double, double>> points, TableCurve curve, TableEnd end)
     : curve_(curve), end_(end) {
   if (points.size() < 2) throw physics_error("table '" + name + "': it has less than two points");
   for (const auto& [x, y] : points) {
-    if (!std::isfinite(x) || !std::isfinite(y))
-      throw physics_error("table '" + name + "': a value is not finite");
+    if (!std::isfinite(x) || !std::isfinite(y)) throw physics_error("table '" + name + "': a value is not finite");
     if (!x_.empty() && !(x > x_.back()))
       throw physics_error("table '" + name + "': " + text(x) + " follows " + text(x_.back()) +
                           ", expected rising values");
@@ -64,8 +62,7 @@ Table Table::odd(const std::string& name, std::vector<std::pair<double, double>>
   std::vector<std::pair<double, double>> all;
   for (auto point = points.rbegin(); point != points.rend(); ++point)
     if (point->first != 0.0) all.emplace_back(-point->first, -point->second);
-  if (!points.empty() &&
-      (points.front().first < 0.0 || (points.front().first == 0.0 && points.front().second != 0.0)))
+  if (!points.empty() && (points.front().first < 0.0 || (points.front().first == 0.0 && points.front().second != 0.0)))
     throw physics_error("table '" + name + "': it begins at (" + text(points.front().first) + ", " +
                         text(points.front().second) + "), expected a positive value or (0, 0)");
   all.emplace_back(0.0, 0.0);
@@ -78,14 +75,12 @@ Table Table::odd(const std::string& name, std::vector<std::pair<double, double>>
 std::size_t Table::interval(double x) const {
   const auto after = std::upper_bound(x_.begin(), x_.end(), x);
   const std::ptrdiff_t index = after - x_.begin() - 1;
-  return static_cast<std::size_t>(
-      std::clamp<std::ptrdiff_t>(index, 0, static_cast<std::ptrdiff_t>(x_.size()) - 2));
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(index, 0, static_cast<std::ptrdiff_t>(x_.size()) - 2));
 }
 
 // Between points with t = (x − x_i)/h: y = (1 + 2t)(1 − t)² y₀ + t(1 − t)² h s₀ + t²(3 − 2t) y₁ + t²(t − 1) h s₁
 double Table::value(double x) const {
-  if (x < x_.front())
-    return y_.front() + (end_ == TableEnd::straight ? slope_.front() * (x - x_.front()) : 0.0);
+  if (x < x_.front()) return y_.front() + (end_ == TableEnd::straight ? slope_.front() * (x - x_.front()) : 0.0);
   if (x > x_.back()) return y_.back() + (end_ == TableEnd::straight ? slope_.back() * (x - x_.back()) : 0.0);
   const std::size_t i = interval(x);
   const double h = x_[i + 1] - x_[i], t = (x - x_[i]) / h, u = 1.0 - t;
@@ -100,8 +95,7 @@ double Table::slope(double x) const {
   const std::size_t i = interval(x);
   const double h = x_[i + 1] - x_[i], t = (x - x_[i]) / h, chord = (y_[i + 1] - y_[i]) / h;
   if (curve_ == TableCurve::linear) return chord;
-  return 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * slope_[i] +
-         t * (3.0 * t - 2.0) * slope_[i + 1];
+  return 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * slope_[i] + t * (3.0 * t - 2.0) * slope_[i + 1];
 }
 
 double Table::integral(double x) const { return integral_from_first(x) - area_at_zero_; }
@@ -116,9 +110,9 @@ double Table::integral_from_first(double x) const {
   const double h = x_[i + 1] - x_[i], t = (x - x_[i]) / h;
   if (curve_ == TableCurve::linear) return area_[i] + 0.5 * t * h * (y_[i] + value(x));
   const double t2 = t * t, t3 = t2 * t, t4 = t3 * t;
-  return area_[i] + h * (y_[i] * (t - t3 + 0.5 * t4) + y_[i + 1] * (t3 - 0.5 * t4) +
-                         h * slope_[i] * (0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) +
-                         h * slope_[i + 1] * (0.25 * t4 - t3 / 3.0));
+  return area_[i] +
+         h * (y_[i] * (t - t3 + 0.5 * t4) + y_[i + 1] * (t3 - 0.5 * t4) +
+              h * slope_[i] * (0.5 * t2 - 2.0 / 3.0 * t3 + 0.25 * t4) + h * slope_[i + 1] * (0.25 * t4 - t3 / 3.0));
 }
 
 }  // namespace furrow::vehicle

@@ -19,8 +19,8 @@ class Table {
  public:
   /// `name` is used in errors. @throws Error(physics) when there are less than two points, x does not rise or a value
   /// is not finite
-  Table(const std::string& name, std::vector<std::pair<double, double>> points,
-        TableCurve curve = TableCurve::linear, TableEnd end = TableEnd::straight);
+  Table(const std::string& name, std::vector<std::pair<double, double>> points, TableCurve curve = TableCurve::linear,
+        TableEnd end = TableEnd::straight);
   /// The points and their mirror images, f(−x) = −f(x). @pre as above, and the first x > 0 or the first point (0, 0)
   static Table odd(const std::string& name, std::vector<std::pair<double, double>> points,
                    TableCurve curve = TableCurve::linear, TableEnd end = TableEnd::straight);

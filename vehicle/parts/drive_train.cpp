@@ -41,9 +41,8 @@ void DriveTrain::add_shafts(System& system, int chassis, std::span<const Wheel> 
   for (const ShaftSpec& shaft : spec_.shafts) {
     const int axle = vehicle_.axle(shaft.carrier);
     const bool turns = spec_.engine && spec_.engine->shaft == shaft.name;
-    shafts_.push_back(system.add_shaft(shaft.name, shaft.inertia,
-                                       axle < 0 ? chassis : wheels[2 * axle].carrier, shaft.axis.normalized(),
-                                       turns ? spec_.engine->idle_rpm * kRpm : 0.0));
+    shafts_.push_back(system.add_shaft(shaft.name, shaft.inertia, axle < 0 ? chassis : wheels[2 * axle].carrier,
+                                       shaft.axis.normalized(), turns ? spec_.engine->idle_rpm * kRpm : 0.0));
   }
 }
 
@@ -56,9 +55,9 @@ void DriveTrain::add_drives(System& system) {
   }
   if (spec_.converter) {
     const ConverterSpec& c = *spec_.converter;
-    converter_.emplace(system, "converter", shaft(c.in), shaft(c.out),
-                       ConverterOptions{Table("converter capacity", c.capacity),
-                                        Table("converter torque ratio", c.torque_ratio)});
+    converter_.emplace(
+        system, "converter", shaft(c.in), shaft(c.out),
+        ConverterOptions{Table("converter capacity", c.capacity), Table("converter torque ratio", c.torque_ratio)});
   }
   if (spec_.clutch)
     clutch_ = FrictionCoupling::clutch(system, "clutch", shaft(spec_.clutch->in), shaft(spec_.clutch->out),
@@ -84,8 +83,7 @@ void DriveTrain::add_gears(System& system) {
     RateControl control;
     control.mode = RateMode::hold;
     const Vec3 axis = *system.pose(second.carrier).R * second.axis;
-    system.add_rate_row({gear.name, {{out, 1.0}, {in, -1.0}}, {{first.carrier, second.carrier, axis, 1.0}}},
-                        control);
+    system.add_rate_row({gear.name, {{out, 1.0}, {in, -1.0}}, {{first.carrier, second.carrier, axis, 1.0}}}, control);
   }
   for (const DifferentialSpec& d : spec_.differentials) {
     const int first = shaft(d.outputs[0]), second = shaft(d.outputs[1]);
@@ -112,10 +110,9 @@ void DriveTrain::add_motors(System& system, std::span<const Wheel> wheels) {
       const int rotor = system.add_shaft(wheel.name + " rotor", motor.inertia, wheel.carrier, axis);
       RateControl control;
       control.mode = RateMode::hold;
-      system.add_rate_row({wheel.name + " motor gear",
-                           {{rotor, -1.0}},
-                           {{wheel.carrier, wheel.spindle, axis, motor.gear_ratio}}},
-                          control);
+      system.add_rate_row(
+          {wheel.name + " motor gear", {{rotor, -1.0}}, {{wheel.carrier, wheel.spindle, axis, motor.gear_ratio}}},
+          control);
       rotors_.push_back(rotor);
       motors_.emplace_back(system, wheel.name + " motor", rotor,
                            WheelMotorOptions{motor.stall_torque, motor.no_load_rpm * kRpm});
@@ -123,8 +120,7 @@ void DriveTrain::add_motors(System& system, std::span<const Wheel> wheels) {
 }
 
 void DriveTrain::set_inputs(System& system, const DriveInputs& inputs) {
-  FURROW_ASSERT(std::abs(inputs.throttle) <= 1.0 && std::abs(inputs.steering) <= 1.0, inputs.throttle,
-                inputs.steering);
+  FURROW_ASSERT(std::abs(inputs.throttle) <= 1.0 && std::abs(inputs.steering) <= 1.0, inputs.throttle, inputs.steering);
   FURROW_ASSERT(inputs.gear >= 0, inputs.gear);
   selector_ = inputs.selector;
   held_gear_ = inputs.gear;
@@ -165,8 +161,7 @@ void DriveTrain::begin_rolling(System& system, std::span<const double> spins, in
 
 int DriveTrain::wanted_gear(const System& system) {
   const int forward = static_cast<int>(spec_.gearbox->ratios.size()), gear = gearbox_->gear();
-  if (selector_ == Selector::neutral || (selector_ == Selector::reverse && !spec_.gearbox->reverse))
-    return kNeutral;
+  if (selector_ == Selector::neutral || (selector_ == Selector::reverse && !spec_.gearbox->reverse)) return kNeutral;
   if (selector_ == Selector::reverse) return forward;
   if (held_gear_ > 0) return std::min(held_gear_, forward) - 1;
   if (gear == kNeutral || gear == forward) return 0;
@@ -177,9 +172,9 @@ int DriveTrain::wanted_gear(const System& system) {
 Outcome DriveTrain::advance(System& system, double h) {
   if (clutch_) {
     const double rpm = system.shaft(shaft(spec_.clutch->in)).state.speed / kRpm;
-    clutch_->engage(system, std::clamp((rpm - spec_.clutch->open_rpm) /
-                                           (spec_.clutch->closed_rpm - spec_.clutch->open_rpm),
-                                       0.0, 1.0));
+    clutch_->engage(
+        system,
+        std::clamp((rpm - spec_.clutch->open_rpm) / (spec_.clutch->closed_rpm - spec_.clutch->open_rpm), 0.0, 1.0));
   }
   if (!gearbox_) return {};
   if (!gearbox_->shifting())

@@ -49,9 +49,7 @@ class DriveTrain {
   const std::optional<FrictionCoupling>& clutch() const { return clutch_; }
   const std::optional<Gearbox>& gearbox() const { return gearbox_; }
   const std::vector<FrictionCoupling>& locks() const { return locks_; }
-  const std::vector<WheelMotor>& motors() const {
-    return motors_;
-  }  // two for each axle that has them: left, right
+  const std::vector<WheelMotor>& motors() const { return motors_; }  // two for each axle that has them: left, right
   /// Work of engine and motors since the start, J, and what converter, clutches and gearbox have taken.
   double work(const System& system) const;
   double loss(const System& system) const;

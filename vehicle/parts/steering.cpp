@@ -34,8 +34,7 @@ Steering::Steering(System& system, const std::string& axle, const SteeringSpec& 
     add_rack(system, axle, std::get<RackSpec>(spec), chassis);
 }
 
-void Steering::add_motor(System& system, const std::string& axle, int joint, double full_left,
-                         double response_time) {
+void Steering::add_motor(System& system, const std::string& axle, int joint, double full_left, double response_time) {
   follower_->response_time = response_time;
   full_left_ = full_left;
   motor_ = system.add_motor(axle + " steering", joint, [follower = follower_, full_left](double time) {

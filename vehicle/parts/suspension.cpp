@@ -41,8 +41,8 @@ int add_arm(System& system, const std::string& name, const ArmSpec& arm, int cha
   state.position = arm.center_of_mass;
   state.orientation = Quat(arm_axes(arm));
   const int body = system.add_body(name, arm.mass, arm.inertia, state);
-  joint(system, JointKind::revolute, name + " hinge", chassis, body,
-        0.5 * (arm.chassis_front + arm.chassis_back), arm.chassis_front - arm.chassis_back);
+  joint(system, JointKind::revolute, name + " hinge", chassis, body, 0.5 * (arm.chassis_front + arm.chassis_back),
+        arm.chassis_front - arm.chassis_back);
   joint(system, JointKind::spherical, name + " ball", body, upright, arm.upright);
   return body;
 }
@@ -81,8 +81,7 @@ struct Part {
 
 /// Spring and shock absorber between the chassis and one of the parts, the first one unless the spec says otherwise.
 template <class Spec>
-void add_struts(System& system, Wheel& wheel, const Spec& spec, int chassis,
-                std::initializer_list<Part> parts) {
+void add_struts(System& system, Wheel& wheel, const Spec& spec, int chassis, std::initializer_list<Part> parts) {
   const auto end = [&](const std::optional<std::string>& on) {
     for (const Part& part : parts)
       if (on && *on == part.name) return part.body;
@@ -90,15 +89,14 @@ void add_struts(System& system, Wheel& wheel, const Spec& spec, int chassis,
   };
   if (spec.spring) {
     const std::string name = wheel.name + " spring";
-    wheel.spring =
-        system.add_line_element(name, chassis, end(spec.spring->on), spec.spring->chassis, spec.spring->end,
-                                tabulated_spring(spring_options(name, *spec.spring)));
+    wheel.spring = system.add_line_element(name, chassis, end(spec.spring->on), spec.spring->chassis, spec.spring->end,
+                                           tabulated_spring(spring_options(name, *spec.spring)));
     system.track_energy(*wheel.spring);
   }
   if (spec.shock) {
-    wheel.shock = system.add_line_element(wheel.name + " shock absorber", chassis, end(spec.shock->on),
-                                          spec.shock->chassis, spec.shock->end,
-                                          shock_absorber(shock_options(*spec.shock)));
+    wheel.shock =
+        system.add_line_element(wheel.name + " shock absorber", chassis, end(spec.shock->on), spec.shock->chassis,
+                                spec.shock->end, shock_absorber(shock_options(*spec.shock)));
     system.track_energy(*wheel.shock);
   }
 }
@@ -133,8 +131,7 @@ struct Builder {
       rod(system, wheel.name + " tie rod", rods, wheel.carrier, s.tie_rod.inner, s.tie_rod.outer);
       const Vec3 centre = s.upright.center_of_mass;
       wheel.kingpin = {s.lower_arm.upright - centre, s.upper_arm.upright - centre};
-      add_struts(system, wheel, s, chassis,
-                 {{"lower_arm", lower}, {"upper_arm", upper}, {"upright", wheel.carrier}});
+      add_struts(system, wheel, s, chassis, {{"lower_arm", lower}, {"upper_arm", upper}, {"upright", wheel.carrier}});
     }
   }
 

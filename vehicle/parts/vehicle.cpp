@@ -29,9 +29,8 @@ Vehicle::Vehicle(const VehicleSpec& spec, const Vec3& gravity) : spec_(spec), sy
   drive_ = std::make_unique<DriveTrain>(system_, spec_, chassis_, wheels_);
   system_.assemble(0.0);
   if (system_.redundant_count() > 0)
-    throw physics_error(
-        "vehicle '" + spec_.name + "': joint '" + system_.redundant_names().front() +
-        "' holds what others hold already, expected joints that leave the wheels their travel");
+    throw physics_error("vehicle '" + spec_.name + "': joint '" + system_.redundant_names().front() +
+                        "' holds what others hold already, expected joints that leave the wheels their travel");
 }
 
 // Axles whose wheels sit on the arms of others come after these.
@@ -50,8 +49,7 @@ void Vehicle::add_axles() {
       }
       std::array<Wheel, 2> carriers;
       if (host >= 0) carriers = {wheels_[2 * host], wheels_[2 * host + 1]};
-      const auto wheels =
-          add_axle(system_, axle, static_cast<int>(k), chassis_, rods, host >= 0 ? &carriers : nullptr);
+      const auto wheels = add_axle(system_, axle, static_cast<int>(k), chassis_, rods, host >= 0 ? &carriers : nullptr);
       wheels_[2 * k] = wheels[kLeft];
       wheels_[2 * k + 1] = wheels[kRight];
     }
@@ -80,8 +78,7 @@ int Vehicle::freedoms() const {
 void Vehicle::add_tire_mass(int wheel, const MassProperties& tire) {
   FURROW_ASSERT(in_range(wheel, wheels_.size()), wheel, wheels_.size());
   const Body& spindle = system_.body(wheels_[wheel].spindle);
-  system_.set_mass_properties(wheels_[wheel].spindle, spindle.mass + tire.mass,
-                              spindle.inertia + tire.inertia);
+  system_.set_mass_properties(wheels_[wheel].spindle, spindle.mass + tire.mass, spindle.inertia + tire.inertia);
 }
 
 RimState Vehicle::rim(int wheel) const {
@@ -101,8 +98,7 @@ void Vehicle::set_inputs(const VehicleInputs& inputs) {
     if (brake) brake->engage(system_, inputs.brake);
   for (std::optional<Steering>& steering : steerings_)
     if (steering) steering->set_target(system_.time(), inputs.steering);
-  drive_->set_inputs(system_,
-                     {inputs.throttle, inputs.steering, inputs.selector, inputs.lock, inputs.gear});
+  drive_->set_inputs(system_, {inputs.throttle, inputs.steering, inputs.selector, inputs.lock, inputs.gear});
 }
 
 void Vehicle::move(const Vec3& by) {

@@ -21,8 +21,8 @@ void check_spec(const ShaftSpec& s, const JsonReader& reader) {
 void check_spec(const EngineSpec& s, const JsonReader& reader) {
   check_not_negative(reader, "idle_rpm", s.idle_rpm, most::kRpm);
   if (const double last = s.torque.back().first; s.idle_rpm > last)
-    reader.fail("idle_rpm", fmt::format("is {}, expected at most {}, the last speed of torque",
-                                        number_text(s.idle_rpm), number_text(last)));
+    reader.fail("idle_rpm", fmt::format("is {}, expected at most {}, the last speed of torque", number_text(s.idle_rpm),
+                                        number_text(last)));
   check_positive(reader, "idle_band_rpm", s.idle_band_rpm, most::kRpm);
   for (std::size_t i = 0; i < s.losses.size(); ++i)
     if (s.losses[i].first * s.losses[i].second > 0.0)
@@ -32,8 +32,7 @@ void check_spec(const EngineSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const ConverterSpec& s, const JsonReader& reader) {
-  for (const auto& [key, points] :
-       {std::pair{"capacity", &s.capacity}, std::pair{"torque_ratio", &s.torque_ratio}}) {
+  for (const auto& [key, points] : {std::pair{"capacity", &s.capacity}, std::pair{"torque_ratio", &s.torque_ratio}}) {
     if (points->front().first != 0.0 || points->back().first != 1.0)
       reader.fail(key, "does not run from speed ratio 0 to 1, expected both ends");
     for (std::size_t i = 0; i < points->size(); ++i)
@@ -41,9 +40,8 @@ void check_spec(const ConverterSpec& s, const JsonReader& reader) {
   }
   for (std::size_t i = 0; i < s.torque_ratio.size(); ++i)
     if (const auto& [R, T] = s.torque_ratio[i]; R * T > 1.0)
-      reader.fail(
-          fmt::format("torque_ratio[{}]", i),
-          fmt::format("gives {} times the power that it takes, expected at most 1", number_text(R * T)));
+      reader.fail(fmt::format("torque_ratio[{}]", i),
+                  fmt::format("gives {} times the power that it takes, expected at most 1", number_text(R * T)));
 }
 
 void check_spec(const ClutchSpec& s, const JsonReader& reader) {
@@ -55,15 +53,14 @@ void check_spec(const ClutchSpec& s, const JsonReader& reader) {
 
 void check_spec(const GearboxSpec& s, const JsonReader& reader) {
   if (s.ratios.empty()) reader.fail("ratios", "is empty, expected the ratio of at least one gear");
-  for (std::size_t i = 0; i < s.ratios.size(); ++i)
-    check_positive(reader, fmt::format("ratios[{}]", i), s.ratios[i]);
+  for (std::size_t i = 0; i < s.ratios.size(); ++i) check_positive(reader, fmt::format("ratios[{}]", i), s.ratios[i]);
   if (s.reverse && !(*s.reverse < 0.0))
     reader.fail("reverse", "is " + number_text(*s.reverse) + ", expected a number below zero");
   check_not_negative(reader, "shift_time", s.shift_time);
   check_positive(reader, "down_rpm", s.down_rpm, most::kRpm);
   if (!(s.up_rpm > s.down_rpm))
-    reader.fail("up_rpm", fmt::format("is {}, expected more than down_rpm, {}", number_text(s.up_rpm),
-                                      number_text(s.down_rpm)));
+    reader.fail("up_rpm",
+                fmt::format("is {}, expected more than down_rpm, {}", number_text(s.up_rpm), number_text(s.down_rpm)));
   check_positive(reader, "latency", s.latency);
 }
 
@@ -73,8 +70,7 @@ void check_spec(const GearSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const DifferentialSpec& s, const JsonReader& reader) {
-  if (s.outputs.size() != 2)
-    reader.fail("outputs", fmt::format("has {} shafts, expected two", s.outputs.size()));
+  if (s.outputs.size() != 2) reader.fail("outputs", fmt::format("has {} shafts, expected two", s.outputs.size()));
   if (s.outputs[0] == s.outputs[1] || s.outputs[0] == s.box || s.outputs[1] == s.box)
     reader.fail("outputs", "names a shaft twice, expected two shafts besides the box");
   if (!(s.share > 0.0 && s.share < 1.0))
@@ -95,8 +91,7 @@ void check_spec(const DrivelineSpec& s, const JsonReader& reader) {
     reader.fail("skid_steer", "is given without motors, expected a motor at each wheel");
   for (const bool gearbox : {false, true})
     if ((gearbox ? s.gearbox.has_value() : s.clutch.has_value() || s.converter.has_value()) && !s.engine)
-      reader.fail("engine",
-                  fmt::format("is missing, expected an engine for the {}", gearbox ? "gearbox" : "clutch"));
+      reader.fail("engine", fmt::format("is missing, expected an engine for the {}", gearbox ? "gearbox" : "clutch"));
 }
 
 namespace {
@@ -170,8 +165,7 @@ class ShaftGraph {
       const auto [in, out] = pair("gearbox", spec_.gearbox->in, spec_.gearbox->out);
       independent({{out, 1.0}, {in, -spec_.gearbox->ratios.front()}});
     }
-    for (std::size_t i = 0; i < spec_.gears.size(); ++i)
-      join_gear(spec_.gears[i], fmt::format("gears[{}]", i));
+    for (std::size_t i = 0; i < spec_.gears.size(); ++i) join_gear(spec_.gears[i], fmt::format("gears[{}]", i));
     for (std::size_t i = 0; i < spec_.differentials.size(); ++i)
       join_differential(spec_.differentials[i], fmt::format("differentials[{}]", i));
   }
@@ -188,8 +182,8 @@ class ShaftGraph {
 
   void check_carrier(const std::string& key, int a, int b) const {
     if (spec_.shafts[a].carrier != spec_.shafts[b].carrier)
-      reader_.fail(key, fmt::format("'{}' turns in '{}', expected a shaft in '{}'", names_[b],
-                                    spec_.shafts[b].carrier, spec_.shafts[a].carrier));
+      reader_.fail(key, fmt::format("'{}' turns in '{}', expected a shaft in '{}'", names_[b], spec_.shafts[b].carrier,
+                                    spec_.shafts[a].carrier));
   }
 
   void join_gear(const GearSpec& gear, const std::string& key) {
@@ -232,8 +226,7 @@ class ShaftGraph {
         if (used.count(output) == 1)
           reader_.fail(
               fmt::format("differentials[{}].outputs", i),
-              "'" + output +
-                  "' drives nothing, expected a shaft that a wheel, a gear or a differential takes on");
+              "'" + output + "' drives nothing, expected a shaft that a wheel, a gear or a differential takes on");
   }
 
   void check_wheels() {
@@ -242,8 +235,7 @@ class ShaftGraph {
     const auto axle = [&](const std::string& key, const std::string& name) {
       std::vector<std::string> names;
       for (const AxleSpec& one : vehicle_.axles) names.push_back(one.name);
-      if (vehicle_.axle(name) < 0)
-        reader_.fail(key, "is '" + name + "', expected one of the axles " + one_of(names));
+      if (vehicle_.axle(name) < 0) reader_.fail(key, "is '" + name + "', expected one of the axles " + one_of(names));
       return vehicle_.axle(name);
     };
     for (std::size_t i = 0; i < spec_.wheels.size(); ++i) {
@@ -253,8 +245,8 @@ class ShaftGraph {
       if (wheel.side != "left" && wheel.side != "right")
         reader_.fail(key + ".side", "is '" + wheel.side + "', expected 'left' or 'right'");
       if (!wheels.insert({k, wheel.side == "left" ? kLeft : kRight}).second)
-        reader_.fail(key, fmt::format("drives the wheel '{} {}' again, expected one shaft per wheel",
-                                      wheel.axle, wheel.side));
+        reader_.fail(
+            key, fmt::format("drives the wheel '{} {}' again, expected one shaft per wheel", wheel.axle, wheel.side));
       if (!used.insert(index).second)
         reader_.fail(key + ".shaft", "'" + wheel.shaft + "' drives two wheels, expected a shaft for each");
       reaches_wheel_.insert(root(index));

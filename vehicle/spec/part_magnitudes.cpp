@@ -30,8 +30,7 @@ template <class T, class Call>
 void each_part(const std::string& key, const T& part, const Call& call) {
   if constexpr (HasFields<T>) {
     call(key, part);
-    visit_fields(
-        [&](const Field& field, const auto& value) { each_part(key + "." + field.name, value, call); }, part);
+    visit_fields([&](const Field& field, const auto& value) { each_part(key + "." + field.name, value, call); }, part);
   } else if constexpr (requires { part.has_value(); }) {
     if (part) each_part(key, *part, call);
   } else if constexpr (requires { part.valueless_by_exception(); }) {
@@ -90,8 +89,7 @@ class PartMagnitudes {
       const MotorSpec& motor = line.motors[k];
       const std::string key = fmt::format("driveline.motors[{}]", k);
       rotor(key, motor.inertia, motor.gear_ratio);
-      torque(key, "stall_torque", motor.stall_torque * std::abs(motor.gear_ratio),
-             "with its gear_ratio one motor");
+      torque(key, "stall_torque", motor.stall_torque * std::abs(motor.gear_ratio), "with its gear_ratio one motor");
     }
   }
   Oddities take() { return std::move(odd_); }
@@ -107,9 +105,8 @@ class PartMagnitudes {
     if (key == "chassis") return;  // unlikely_values()
     if (const double gyration = std::sqrt(0.5 * inertia.trace() / mass); gyration > kMostGyration * size_)
       add(key, "inertia",
-          fmt::format(
-              "gives a part of {} kg a radius of gyration of {} m in a vehicle of {} m: another unit?",
-              number_text(mass), digits(gyration), digits(size_)));
+          fmt::format("gives a part of {} kg a radius of gyration of {} m in a vehicle of {} m: another unit?",
+                      number_text(mass), digits(gyration), digits(size_)));
   }
   void damping(const std::string& key, const char* name, double c) {
     if (c == 0.0 || (c >= kLeastRate * mass_ && c <= kMostRate * mass_)) return;
@@ -128,9 +125,8 @@ class PartMagnitudes {
     const double weight = mass_ * kStandardGravity;
     if (torque > kMostLever * weight)
       add(key, name,
-          fmt::format(
-              "gives {} N m: {} would lift the whole vehicle of {} kg on a lever of {} m: another unit?",
-              digits(torque), who, digits(mass_), digits(torque / weight)));
+          fmt::format("gives {} N m: {} would lift the whole vehicle of {} kg on a lever of {} m: another unit?",
+                      digits(torque), who, digits(mass_), digits(torque / weight)));
   }
   void rotor(const std::string& key, double inertia, double gear_ratio) {
     mirrored_ = key;
@@ -139,8 +135,8 @@ class PartMagnitudes {
       add(key, "inertia",
           fmt::format("is {} kg m²{} in a vehicle of {} kg, usual is up to {} kg m²: another unit?",
                       number_text(inertia),
-                      gear_ratio == 1.0 ? "" : fmt::format(", at the wheel {} kg m²,", digits(at_wheel)),
-                      digits(mass_), digits(kMostShaft * mass_ / (gear_ratio * gear_ratio))));
+                      gear_ratio == 1.0 ? "" : fmt::format(", at the wheel {} kg m²,", digits(at_wheel)), digits(mass_),
+                      digits(kMostShaft * mass_ / (gear_ratio * gear_ratio))));
   }
 
   double mass_, size_;

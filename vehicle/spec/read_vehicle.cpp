@@ -57,8 +57,7 @@ CornerSpec read_left(JsonReader& reader, const Vec3& origin) {
 
 CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& origin) {
   CornerSpec corner = left;
-  corner.suspension =
-      std::visit([](const auto& s) -> SuspensionSpec { return mirrored(s); }, left.suspension);
+  corner.suspension = std::visit([](const auto& s) -> SuspensionSpec { return mirrored(s); }, left.suspension);
   corner.wheel = mirrored(left.wheel);
   reader.skip("right");
   if (!reader.given("right")) return corner;
@@ -66,8 +65,7 @@ CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& or
   for (const char* key : {"suspension", "wheel", "brake"}) right.skip(key);
   if (right.has("suspension")) {
     const auto suspension = read_type<SuspensionSpec>(right.child("suspension"));
-    if (std::holds_alternative<RigidAxleSpec>(left.suspension) ||
-        suspension.index() != left.suspension.index())
+    if (std::holds_alternative<RigidAxleSpec>(left.suspension) || suspension.index() != left.suspension.index())
       right.fail("suspension.type", std::holds_alternative<RigidAxleSpec>(left.suspension)
                                         ? "is given for a rigid axle, expected that of the whole axle alone"
                                         : "is not the left side's, expected the same");
@@ -95,16 +93,14 @@ AxleSpec read_axle(JsonReader reader) {
     // A Pitman arm's points are in axes of its own, its origin is in the vehicle's.
     axle.steering = std::holds_alternative<RackSpec>(steering) ? moved(steering, axle.origin) : steering;
     if (!std::holds_alternative<DoubleWishboneSpec>(axle.corners[kLeft].suspension))
-      reader.fail("steering",
-                  "is given for a suspension without tie rods, expected the type double_wishbone");
+      reader.fail("steering", "is given for a suspension without tie rods, expected the type double_wishbone");
   }
   reader.finish();
   return axle;
 }
 
 /// Results write a name as one word.
-void check_name(const VehicleSpec& vehicle, const std::string& name, const JsonReader& reader,
-                const std::string& key) {
+void check_name(const VehicleSpec& vehicle, const std::string& name, const JsonReader& reader, const std::string& key) {
   const auto word = [](std::string text) {
     std::replace(text.begin(), text.end(), ' ', '_');
     return text;

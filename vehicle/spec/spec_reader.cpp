@@ -23,16 +23,14 @@ void take(JsonReader& reader, const std::string& key, Vec3& value) {
   const std::vector<double> v = reader.numbers(key, 3);
   value = Vec3(v[0], v[1], v[2]);
   if (const double most = value.cwiseAbs().maxCoeff(); most > kMostCoordinate)
-    reader.fail(key,
-                fmt::format("has {} among its coordinates, expected at most {} in magnitude: points are in m",
-                            number_text(most), number_text(kMostCoordinate)));
+    reader.fail(key, fmt::format("has {} among its coordinates, expected at most {} in magnitude: points are in m",
+                                 number_text(most), number_text(kMostCoordinate)));
 }
 
 void take(JsonReader& reader, const std::string& key, Mat3& value) {
   const std::vector<double> v = reader.numbers(key);
   if (v.size() != 3 && v.size() != 6)
-    reader.fail(
-        key, fmt::format("has {} values, expected 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)", v.size()));
+    reader.fail(key, fmt::format("has {} values, expected 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)", v.size()));
   value = Vec3(v[0], v[1], v[2]).asDiagonal();
   if (v.size() == 3) return;
   value(0, 1) = value(1, 0) = v[3];
@@ -56,9 +54,7 @@ void take(JsonReader& reader, const std::string& key, Points& value) {
     reader.fail(key, fmt::format("has {} points, expected at least two pairs [x, y]", value.size()));
 }
 
-void take(JsonReader& reader, const std::string& key, std::vector<double>& value) {
-  value = reader.numbers(key);
-}
+void take(JsonReader& reader, const std::string& key, std::vector<double>& value) { value = reader.numbers(key); }
 
 void take(JsonReader& reader, const std::string& key, std::vector<std::string>& value) {
   for (const nlohmann::json& entry : reader.array(key)) {
@@ -67,8 +63,6 @@ void take(JsonReader& reader, const std::string& key, std::vector<std::string>& 
   }
 }
 
-std::string entry_path(const std::string& list, std::size_t index) {
-  return fmt::format("{}[{}]", list, index);
-}
+std::string entry_path(const std::string& list, std::size_t index) { return fmt::format("{}[{}]", list, index); }
 
 }  // namespace furrow::vehicle::detail

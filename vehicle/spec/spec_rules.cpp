@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kSamePoint = 1e-6;  // m
 
-void apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key,
-           const Vec3& other) {
+void apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key, const Vec3& other) {
   if (!((point - other).norm() > kSamePoint))
     reader.fail(key, fmt::format("is the point of {}, expected another one", reader.full(other_key)));
 }
@@ -39,8 +38,8 @@ void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
 void check_length(const JsonReader& reader, double shortest, double longest) {
   check_positive(reader, "shortest", shortest);
   if (!(longest > shortest))
-    reader.fail("longest", fmt::format("is {}, expected more than shortest, {}", number_text(longest),
-                                       number_text(shortest)));
+    reader.fail("longest",
+                fmt::format("is {}, expected more than shortest, {}", number_text(longest), number_text(shortest)));
 }
 
 /// Forces that rise with what they are given against.
@@ -48,8 +47,8 @@ void check_rising(const JsonReader& reader, const char* key, const Points& point
   for (std::size_t i = 1; i < points.size(); ++i)
     if (!(points[i].second > points[i - 1].second))
       reader.fail(fmt::format("{}[{}]", key, i),
-                  fmt::format("ends with {} after {}, expected forces that rise",
-                              number_text(points[i].second), number_text(points[i - 1].second)));
+                  fmt::format("ends with {} after {}, expected forces that rise", number_text(points[i].second),
+                              number_text(points[i - 1].second)));
 }
 
 /// The part that a spring or shock absorber ends on.
@@ -57,8 +56,8 @@ void check_part(const JsonReader& reader, const char* strut, const std::optional
                 const std::vector<std::string>& parts) {
   if (!on || std::find(parts.begin(), parts.end(), *on) != parts.end()) return;
   const std::string key = std::string(strut) + ".on", expected = ", expected " + one_of(parts);
-  reader.fail(key, *on == "chassis" ? "is 'chassis', the body of its other end" + expected
-                                    : "is '" + *on + "'" + expected);
+  reader.fail(key,
+              *on == "chassis" ? "is 'chassis', the body of its other end" + expected : "is '" + *on + "'" + expected);
 }
 template <class T>
 void check_struts(const T& s, const JsonReader& reader, const std::vector<std::string>& parts) {
@@ -98,12 +97,8 @@ void check_spec(const ArmSpec& s, const JsonReader& reader) {
     reader.fail("upright", "lies on the hinge, expected a point beside it");
 }
 
-void check_spec(const TieRodSpec& s, const JsonReader& reader) {
-  apart(reader, "outer", s.outer, "inner", s.inner);
-}
-void check_spec(const LinkSpec& s, const JsonReader& reader) {
-  apart(reader, "axle", s.axle, "chassis", s.chassis);
-}
+void check_spec(const TieRodSpec& s, const JsonReader& reader) { apart(reader, "outer", s.outer, "inner", s.inner); }
+void check_spec(const LinkSpec& s, const JsonReader& reader) { apart(reader, "axle", s.axle, "chassis", s.chassis); }
 
 void check_spec(const StopSpec& s, const JsonReader& reader) {
   check_length(reader, s.shortest, s.longest);
@@ -116,8 +111,7 @@ void check_spec(const SpringSpec& s, const JsonReader& reader) {
   apart(reader, "end", s.end, "chassis", s.chassis);
   check_positive(reader, "free_length", s.free_length);
   if (s.rate && !s.force.empty()) reader.fail("force", "is given beside rate, expected one of the two");
-  if (!s.rate && s.force.empty())
-    reader.fail("force", "is missing, expected a table of forces, or the key rate");
+  if (!s.rate && s.force.empty()) reader.fail("force", "is missing, expected a table of forces, or the key rate");
   if (s.rate) check_positive(reader, "rate", *s.rate, most::kRate);
   if (s.force.empty()) return;
   if (s.force.front() != std::pair{0.0, 0.0})
@@ -161,9 +155,8 @@ void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
   for (const LinkSpec& link : s.links) rods += link.mirrored ? 2 : 1;
   check_names_once(reader, "links", s.links);
   if (rods != 4)
-    reader.fail(
-        "links",
-        fmt::format("has {} rods (a mirrored one counts twice), expected 4: the axle rises and rolls", rods));
+    reader.fail("links",
+                fmt::format("has {} rods (a mirrored one counts twice), expected 4: the axle rises and rolls", rods));
 }
 
 void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
@@ -178,8 +171,7 @@ void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const RackSpec& s, const JsonReader& reader) {
-  if (s.left_travel == 0.0)
-    reader.fail("left_travel", "is 0, expected the travel at full lock to the left in m");
+  if (s.left_travel == 0.0) reader.fail("left_travel", "is 0, expected the travel at full lock to the left in m");
   check_within(reader, "left_travel", s.left_travel, -most::kTravel, most::kTravel);
   check_positive(reader, "response_time", s.response_time, most::kResponseTime);
 }

@@ -18,8 +18,8 @@ struct PitmanArmSpec {
   BodySpec arm, link;
   Vec3 pivot = Vec3::Zero(), arm_end = Vec3::Zero();    // of the arm: on the chassis, at the link, m
   Vec3 idler = Vec3::Zero(), idler_end = Vec3::Zero();  // of the idler: on the chassis, at the link, m
-  double left_angle_deg = 0.0;  // of the arm about z, with the wheel fully to the left
-  double response_time = 0.05;  // with which it follows the steering wheel, s
+  double left_angle_deg = 0.0;                          // of the arm about z, with the wheel fully to the left
+  double response_time = 0.05;                          // with which it follows the steering wheel, s
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PitmanArmSpec> auto& s) {

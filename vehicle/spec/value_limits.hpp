@@ -4,9 +4,8 @@
 
 namespace furrow::vehicle::most {
 
-inline constexpr double kMass = 1e7;  // of a body, kg: the largest excavators
-inline constexpr double kGyration =
-    100.0;  // radius of gyration of a body, m: that of points from their origin
+inline constexpr double kMass = 1e7;            // of a body, kg: the largest excavators
+inline constexpr double kGyration = 100.0;      // radius of gyration of a body, m: that of points from their origin
 inline constexpr double kShaftInertia = 1e6;    // kg m²
 inline constexpr double kTorque = 1e8;          // of a brake, a clutch, a lock or a motor, N m
 inline constexpr double kRate = 1e10;           // of a spring, N/m

@@ -11,8 +11,7 @@
 namespace furrow::vehicle {
 namespace {
 
-void expect(bool ok, const JsonReader& reader, const std::string& key, double value,
-            const std::string& expected) {
+void expect(bool ok, const JsonReader& reader, const std::string& key, double value, const std::string& expected) {
   if (!ok) reader.fail(key, "is " + number_text(value) + ", expected " + expected);
 }
 

@@ -66,10 +66,9 @@ std::vector<std::pair<std::string, std::string>> unlikely_drives(const Driveline
   std::vector<std::pair<std::string, std::string>> odd;
   if (line.engine && line.engine->idle_rpm > 0.0) {
     const EngineSpec& engine = *line.engine;
-    const double full = Table("engine torque", engine.torque, TableCurve::linear, TableEnd::constant)
-                            .value(engine.idle_rpm),
-                 lost = Table("engine losses", engine.losses, TableCurve::linear, TableEnd::constant)
-                            .value(engine.idle_rpm);
+    const double
+        full = Table("engine torque", engine.torque, TableCurve::linear, TableEnd::constant).value(engine.idle_rpm),
+        lost = Table("engine losses", engine.losses, TableCurve::linear, TableEnd::constant).value(engine.idle_rpm);
     if (full + lost <= 0.0)
       odd.emplace_back("engine.torque",
                        fmt::format("is {} N m at the idle speed of {} rpm, with the losses {} N m: the engine "
@@ -81,10 +80,9 @@ std::vector<std::pair<std::string, std::string>> unlikely_drives(const Driveline
   if (clutch && converter &&
       ((clutch->in == converter->in && clutch->out == converter->out) ||
        (clutch->in == converter->out && clutch->out == converter->in)))
-    odd.emplace_back("clutch",
-                     fmt::format("lies beside the converter, between the same shafts '{}' and '{}': from "
-                                 "closed_rpm, {} rpm, on it bridges the converter",
-                                 clutch->in, clutch->out, number_text(clutch->closed_rpm)));
+    odd.emplace_back("clutch", fmt::format("lies beside the converter, between the same shafts '{}' and '{}': from "
+                                           "closed_rpm, {} rpm, on it bridges the converter",
+                                           clutch->in, clutch->out, number_text(clutch->closed_rpm)));
   return odd;
 }
 
@@ -113,14 +111,12 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSp
   std::vector<std::pair<std::string, std::string>> odd;
   if (const auto highest = highest_speed(spec.driveline);
       highest && spec.driveline.gearbox->ratios.size() > 1 && spec.driveline.gearbox->up_rpm >= *highest)
-    odd.emplace_back(
-        "driveline.gearbox.up_rpm",
-        fmt::format("is {}, above the {:.4g} rpm to which the engine drives it: it will never "
-                    "shift up",
-                    number_text(spec.driveline.gearbox->up_rpm), *highest));
+    odd.emplace_back("driveline.gearbox.up_rpm",
+                     fmt::format("is {}, above the {:.4g} rpm to which the engine drives it: it will never "
+                                 "shift up",
+                                 number_text(spec.driveline.gearbox->up_rpm), *highest));
   if (spec.driveline.gearbox)
-    for (auto& [key, what] : unlikely_gears(*spec.driveline.gearbox))
-      odd.emplace_back("driveline." + key, what);
+    for (auto& [key, what] : unlikely_gears(*spec.driveline.gearbox)) odd.emplace_back("driveline." + key, what);
   if (const std::string fight = against_the_first(spec.driveline); !fight.empty())
     odd.emplace_back("driveline.gears", fight);
   for (auto& [key, what] : unlikely_drives(spec.driveline)) odd.emplace_back("driveline." + key, what);
@@ -131,8 +127,7 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSp
                                                  number_text(spec.chassis.mass), others));
     return odd;
   }
-  const double gyration = std::sqrt(0.5 * spec.chassis.inertia.trace() / spec.chassis.mass),
-               size = size_of(spec);
+  const double gyration = std::sqrt(0.5 * spec.chassis.inertia.trace() / spec.chassis.mass), size = size_of(spec);
   if (gyration < kLeastGyration * size || gyration > kMostGyration * size)
     odd.emplace_back("chassis.inertia",
                      fmt::format("gives a radius of gyration of {:.3g} m between wheels that are {:.3g} m "

@@ -16,7 +16,8 @@ def _load() -> str:
     """Makes scripts/plot a subpackage of this one, so that no module called `plot` is taken from anybody."""
     name = f"{__package__}._plot"
     if name not in sys.modules:
-        spec = importlib.util.spec_from_file_location(name, FOLDER / "__init__.py", submodule_search_locations=[str(FOLDER)])
+        spec = importlib.util.spec_from_file_location(name, FOLDER / "__init__.py",
+                                                      submodule_search_locations=[str(FOLDER)])
         if not spec or not spec.loader or not FOLDER.is_dir():
             raise ImportError(f"{FOLDER} is missing: furrow.open and the plots need the scripts of the checkout")
         module = importlib.util.module_from_spec(spec)

@@ -10,7 +10,8 @@ def _plain(value: Any) -> Any:
     """Numbers and arrays of numpy as JSON knows them."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise TypeError(f"{value!r} is no value of a scenario: expected a number, a text, true, false, None, a list or a dict")
+    raise TypeError(f"{value!r} is no value of a scenario: expected a number, a text, true, false, None, a list or a "
+                    f"dict")
 
 
 def as_json(value: Any) -> str:
@@ -24,6 +25,7 @@ def arguments(settings: Mapping[str, Any] | None, keys: Mapping[str, Any]) -> li
     """
     for key in keys:
         if "__" not in key.strip("_"):
-            raise TypeError(f"unexpected keyword '{key}': write a key of the scenario as section__key, for example rig__slip")
+            raise TypeError(f"unexpected keyword '{key}': write a key of the scenario as section__key, for example "
+                            f"rig__slip")
     dotted = {**(settings or {}), **{key.replace("__", "."): value for key, value in keys.items()}}
     return [f"--set={key}={as_json(value)}" for key, value in dotted.items()]

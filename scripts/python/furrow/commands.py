@@ -29,7 +29,8 @@ def run(scenario: File | Content, *, out: File | None = None, overwrite: bool = 
 
     scenario   a file, the name of a shipped one ("drawbar_pull_small"), or the scenario itself as a dict
     keys       keys of the scenario: rig__slip=0.5 stands for --set rig.slip=0.5; `settings` takes {"rig.slip": 0.5}
-    out        new folder for the results (default: results/<scenario>-NNN here); `overwrite` replaces those of an earlier run
+    out        new folder for the results (default: results/<scenario>-NNN here); `overwrite` replaces those of an
+    earlier run
     jobs       with `seeds`: beds at once
     plots      whether to make the plots of `furrow report` as files
     progress   whether to show on stderr what the program says
@@ -68,7 +69,8 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     """Runs a study and opens it. The same call continues one that was interrupted, and adds runs to one that grew.
 
     study   a file, the name of a shipped one ("study_slip"), or the study itself as a dict:
-            {"scenario": "first_look", "grid": {"rig.slip": [0.1, 0.3]}}; its results are in results/study unless `out` says
+            {"scenario": "first_look", "grid": {"rig.slip": [0.1, 0.3]}}; its results are in results/study unless `out`
+            says
     jobs    runs at once
 
     Raises a FurrowError if a run of it failed; the folder of the error can be opened.
@@ -81,7 +83,8 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     return opened
 
 
-def calibrate(study: File, *, out: File | None = None, overwrite: bool = False, plots: bool = False, progress: bool = True) -> Calibration:
+def calibrate(study: File, *, out: File | None = None, overwrite: bool = False,
+              plots: bool = False, progress: bool = True) -> Calibration:
     """Fits a model to data and opens the result. The same call continues a calibration that was interrupted.
 
     study   a file, or the name of a shipped one ("calibrate_ring"); its results are in results/study unless `out` says
@@ -93,11 +96,13 @@ def calibrate(study: File, *, out: File | None = None, overwrite: bool = False, 
 
 
 def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str | None = None,
-          deflection: float | None = None, load: float | None = None, points: int | None = None, camber: float | None = None,
+          deflection: float | None = None, load: float | None = None, points: int | None = None,
+          camber: float | None = None,
           progress: bool = True, settings: Mapping[str, Any] | None = None, **keys: Any) -> Press:
     """Presses the tire of a scenario on a plate, a cleat or a profile, statically, and opens what was measured.
 
-    on           "plate", "cleat" or "profile"; where this and the others are not given, the section `press` of the scenario counts
+    on           "plate", "cleat" or "profile"; where this and the others are not given, the section `press` of the
+    scenario counts
     deflection   the largest one, m; `points` of the curve
     load         of the footprint, N
     camber       of the wheel, rad; shells only
@@ -105,12 +110,14 @@ def press(scenario: File | Content, *, out: File | None = None, overwrite: bool 
     given = {"on": on, "deflection": deflection, "load": load, "points": points, "camber": camber}
     options = [f"--{name}={value}" for name, value in given.items() if value is not None]
     with as_file(scenario, "scenario") as path:
-        printed, _ = call(["press", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
+        printed, _ = call(["press", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)],
+                          progress)
     opened: Press = _opened(printed)
     return opened
 
 
-def modes(tire: File, *, out: File | None = None, overwrite: bool = False, orders: int | None = None, count: int | None = None,
+def modes(tire: File, *, out: File | None = None, overwrite: bool = False,
+          orders: int | None = None, count: int | None = None,
           pressure: float | None = None, plots: bool = False, progress: bool = True) -> Modes:
     """Computes the natural frequencies of a tire on a rim at rest and opens them.
 
@@ -119,13 +126,15 @@ def modes(tire: File, *, out: File | None = None, overwrite: bool = False, order
     pressure   of inflation, Pa; None: the file's
     """
     given = {"orders": orders, "count": count, "pressure": pressure}
-    options = [f"--{name}={value}" for name, value in given.items() if value is not None] + ([] if plots else ["--no-plots"])
+    options = [f"--{name}={value}" for name, value in given.items()
+               if value is not None] + ([] if plots else ["--no-plots"])
     printed, _ = call(["modes", *_out(out, overwrite), *options, "--", os.fspath(tire)], progress)
     opened: Modes = _opened(printed)
     return opened
 
 
-def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False, travel: float | None = None, points: int | None = None,
+def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False,
+       travel: float | None = None, points: int | None = None,
        plots: bool = False, progress: bool = True) -> Kinematics:
     """Moves the suspensions of a vehicle and opens what was tabulated.
 
@@ -133,7 +142,8 @@ def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False, trave
     travel    of the wheels up and down, m; `points` of each motion
     """
     given = {"travel": travel, "points": points}
-    options = [f"--{name}={value}" for name, value in given.items() if value is not None] + ([] if plots else ["--no-plots"])
+    options = [f"--{name}={value}" for name, value in given.items()
+               if value is not None] + ([] if plots else ["--no-plots"])
     printed, _ = call(["kc", *_out(out, overwrite), *options, "--", os.fspath(vehicle)], progress)
     opened: Kinematics = _opened(printed)
     return opened
@@ -151,6 +161,7 @@ def soil(scenario: File | Content, *, out: File | None = None, overwrite: bool =
     options = [f"--{name}={value}" for name, value in (("seeds", seeds), ("only", only)) if value is not None]
     options += ["--quick"] if quick else []
     with as_file(scenario, "scenario") as path:
-        _, folder = call(["soil", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
+        _, folder = call(["soil", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)],
+                         progress)
     assert folder
     return Soil(folder)

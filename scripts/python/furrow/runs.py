@@ -155,7 +155,8 @@ class Run:
         return dataset
 
     def write_vtk(self, folder: str | pathlib.Path) -> pathlib.Path:
-        """All frames as VTK PolyData: tire<k>_<index>.vtp, terrain_<index>.vtp, and <kind>.pvd, which lists them by time.
+        """All frames as VTK PolyData: tire<k>_<index>.vtp, terrain_<index>.vtp, and <kind>.pvd, which lists them by
+        time.
 
         Returns the folder. Any VTK or ParaView opens them.
         """

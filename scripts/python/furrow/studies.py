@@ -52,9 +52,9 @@ class Study:
         """A curve of the study: `y` over `x`, columns of the table, of the runs that are done.
 
         With `mean_over`, the name of a key such as "run.seed": means over the runs with the same x, and `half_bar` half
-        their 95 % interval [Student's t]; else `half_bar` is the column `error`. `unsteady` is true where a run's pull is
-        not steady. Further arguments choose runs: terrain__cohesion=80e3.
-        Raises Missing when no such run is done, KeyError for a column that is not there.
+        their 95 % interval [Student's t]; else `half_bar` is the column `error`. `unsteady` is true where a run's pull
+        is not steady. Further arguments choose runs: terrain__cohesion=80e3. Raises Missing when no such run is done,
+        KeyError for a column that is not there.
         """
         rows = self.table[self.table["state"] == "done"]
         for name, value in only.items():
@@ -73,4 +73,5 @@ class Study:
     def __repr__(self) -> str:
         kind = "beds" if self.asked.get("beds") else "study"
         states = self.table["state"].value_counts().to_dict() if (self.directory / "sweep.csv").exists() else {}
-        return f"<{kind} in {self.directory}: {', '.join(f'{count} {state}' for state, count in states.items()) or 'no run yet'}>"
+        return (f"<{kind} in {self.directory}: "
+                f"{', '.join(f'{count} {state}' for state, count in states.items()) or 'no run yet'}>")

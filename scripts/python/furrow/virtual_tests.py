@@ -1,4 +1,5 @@
-"""Soil tests, pressed tires, frequencies, suspensions and fits: what `furrow soil`, `press`, `modes`, `kc` and `calibrate` leave."""
+"""Soil tests, pressed tires, frequencies, suspensions and fits: what `furrow soil`, `press`, `modes`, `kc` and
+`calibrate` leave."""
 from __future__ import annotations
 
 import pathlib
@@ -96,7 +97,8 @@ class Kinematics(Tests):
 
 
 class Calibration(Tests):
-    """A model fitted to data. `summary["parameters"]` holds value, standard error and 95 % interval of each parameter."""
+    """A model fitted to data. `summary["parameters"]` holds value, standard error and 95 % interval of each
+    parameter."""
 
     FIGURES = "calibration.json"
 

@@ -28,8 +28,10 @@ def data_array(name: str, values: Array) -> str:
     columns = values.shape[1] if values.ndim == 2 else 1
     packed = zlib.compress(values.tobytes(), 1)
     head = [1, values.nbytes, 0, len(packed)] if values.nbytes else [0, 0, 0]
-    content = (base64.b64encode(np.array(head, "<u8").tobytes()) + base64.b64encode(packed if values.nbytes else b"")).decode()
-    return f'<DataArray type="{kind}" Name={quoteattr(name)} NumberOfComponents="{columns}" format="binary">{content}</DataArray>'
+    content = (base64.b64encode(np.array(head, "<u8").tobytes())
+               + base64.b64encode(packed if values.nbytes else b"")).decode()
+    return (f'<DataArray type="{kind}" Name={quoteattr(name)} NumberOfComponents="{columns}" '
+            f'format="binary">{content}</DataArray>')
 
 
 def polydata(position: Array, cells: Mapping[str, Array], values: Mapping[str, Array], time: float) -> str:
@@ -39,19 +41,22 @@ def polydata(position: Array, cells: Mapping[str, Array], values: Mapping[str, A
              "<Points>", data_array("position", position.astype("f4")), "</Points>"]
     for kind, corners in cells.items():
         ends = corners.shape[1] * np.arange(1, len(corners) + 1, dtype="i4")
-        parts += [f"<{kind}>", data_array("connectivity", corners.astype("i4").ravel()), data_array("offsets", ends), f"</{kind}>"]
+        parts += [f"<{kind}>", data_array("connectivity", corners.astype("i4").ravel()),
+                  data_array("offsets", ends), f"</{kind}>"]
     return "\n".join([
         '<?xml version="1.0"?>',
         '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" '
         'compressor="vtkZLibDataCompressor">', "<PolyData>", "<FieldData>",
-        f'<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:.17g}</DataArray>', "</FieldData>",
+        f'<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:.17g}</DataArray>',
+        "</FieldData>",
         f'<Piece NumberOfPoints="{len(position)}" {counts}>', *parts, "</Piece>", "</PolyData>", "</VTKFile>", ""])
 
 
 def text_of(frame: Frame) -> str:
     """A frame as the text of a .vtp file."""
     if isinstance(frame, TireFrame):
-        return polydata(frame.position, {"Polys": frame.triangle}, {"velocity": frame.velocity, "force": frame.force}, frame.time)
+        return polydata(frame.position, {"Polys": frame.triangle}, {"velocity": frame.velocity, "force": frame.force},
+                        frame.time)
     assert isinstance(frame, GrainFrame)
     points = np.arange(len(frame.radius)).reshape(-1, 1)
     return polydata(frame.position, {"Verts": points}, {"radius": frame.radius, "speed": frame.speed}, frame.time)
@@ -66,7 +71,8 @@ def write_kind(folder: pathlib.Path, kind: str, frames: Iterable[Frame]) -> None
         entries.append(f'<DataSet timestep="{frame.time:.17g}" file="{name}"/>')
     if entries:
         (folder / f"{kind}.pvd").write_text("\n".join(
-            ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>", *entries, "</Collection>",
+            ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">',
+             "<Collection>", *entries, "</Collection>",
              "</VTKFile>", ""]))
 
 

@@ -22,13 +22,15 @@ def cards(items):
 
 def table(columns, rows, note="", marked=(), only_marked=""):
     """Rows of texts. With `only_marked` (the words beside a box to tick) the marked rows can be shown alone."""
-    return {"type": "table", "columns": columns, "rows": [[printable(cell) for cell in row] for row in rows], "note": note,
+    return {"type": "table", "columns": columns, "rows": [[printable(cell) for cell in row] for row in rows],
+            "note": note,
             "marked": list(marked), "only_marked": only_marked}
 
 
 def bars(rows, note=""):
     """Shares of 1 as bars: (label, share, words)."""
-    return {"type": "bars", "rows": [{"label": printable(a), "share": b, "text": printable(c)} for a, b, c in rows], "note": note}
+    return {"type": "bars", "rows": [{"label": printable(a), "share": b, "text": printable(c)} for a, b, c in rows],
+            "note": note}
 
 
 def chart(title, x_label, x_unit, y_unit, lines, window=None, levels=(), note=""):

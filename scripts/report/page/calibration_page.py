@@ -40,7 +40,8 @@ def answer(run):
     for name, p in (run.values.get("parameters") or {}).items():
         interval = p.get("interval_95")
         rows.append([name, text_of(p.get("value")), text_of(p.get("standard_error"), ".2g"),
-                     f"{interval[0]:.4g} … {interval[1]:.4g}" if isinstance(interval, list) and all(map(is_number, interval)) else "–",
+                     f"{interval[0]:.4g} … {interval[1]:.4g}" if isinstance(interval, list)
+                     and all(map(is_number, interval)) else "–",
                      p.get("unit", ""), f"at its {p['at_bound']} bound" if p.get("at_bound") else ""])
     made = [blocks.text(words(run), "lead")]
     made += [blocks.text(str(warning), "warn") for warning in run.values.get("warnings") or []]
@@ -68,12 +69,16 @@ def figures(run):
         for target in run.values.get(key) or []:
             for f in target.get("figures") or []:
                 surrogate, span = f.get("surrogate") or {}, f.get("evaluations_span") or []
-                rows.append([f.get("label", ""), text_of(f.get("target")), text_of(f.get("sigma"), ".2g"), text_of(f.get("evaluated")),
-                             text_of(f.get("standard_error"), ".2g"), text_of(surrogate.get("value")), text_of(surrogate.get("standard_error"), ".2g"),
-                             " … ".join(text_of(value) for value in span), str(f.get("state", "" if key == "targets" else "held out"))])
+                rows.append([f.get("label", ""), text_of(f.get("target")),
+                             text_of(f.get("sigma"), ".2g"), text_of(f.get("evaluated")),
+                             text_of(f.get("standard_error"), ".2g"), text_of(surrogate.get("value")),
+                             text_of(surrogate.get("standard_error"), ".2g"),
+                             " … ".join(text_of(value) for value in span),
+                             str(f.get("state", "" if key == "targets" else "held out"))])
     if not rows:
         return None
-    return blocks.table(["figure", "target", "±", "evaluated", "±", "all evaluations together", "±", "evaluations span", ""], rows)
+    return blocks.table(["figure", "target", "±", "evaluated", "±", "all evaluations together",
+                         "±", "evaluations span", ""], rows)
 
 
 def curves(run, arrays):
@@ -88,24 +93,29 @@ def curves(run, arrays):
         lines = []
         for target in members:
             place = arrays.add(x_factor * target["x"], exact=True)
-            lines.append({"label": f"{target['name']}, data", "x": place, "y": arrays.add(factor * target["data"]), "style": "points"})
+            lines.append({"label": f"{target['name']}, data", "x": place,
+                          "y": arrays.add(factor * target["data"]), "style": "points"})
             if np.isfinite(target["model"]).all():
-                lines.append({"label": f"{target['name']}, {'predicted' if target['held_out'] else 'fitted'}", "x": place,
+                lines.append({"label": f"{target['name']}, {'predicted' if target['held_out'] else 'fitted'}",
+                              "x": place,
                               "y": arrays.add(factor * target["model"]), "style": "line"})
         items.append({**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines[:MOST_LINES]), "wide": True})
     table = figures(run)
-    return {"id": "series", "title": "Data and model", "blocks": ([table] if table else []) + ([blocks.charts(items)] if items else [])}
+    return {"id": "series", "title": "Data and model",
+            "blocks": ([table] if table else []) + ([blocks.charts(items)] if items else [])}
 
 
 def starts(run):
     rows = []
     for k, start in enumerate(run.values.get("starts") or []):
         end = ", ".join(f"{name} {value:.4g}" for name, value in (start.get("end") or {}).items())
-        rows.append([str(k + 1), text_of(start.get("sum_of_squares"), ".6g"), str(start.get("iterations", "")), str(start.get("ended", "")), end])
+        rows.append([str(k + 1), text_of(start.get("sum_of_squares"), ".6g"),
+                     str(start.get("iterations", "")), str(start.get("ended", "")), end])
     singular = (run.values.get("identifiability") or {}).get("singular_values") or []
     return {"id": "starts", "title": "Starts",
             "blocks": [blocks.table(["start", "sum of squares", "iterations", "ended", "at"], rows),
-                       blocks.text("Singular values of the Jacobian over the deviation of the residuals, parameters on their scales: "
+                       blocks.text("Singular values of the Jacobian over the deviation of the residuals, parameters on "
+                                   "their scales: "
                                    + ", ".join(text_of(value, ".3g") for value in singular))]}
 
 

@@ -7,14 +7,17 @@ from plot.run_data import Missing
 from . import blocks, curves, run_page, scenario
 from .names import is_number, naming
 
-KEYS = (("drawbar_pull_N", "drawbar pull"), ("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth"), ("drawbar_coefficient", "pull over load"),
-        ("drive_torque_Nm", "drive torque"), ("tractive_efficiency", "tractive efficiency"), ("vertical_load_N", "load"))
+KEYS = (("drawbar_pull_N", "drawbar pull"), ("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth"),
+        ("drawbar_coefficient", "pull over load"),
+        ("drive_torque_Nm", "drive torque"), ("tractive_efficiency", "tractive efficiency"),
+        ("vertical_load_N", "load"))
 
 
 def names(runs):
     """A name for each run: its folder, with the parent's where folders are called alike."""
     plain = [run.directory.resolve().name for run in runs]
-    return [f"{run.directory.resolve().parent.name}/{name}" if plain.count(name) > 1 else name for run, name in zip(runs, plain)]
+    return [f"{run.directory.resolve().parent.name}/{name}" if plain.count(name) > 1 else name for run,
+            name in zip(runs, plain)]
 
 
 def mean_and_half(summary, key):
@@ -38,7 +41,8 @@ def results(runs, arrays):
         lines = []
         for k, (mean, half) in enumerate(found):
             if is_number(mean):
-                one = {"label": called[k], "x": arrays.add([k + 1], exact=True), "y": arrays.add([factor * mean]), "style": "points"}
+                one = {"label": called[k], "x": arrays.add([k + 1], exact=True),
+                       "y": arrays.add([factor * mean]), "style": "points"}
                 if half is not None:
                     one["low"], one["high"] = (arrays.add([factor * (mean + sign * half)]) for sign in (-1, 1))
                 lines.append(one)
@@ -52,7 +56,9 @@ def results(runs, arrays):
     if missing:
         made.append(blocks.text(f"Without a summary (failed, stopped or still running): {', '.join(missing)}.", "warn"))
     if items:
-        made.append(blocks.charts(items, "Whiskers: 95 % interval of each run's own mean. It does not cover the scatter between beds."))
+        made.append(blocks.charts(items,
+                                  "Whiskers: 95 % interval of each run's own mean. It does not cover the scatter "
+                                  "between beds."))
     return {"id": "answer", "title": "Results", "blocks": made}
 
 
@@ -80,7 +86,8 @@ def overlay(runs, arrays):
 def differences(runs):
     """The keys in which the scenarios differ."""
     found = [{key: scenario.shown(value) for key, value, _ in scenario.flat(run.scenario, {}, {}, "")} for run in runs]
-    keys = [key for key in dict.fromkeys(key for one in found for key in one) if key not in ("description", "completed_by")
+    keys = [key for key in dict.fromkeys(key for one in found for key in one)
+            if key not in ("description", "completed_by")
             and len({one.get(key) for one in found}) > 1]
     return {"id": "scenario", "title": "Scenarios", "blocks": [
         blocks.table(["key", *names(runs)], [[key, *(one.get(key, "–") for one in found)] for key in keys],
@@ -89,7 +96,8 @@ def differences(runs):
 
 def provenance(runs):
     keys = [key for key in run_page.PROVENANCE if any(run.summary.get(key) is not None for run in runs)]
-    rows = [[key.replace("_", " "), *(digits(v) if isinstance(v := run.summary.get(key), float) else str("–" if v is None else v) for run in runs)]
+    rows = [[key.replace("_", " "), *(digits(v) if isinstance(v := run.summary.get(key), float)
+                                      else str("–" if v is None else v) for run in runs)]
             for key in keys]
     return {"id": "provenance", "title": "Provenance", "blocks": [blocks.table(["", *names(runs)], rows)]}
 

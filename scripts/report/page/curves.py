@@ -23,8 +23,10 @@ WHEEL = (("Drawbar pull", ("drawbar_pull_N", "tractive_effort_N", "terrain_resis
          ("Share of grains awake", ("active_share",)))
 
 # One column over all wheels.
-WHEELS = ("vertical_force_N", "slip", "sinkage_m", "spindle_torque_Nm", "tractive_effort_N", "lateral_force_N", "speed_m_per_s",
-          "suspension_travel_m", "spring_force_N", "shock_force_N", "wheel_steer_rad", "wheel_camber_rad", "drawbar_pull_N")
+WHEELS = ("vertical_force_N", "slip", "sinkage_m", "spindle_torque_Nm",
+          "tractive_effort_N", "lateral_force_N", "speed_m_per_s",
+          "suspension_travel_m", "spring_force_N", "shock_force_N", "wheel_steer_rad",
+          "wheel_camber_rad", "drawbar_pull_N")
 
 VEHICLE = (("Speed", ("speed_m_s", "target_speed_m_per_s")),
            ("Driver", ("throttle", "brake", "steering")),
@@ -56,23 +58,27 @@ class Table:
     def line(self, name, label=None):
         words, _, factor = naming(name)
         self.used.add(name)
-        return {"label": label or words, "x": self.x, "y": self.arrays.add(factor * self.columns[name]), "style": "line"}
+        return {"label": label or words, "x": self.x, "y": self.arrays.add(factor * self.columns[name]),
+                "style": "line"}
 
     @property
     def note(self):
-        return (f"Each pair of points of a curve is the lowest and the highest of {self.bucket} samples." if self.bucket > 1 else "")
+        return (f"Each pair of points of a curve is the lowest and the highest of {self.bucket} samples."
+                if self.bucket > 1 else "")
 
 
 def plain(table, groups, window, errors=None):
     """The plots of `groups`."""
     items = []
     for title, names in groups:
-        names = [name for name in names if name in table.columns and np.nanmax(np.abs(table.columns[name]), initial=0.0) > NOISE]
+        names = [name for name in names if name in table.columns
+                 and np.nanmax(np.abs(table.columns[name]), initial=0.0) > NOISE]
         if names:
             levels = [level for name in names for level in (errors or {}).get(name, ())]
             if title == "Drawbar pull" and "drawbar_pull_N" not in names:
                 title = "Tractive effort and terrain resistance"
-            items.append({**blocks.chart(title, "time", "s", naming(names[0])[1], [table.line(name) for name in names], window, levels),
+            items.append({**blocks.chart(title, "time", "s", naming(names[0])[1],
+                                         [table.line(name) for name in names], window, levels),
                           "whole": names == ["gear"]})
             limit_slip(items[-1], names[0], table)
     return items
@@ -82,7 +88,8 @@ def over_wheels(tables, window, names=()):
     """One plot per column with a line per wheel. `names` of all wheels, or none."""
     items = []
     for name in WHEELS:
-        lines = [table.line(name, names[k] if k < len(names) else f"wheel {k}") for k, table in list(tables.items())[:MOST_WHEELS]
+        lines = [table.line(name, names[k] if k < len(names) else f"wheel {k}") for k,
+                 table in list(tables.items())[:MOST_WHEELS]
                  if name in table.columns and np.nanmax(np.abs(table.columns[name]), initial=0.0) > NOISE]
         if lines:
             words, unit, _ = naming(name)
@@ -93,7 +100,8 @@ def over_wheels(tables, window, names=()):
 
 def limit_slip(chart, name, *tables):
     """Of a wheel that stands, the slip is any number: the plot then begins with a part of it in view."""
-    if name == "slip" and any(np.nanmax(np.abs(table.columns[name]), initial=0.0) > 2.0 for table in tables if name in table.columns):
+    if name == "slip" and any(np.nanmax(np.abs(table.columns[name]), initial=0.0) > 2.0
+                              for table in tables if name in table.columns):
         chart["clip"] = [-1.5, 1.5]
         chart["title"] += " (only ±1.5 shown)"
 

@@ -1,9 +1,10 @@
-"""The frames of a run, packed for the playback: tires as rigid motions with small deviations, the surface of the bed from
+"""The frames of a run, packed for the playback: tires as rigid motions with small deviations, the surface of the bed
+from
 all grains, and as many grains as fit. source/unpack.js reads what is written here.
 
-Grains: 16-bit positions in the box of the bed, as differences from frame to frame. A grain that moved less than STILL of
-its radius since it was last written has not moved, so that a bed at rest costs next to nothing. A grain that can be seen
-in no frame, because others cover it, is left out.
+Grains: 16-bit positions in the box of the bed, as differences from frame to frame. A grain that moved less than STILL
+of its radius since it was last written has not moved, so that a bed at rest costs next to nothing. A grain that can be
+seen in no frame, because others cover it, is left out.
 """
 import re
 
@@ -29,7 +30,8 @@ class Frames:
 
     def __init__(self, run):
         folder = run.directory / "frames"
-        names = {int(match[1]) for path in folder.glob("tire*_*.h5") if (match := re.match(r"tire(\d+)_\d+\.h5$", path.name))}
+        names = {int(match[1]) for path in folder.glob("tire*_*.h5")
+                 if (match := re.match(r"tire(\d+)_\d+\.h5$", path.name))}
         self.tires = {k: run.frames(f"tire{k}") for k in sorted(names)}
         self.terrain = run.frames("terrain")
         kinds = [found for found in [*self.tires.values(), self.terrain] if found]
@@ -55,7 +57,8 @@ def read_tire(path):
     with h5py.File(path, "r") as file:
         position = np.nan_to_num(table(file, "position", 3).astype(float))
         triangle = table(file, "triangle", 3).astype(int)
-        vectors = [np.linalg.norm(np.nan_to_num(table(file, name, 3).astype(float)), axis=1) if name in file else np.zeros(len(position))
+        vectors = [np.linalg.norm(np.nan_to_num(table(file, name, 3).astype(float)), axis=1)
+                   if name in file else np.zeros(len(position))
                    for name in ("force", "velocity")]
         time = float(np.asarray(file.attrs.get("time_s", np.nan), float).ravel()[0])
     if not len(position) or not len(triangle) or triangle.min() < 0 or triangle.max() >= len(position) or len(position) > 65000:
@@ -180,7 +183,8 @@ class Packing:
         bed = self.bed
         position, _, speed, time = bed.checked(read_grains(self.frames.terrain[index]))
         heights = bed.top(position, *bed.cells(position)) + bed.largest
-        now = np.where(np.isfinite(heights), np.clip(np.round((heights - bed.low[2]) / bed.scale[2]) - 32767, -32767, 32767), EMPTY)
+        now = np.where(np.isfinite(heights),
+                       np.clip(np.round((heights - bed.low[2]) / bed.scale[2]) - 32767, -32767, 32767), EMPTY)
         now = now.astype(np.int32).ravel()
         if self._last_surface is not None:
             still = np.abs(now - self._last_surface) < 0.15 * bed.largest / bed.scale[2]
@@ -212,7 +216,8 @@ def strided(indices, stride):
 
 
 def pack(run, budget):
-    """The Packing that fits into `budget` bytes. First every frame with MOST_GRAINS is tried; while that is too much, frames
+    """The Packing that fits into `budget` bytes. First every frame with MOST_GRAINS is tried; while that is too much,
+    frames
     are left out down to sixty, then grains down to 8,000, then frames again."""
     frames = Frames(run)
     bed = Bed(frames, MOST_GRAINS) if frames.terrain else None

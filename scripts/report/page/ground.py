@@ -13,7 +13,8 @@ def unchanged(run, arrays):
     if before.z.shape != after.z.shape or not np.array_equal(before.z, after.z, equal_nan=True):
         return None
     along = after.z[:, after.z.shape[1] // 2]
-    lines = [{"label": "height", "x": arrays.add(after.x, exact=True), "y": arrays.add(1e3 * along), "style": "line"}] if np.ptp(along) > 0 else []
+    lines = [{"label": "height", "x": arrays.add(after.x, exact=True),
+              "y": arrays.add(1e3 * along), "style": "line"}] if np.ptp(along) > 0 else []
     return {**blocks.chart("Height of the ground along the path", "x", "m", "mm", lines), "wide": True}
 
 

@@ -20,7 +20,8 @@ def fill(page, arrays, runs, sections):
     if len(runs) > 1:
         compare.fill(page, arrays, runs, sections)
         return
-    for kind, fill_it in ((Calibration, calibration_page.fill), (Press, test_pages.press), (Modes, test_pages.modes), (Soil, test_pages.soil), (Kinematics, test_pages.kinematics),
+    for kind, fill_it in ((Calibration, calibration_page.fill), (Press, test_pages.press),
+                          (Modes, test_pages.modes), (Soil, test_pages.soil), (Kinematics, test_pages.kinematics),
                           (Sweep, study_page.fill), (Run, run_page.fill)):
         if isinstance(run, kind):  # presses and modes are read like a soil test
             fill_it(page, arrays, run, sections)

@@ -21,7 +21,8 @@ def profile(run):
     """The profile of hard ground, [[x, z], …] in m; empty without one."""
     terrain = run.scenario.get("terrain")
     points = terrain.get("profile") if isinstance(terrain, dict) else None
-    return points if isinstance(points, list) and all(isinstance(point, list) and len(point) == 2 and all(map(is_number, point)) for point in points) else []
+    return points if isinstance(points, list) and all(isinstance(point, list) and len(point) == 2
+                                                      and all(map(is_number, point)) for point in points) else []
 
 
 def meshes(packing, arrays):
@@ -45,7 +46,8 @@ def left_out(packing):
         words.append(f"{len(bed.shown):,} of {bed.total:,} grains are drawn: "
                      + (f"{hidden:,} are covered by others all the time" if hidden else "")
                      + (" and " if hidden and bed.visible > len(bed.shown) else "")
-                     + (f"{bed.visible - len(bed.shown):,} farthest from the wheels were left out to keep the page small"
+                     + (f"{bed.visible - len(bed.shown):,} farthest from the wheels were left out to keep the page "
+                        f"small"
                         if bed.visible > len(bed.shown) else "")
                      + ". The surface is that of all grains.")
     return words
@@ -62,7 +64,8 @@ def playback(run, arrays, budget):
              "profile": profile(run), "chassis": chassis(run, packing.times, arrays), "bed": None}
     if bed := packing.bed:
         block["bed"] = {"grains": len(bed.shown), "radius": arrays.add(bed.radius), "speeds": packing.speeds,
-                        "low": [float(v) for v in bed.low], "scale": [float(v) for v in bed.scale], "cell": float(bed.cell),
+                        "low": [float(v) for v in bed.low], "scale": [float(v) for v in bed.scale],
+                        "cell": float(bed.cell),
                         "nx": bed.nx, "ny": bed.ny, "largest": bed.largest}
     words = [blocks.text(" ".join(sentences), "note") for sentences in [left_out(packing)] if sentences]
     blobs = {name: stream.base64() for name, stream in packing.stream.items() if packing.bed or name == "tires"}

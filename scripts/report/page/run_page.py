@@ -17,17 +17,23 @@ CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
          ("tire_deflection_m", None, None, "tire deflection"),
          ("drive_torque_Nm", None, None, "drive torque"),
          ("tractive_efficiency", None, None, "tractive efficiency"))
-EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"), ("rut_depth", "rut_depth_m", "rut depth"))
-OF_WHEELS = ("slip", "vertical_load_N", "tractive_effort_N", "terrain_resistance_N", "drive_torque_Nm", "sinkage_m", "rut_depth_m",
+EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"),
+            ("rut_depth", "rut_depth_m", "rut depth"))
+OF_WHEELS = ("slip", "vertical_load_N", "tractive_effort_N", "terrain_resistance_N",
+             "drive_torque_Nm", "sinkage_m", "rut_depth_m",
              "lateral_force_N", "tire_deflection_m", "tractive_efficiency")
-PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version", "compiler", "cpu", "terrain_engine", "law", "simulated_s",
-              "wall_s", "settle_wall_s", "wall_s_per_simulated_s", "grains", "contacts_mean", "active_share_mean", "substeps_added",
+PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version",
+              "compiler", "cpu", "terrain_engine", "law", "simulated_s",
+              "wall_s", "settle_wall_s", "wall_s_per_simulated_s", "grains",
+              "contacts_mean", "active_share_mean", "substeps_added",
               "substeps_refined_share", "substeps_most_parts")
 ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", "tire_residual_J", "rig_residual_J")),
             ("Work", ("drive_work_J", "pull_work_J", "guide_work_J", "wall_work_J")),
-            ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J", "rolling_loss_J", "opening_loss_J",
+            ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J",
+                        "rolling_loss_J", "opening_loss_J",
                         "tire_viscous_loss_J", "damper_loss_J")),
-            ("Momentum that does not close", ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
+            ("Momentum that does not close",
+             ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
 
 CHANGING = 0.05  # m/s²: a mean acceleration beyond it is no steady drive
 
@@ -56,7 +62,8 @@ def pull_words(run, pull):
     who = f"Wheel 0 of {len(run.wheels)}" if len(run.wheels) > 1 else "The tire"
     words = f"{who} pulls {value} N{slip}"
     if half is not None:
-        words += f" (95 % interval; standard error {digits(pull['sem'])} N from about {pull['n_eff']:.0f} independent values)"
+        words += (f" (95 % interval; standard error {digits(pull['sem'])} N from about {pull['n_eff']:.0f} independent "
+                  f"values)")
     words += f", as the mean from {run.window[0]:.3g} to {run.window[1]:.3g} s." if run.window else "."
     return words
 
@@ -66,13 +73,18 @@ def steady_words(pull):
     if pull.get("steady"):
         details = []
         if is_number(pull.get("drift_N_per_s")) and is_number(pull.get("drift_t")):
-            details.append(f"the drift of {digits(pull['drift_N_per_s'])} N/s is {abs(pull['drift_t']):.2g} times its standard error")
+            details.append(f"the drift of {digits(pull['drift_N_per_s'])} N/s is {abs(pull['drift_t']):.2g} times its "
+                           f"standard error")
         if is_number(pull.get("halves_differ_N")):
             details.append(f"the halves of the window differ by {digits(pull['halves_differ_N'])} N")
-        return "good", ("Steady: within the averaging window the pull neither drifts nor changes between its halves by more than its own noise"
-                        + (f" ({'; '.join(details)})" if details else "") + ". A longer window would give the same mean within the interval.")
-    reasons = "; ".join(map(printable, pull.get("unsteady_because") or ["the averaging window is not long or even enough"]))
-    return "warn", (f"Not steady: {reasons}. The mean depends on where the averaging window lies, and the interval is too small. "
+        return "good", ("Steady: within the averaging window the pull neither drifts nor changes between its halves by "
+                        "more than its own noise"
+                        + (f" ({'; '.join(details)})" if details else "")
+                        + ". A longer window would give the same mean within the interval.")
+    reasons = "; ".join(map(printable, pull.get("unsteady_because")
+                            or ["the averaging window is not long or even enough"]))
+    return "warn", (f"Not steady: {reasons}. The mean depends on where the averaging window lies, and the interval is "
+                    f"too small. "
                     "Run longer, or average later (run.end, run.average_from), before you quote this number.")
 
 
@@ -84,7 +96,8 @@ def pull_answer(run):
         return [blocks.text("The tire did not touch the ground in the averaging window: nothing was measured.", "warn")]
     kind, words = steady_words(pull)
     return [blocks.text(pull_words(run, pull), "lead"), blocks.text(words, kind),
-            blocks.text("The interval holds for this bed of grains: it covers the noise within this run, not the scatter between beds. "
+            blocks.text("The interval holds for this bed of grains: it covers the noise within this run, not the "
+                        "scatter between beds. "
                         "'furrow run SCENARIO --seeds N' gives the mean over N beds and its interval.", "note")]
 
 
@@ -94,7 +107,8 @@ def answer_cards(run):
     if is_number(pull.get("mean")) and run.measured:
         half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
         value, unit = blocks.quantity("drawbar_pull_N", pull["mean"], half)
-        items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "", "good" if pull.get("steady") else "warn",
+        items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "",
+                                 "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
     hard = run.told.get("terrain_engine") == "rigid"  # ground into which nothing sinks
     rigid = all_rigid(run)
@@ -119,11 +133,14 @@ def vehicle_answer(run):
         if rows:
             speed, load = values.get("speed_m_s"), values.get("wheel_power_W")
             if is_number(speed):
-                made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on average"
-                                        + (f"; {digits(1e-3 * load)} kW reach its wheels." if is_number(load) else "."), "lead"))
+                made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on "
+                                        f"average"
+                                        + (f"; {digits(1e-3 * load)} kW reach its wheels." if is_number(load) else "."),
+                                        "lead"))
             change = values.get("acceleration_m_per_s2")
             if is_number(change) and abs(change) > CHANGING:
-                made.append(blocks.text(f"The {subject} is not in a steady state: on average its speed changes by {digits(change)} m/s each second. "
+                made.append(blocks.text(f"The {subject} is not in a steady state: on average its speed changes by "
+                                        f"{digits(change)} m/s each second. "
                                         "Means over the window describe this stretch, not a constant speed.", "warn"))
             made.append({"type": "fold", "title": f"All means of the {subject} in the averaging window",
                          "blocks": [blocks.table(["quantity", "mean", "unit"], rows)]})
@@ -136,7 +153,8 @@ def wheels_table(run):
              and not (name == "tire_deflection_m" and all_rigid(run))]
     if len(wheels) < 2 or not names:
         return []
-    columns = ["wheel"] + [", ".join(filter(None, (words, unit.replace(" ", "\u00a0")))) for words, unit, _ in map(naming, names)]
+    columns = ["wheel"] + [", ".join(filter(None, (words, unit.replace(" ", "\u00a0")))) for words,
+                           unit, _ in map(naming, names)]
     who = [name.replace("_", " ") for name in run.wheel_names] or [str(k) for k in range(len(wheels))]
     rows = [[who[k]] + [blocks.quantity(name, wheel.get(name))[0] for name in names] for k, wheel in enumerate(wheels)]
     return [blocks.table(columns, rows, note="Means over the averaging window.")]
@@ -157,7 +175,8 @@ def expected_table(run):
         if is_number(spread):
             verdict = "within the spread" if abs(value - target) <= spread else "outside of the spread"
             outside += abs(value - target) > spread
-        rows.append([name, *(blocks.quantity(result, v)[0] for v in (value, target, spread)), naming(result)[1], verdict])
+        rows.append([name, *(blocks.quantity(result, v)[0] for v in (value, target, spread)),
+                     naming(result)[1], verdict])
     if not rows:
         return []
     words = ("This run is within what the scenario's author expects." if not outside
@@ -171,26 +190,31 @@ def answer(run):
     made = []
     if isinstance(failed, dict):
         made.append(blocks.text(f"The run failed at t = {failed.get('time_s')} s: {failed.get('error')}.", "bad"))
-        made.append(blocks.text("Everything below is what it left until then. There are no means and no intervals.", "note"))
+        made.append(blocks.text("Everything below is what it left until then. There are no means and no intervals.",
+                                "note"))
     elif not run.summary:
-        made.append(blocks.text("This run has no summary: it is still running, or it was stopped before its end.", "warn"))
+        made.append(blocks.text("This run has no summary: it is still running, or it was stopped before its end.",
+                                "warn"))
     made += pull_answer(run)
     if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
         if not run.summary.get("drawbar_pull_N"):
             window = window_of(run)
             span = f" from {window[0]:.3g} to {window[1]:.3g} s" if window else ""
-            made.append(blocks.text(f"The figures are means over the averaging window{span}. This rig measures no drawbar pull.", "lead"))
+            made.append(blocks.text(f"The figures are means over the averaging window{span}. This rig measures no "
+                                    f"drawbar pull.", "lead"))
         made.append(blocks.cards(items))
     made += vehicle_answer(run) + wheels_table(run) + expected_table(run)
     for what, found in (run.summary.get("accounts") or {}).items():
         if isinstance(found, dict) and found.get("closes") is False:
-            made.append(blocks.text(f"The account of {what} does not close. The result may be wrong: see Accounts.", "bad"))
+            made.append(blocks.text(f"The account of {what} does not close. The result may be wrong: see Accounts.",
+                                    "bad"))
     return {"id": "answer", "title": "Result", "blocks": made}
 
 
 def wheel_tables(run):
     """Names of the tables of the wheels by number."""
-    names = {int(m[1]): p.name for p in run.directory.glob("timeseries_wheel*.csv") if (m := re.match(r"timeseries_wheel(\d+)\.csv$", p.name))}
+    names = {int(m[1]): p.name for p in run.directory.glob("timeseries_wheel*.csv")
+             if (m := re.match(r"timeseries_wheel(\d+)\.csv$", p.name))}
     return {0: "timeseries.csv"} if (run.directory / "timeseries.csv").is_file() else dict(sorted(names.items()))
 
 
@@ -213,10 +237,14 @@ def series(run, arrays):
     else:
         table = next(iter(tables.values()))
         more = f" The first {curves.MOST_WHEELS} of {len(names)} wheels are drawn." if len(names) > len(tables) else ""
-        made.append(blocks.charts(curves.over_wheels(tables, window, [name.replace("_", " ") for name in run.wheel_names]), table.note + more))
+        made.append(blocks.charts(curves.over_wheels(tables, window, [name.replace("_", " ")
+                                                                      for name in run.wheel_names]), table.note + more))
     made.append(curves.explorer(table, window))
     shaded = "Shaded: the averaging window. " if window else ""
-    made.insert(0, blocks.text(shaded + "Drag across a plot to zoom, double-click to see all. Click a name in the legend to hide its curve.", "note"))
+    made.insert(0,
+                blocks.text(shaded
+                            + "Drag across a plot to zoom, double-click to see all. Click a name in the legend to hide "
+                              "its curve.", "note"))
     return {"id": "series", "title": "Curves", "blocks": list(filter(None, made))}
 
 
@@ -225,7 +253,8 @@ def vehicle_series(run, arrays):
     made = [blocks.charts(curves.plain(table, curves.VEHICLE, window_of(run)), table.note)]
     if "x_m" in table.columns and "y_m" in table.columns:
         x, y = (arrays.add(table.columns[name]) for name in ("x_m", "y_m"))
-        made[0]["charts"].insert(0, blocks.chart("Path from above", "x", "m", "m", [{"label": "chassis", "x": x, "y": y, "style": "line"}]))
+        made[0]["charts"].insert(0, blocks.chart("Path from above", "x",
+                                                 "m", "m", [{"label": "chassis", "x": x, "y": y, "style": "line"}]))
     made.append(curves.explorer(table, window_of(run)))
     return {"id": "vehicle", "title": "Vehicle", "blocks": list(filter(None, made))}
 
@@ -233,7 +262,8 @@ def vehicle_series(run, arrays):
 def happened(run):
     """The events of `furrow events`."""
     found = events.events(VehicleRun(run))
-    rows = [[f"{e.time:.3f}", e.what, e.subject, f"{events.significant(float(e.value))} {e.unit}".rstrip(), e.threshold] for e in found]
+    rows = [[f"{e.time:.3f}", e.what, e.subject, f"{events.significant(float(e.value))} {e.unit}".rstrip(), e.threshold]
+            for e in found]
     return {"id": "events", "title": "Events", "blocks": [
         blocks.table(["time, s", "what", "of", "value", "threshold"], rows,
                      note="From the time series alone, as 'furrow events' lists them with the means of the axles.")]}
@@ -258,7 +288,8 @@ def accounts(run, arrays):
             whole = "what was turned over" if what == "energy" else "the largest impulse"
             size = f" {digits(100 * abs(share))} % of {whole} is not accounted for." if is_number(share) else ""
             closes = account["closes"]
-            made.append(blocks.text(f"The account of {what} {'closes' if closes else 'does not close'}.{size}", "good" if closes else "bad"))
+            made.append(blocks.text(f"The account of {what} {'closes' if closes else 'does not close'}.{size}",
+                                    "good" if closes else "bad"))
     energy = found.get("energy")
     if isinstance(energy, dict) and (rows := energy_rows(energy)):
         made.append({"type": "fold", "title": "The terms of the energy account",
@@ -277,7 +308,8 @@ def rut(run, arrays):
     if not run.told.get("grains") and (profile := ground.unchanged(run, arrays)):
         return {"id": "rut", "title": "Ground", "blocks": [blocks.charts([profile])]} if profile["lines"] else None
     return {"id": "rut", "title": "Rut", "blocks": [
-        blocks.text("Height of the surface after the run, against that before it. Move over the map for values, click for cross-sections.", "note"),
+        blocks.text("Height of the surface after the run, against that before it. Move over the map for values, click "
+                    "for cross-sections.", "note"),
         ground.rut(run, arrays)]}
 
 
@@ -290,12 +322,16 @@ def ranks(run):
     for rank in found:
         share = rank.get("busy_share")
         label = f"{rank.get('rank')} · {rank.get('node')}"
-        rows.append((label, share if is_number(share) else 0.0, f"{100 * share:.0f} % busy" if is_number(share) else "unknown"))
-        lines.append([label] + [digits(rank[key]) if isinstance(rank.get(key), float) else str(rank.get(key, "–")) for key in keys])
+        rows.append((label, share if is_number(share) else 0.0,
+                     f"{100 * share:.0f} % busy" if is_number(share) else "unknown"))
+        lines.append([label] + [digits(rank[key]) if isinstance(rank.get(key), float)
+                                else str(rank.get(key, "–")) for key in keys])
     busiest = max(rows, key=lambda row: row[1])
-    words = f"Rank {busiest[0]} sets the pace: it computes {100 * busiest[1]:.0f} % of the time. The others wait for it the rest of the time."
-    return {"id": "ranks", "title": "Ranks", "blocks": [blocks.text(words), blocks.bars(rows, "Share of the wall time in which a rank computes."),
-                                                        blocks.table(["rank"] + [", ".join(filter(None, naming(key)[:2])) for key in keys], lines)]}
+    words = (f"Rank {busiest[0]} sets the pace: it computes {100 * busiest[1]:.0f} % of the time. The others wait for "
+             f"it the rest of the time.")
+    return {"id": "ranks", "title": "Ranks",
+            "blocks": [blocks.text(words), blocks.bars(rows, "Share of the wall time in which a rank computes."),
+                       blocks.table(["rank"] + [", ".join(filter(None, naming(key)[:2])) for key in keys], lines)]}
 
 
 def provenance(run):
@@ -305,7 +341,8 @@ def provenance(run):
         rows.append(("scenario completed by", str(run.scenario["completed_by"])))
     segments = [s for s in summary.get("segments") or [] if isinstance(s, dict)]
     for segment in segments if len(segments) > 1 else []:
-        rows.append(("segment", f"steps {segment.get('from_step')} to {segment.get('to_step')}, {segment.get('threads')} threads, "
+        rows.append(("segment",
+                     f"steps {segment.get('from_step')} to {segment.get('to_step')}, {segment.get('threads')} threads, "
                      f"{segment.get('wall_s')} s"))
     if not rows:
         raise Missing("there is no summary")
@@ -329,7 +366,8 @@ def fill(page, arrays, run, sections):
     page["badges"] = badges(run)
     sections(page, [
         ("result", lambda: answer(run)),
-        ("curves of the vehicle", lambda: vehicle_series(run, arrays) if (run.directory / "timeseries_vehicle.csv").is_file() else None),
+        ("curves of the vehicle", lambda: vehicle_series(run, arrays)
+         if (run.directory / "timeseries_vehicle.csv").is_file() else None),
         ("events", lambda: happened(run) if run.has_vehicle else None),
         ("curves", lambda: series(run, arrays)),
         ("rut", lambda: rut(run, arrays)),

@@ -26,7 +26,8 @@ def unit_of(key):
     root = read_object(SCHEMA) if SCHEMA.is_file() else {}
     found = resolved(root, root)
     for part in key.split("."):
-        found = resolved((found.get("items") or {}) if part.isdigit() else (found.get("properties") or {}).get(part, {}), root)
+        found = resolved((found.get("items") or {}) if part.isdigit()
+                         else (found.get("properties") or {}).get(part, {}), root)
     return str(found.get("unit", "")).replace("-", "")  # "-": of a number without one
 
 
@@ -35,7 +36,8 @@ def flat(value, schema, root, path):
     schema = resolved(schema, root)
     if isinstance(value, dict) and value and (schema.get("properties") or not path or not root):
         for key, inner in value.items():
-            yield from flat(inner, (schema.get("properties") or {}).get(key, {}), root, f"{path}.{key}" if path else key)
+            yield from flat(inner, (schema.get("properties") or {}).get(key, {}),
+                            root, f"{path}.{key}" if path else key)
     elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value) and len(value) <= 64:
         for k, item in enumerate(value):
             yield from flat(item, schema.get("items", {}), root, f"{path}.{k}")
@@ -51,7 +53,9 @@ def shown(value):
 
 
 def is_default(value, schema):
-    return "default" in schema and value == schema["default"] and isinstance(value, bool) == isinstance(schema["default"], bool)
+    return "default" in schema and value == schema["default"] and isinstance(value,
+                                                                             bool) == isinstance(schema["default"],
+                                                                                                 bool)
 
 
 def section(scenario):
@@ -70,6 +74,8 @@ def section(scenario):
     words = []
     if isinstance(scenario.get("description"), str):
         words.append(blocks.text(scenario["description"]))
-    words.append(blocks.table(["key", "value", "unit", "default", "meaning"], rows, marked=marked, only_marked="only keys that differ from the default",
-                              note="Highlighted keys differ from the default. Derived values, such as a start position, also differ."))
+    words.append(blocks.table(["key", "value", "unit", "default", "meaning"],
+                              rows, marked=marked, only_marked="only keys that differ from the default",
+                              note="Highlighted keys differ from the default. Derived values, such as a start "
+                                   "position, also differ."))
     return {"id": "scenario", "title": "Scenario", "blocks": words}

@@ -11,10 +11,12 @@ from . import blocks
 from .names import naming
 from .scenario import unit_of
 
-PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"), ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
+PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"),
+          ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
           ("tractive_efficiency", None, "Tractive efficiency"))
 MOST_ROWS = 2000
-WALL_TIMES = {"wall_s"}  # sweep.csv has them; without them a study that was interrupted has the page of one that was not
+# sweep.csv has them; without them a study that was interrupted has the page of one that was not
+WALL_TIMES = {"wall_s"}
 
 
 # What the parts of a result with an error are.
@@ -22,7 +24,8 @@ PARTS = {".mean": "", ".sem": " standard error", ".steady": " steady", ".n_eff":
 
 
 def named(key, keys=()):
-    """(words, unit, factor) of a column: of a key of the scenario such as `rig.slip`, or of a result such as `drawbar_pull_N.mean`."""
+    """(words, unit, factor) of a column: of a key of the scenario such as `rig.slip`, or of a result such as
+    `drawbar_pull_N.mean`."""
     if key in keys:
         return key, unit_of(key), 1.0
     part = next((part for part in PARTS if key.endswith(part)), "")
@@ -71,7 +74,8 @@ def curve(sweep, arrays):
     if description := sweep.values.get("description"):
         made.insert(0, blocks.text(str(description), "lead"))
     if unsteady:
-        made.append(blocks.text(f"{unsteady} of {points} points include a run whose pull is not steady: such a point is not to be quoted.", "warn"))
+        made.append(blocks.text(f"{unsteady} of {points} points include a run whose pull is not steady: such a point "
+                                f"is not to be quoted.", "warn"))
     return {"id": "curve", "title": "Result", "blocks": made}
 
 
@@ -87,9 +91,12 @@ def passes(sweep, arrays):
                 lines.append(line(arrays, label or title.lower(), x, y, half, factor))
         if lines:
             items.append(blocks.chart(title, "pass", "", unit, lines))
-    made = [blocks.charts(items, f"Whiskers: 95 % interval of the mean over {over}." if over else "Whiskers: standard error of each run.")]
+    made = [blocks.charts(items, f"Whiskers: 95 % interval of the mean over {over}."
+                          if over else "Whiskers: standard error of each run.")]
     if unsteady := sum(map(studies.unsteady, sweep.rows)):
-        made.insert(0, blocks.text(f"The pull is not steady in {unsteady} of {len(sweep.rows)} passes: its error is too small there.", "warn"))
+        made.insert(0,
+                    blocks.text(f"The pull is not steady in {unsteady} of {len(sweep.rows)} passes: its error is too "
+                                f"small there.", "warn"))
     return {"id": "passes", "title": "Passes", "blocks": made}
 
 
@@ -100,18 +107,25 @@ def beds(sweep, arrays):
     at = np.array([studies.number(row["folder"].removeprefix("seed")) for row in sweep.rows])
     items, cards = [], []
     for key, sem, what, unit, factor in studies.OF_BEDS:
-        values, errors = (factor * np.array([studies.number(row.get(name)) for row in sweep.rows]) for name in (key, sem))
+        values, errors = (factor * np.array([studies.number(row.get(name)) for row in sweep.rows])
+                          for name in (key, sem))
         known = values[np.isfinite(values)]
         if not len(known):
             continue
         mean, half = studies.mean_and_interval(known)
-        cards.append(blocks.card(what, with_error(mean, half), unit, "95 %", explanation=f"mean over {len(known)} beds"))
-        items.append(blocks.chart(what.capitalize(), "bed", "", unit, [line(arrays, "a bed, its own standard error", at, values, errors, 1.0)],
-                                  levels=[{"y": mean, "half": half if math.isfinite(half) else None, "label": "mean over beds, 95 %"}]))
-    words = blocks.text("The interval covers the scatter between beds: another set of beds would give a mean within it in 95 of 100 cases.", "note")
+        cards.append(blocks.card(what, with_error(mean, half), unit, "95 %",
+                                 explanation=f"mean over {len(known)} beds"))
+        items.append(blocks.chart(what.capitalize(), "bed", "", unit,
+                                  [line(arrays, "a bed, its own standard error", at, values, errors, 1.0)],
+                                  levels=[{"y": mean, "half": half if math.isfinite(half) else None,
+                                           "label": "mean over beds, 95 %"}]))
+    words = blocks.text("The interval covers the scatter between beds: another set of beds would give a mean within it "
+                        "in 95 of 100 cases.", "note")
     made = [blocks.cards(cards), words, blocks.charts(items)]
     if unsteady := sum(map(studies.unsteady, sweep.rows)):
-        made.insert(0, blocks.text(f"The pull is not steady on {unsteady} of {len(sweep.rows)} beds: the means are over these beds too.", "warn"))
+        made.insert(0,
+                    blocks.text(f"The pull is not steady on {unsteady} of {len(sweep.rows)} beds: the means are over "
+                                f"these beds too.", "warn"))
     return {"id": "beds", "title": "Result", "blocks": made}
 
 
@@ -122,11 +136,13 @@ def rows_of(sweep):
         raise Missing("no run is done")
     columns = [name for name in rows[0] if name and name not in WALL_TIMES and any(row.get(name) for row in rows)]
     named_columns = [named(name, studies.keys_of(sweep)) for name in columns]
-    cells = [[cell(row.get(name), factor) for name, (_, _, factor) in zip(columns, named_columns)] for row in rows[:MOST_ROWS]]
+    cells = [[cell(row.get(name), factor) for name, (_, _, factor) in zip(columns, named_columns)]
+             for row in rows[:MOST_ROWS]]
     failed = [k for k, row in enumerate(rows[:MOST_ROWS]) if row["state"] == "failed"]
-    return {"id": "runs", "title": "Runs", "blocks": [blocks.table([", ".join(filter(None, (words, unit.replace(" ", "\u00a0"))))
-                                                                    for words, unit, _ in named_columns], cells, marked=failed,
-                                                                   note="Highlighted: failed." if failed else "")]}
+    return {"id": "runs", "title": "Runs",
+            "blocks": [blocks.table([", ".join(filter(None, (words, unit.replace(" ", "\u00a0"))))
+                                     for words, unit, _ in named_columns], cells, marked=failed,
+                                    note="Highlighted: failed." if failed else "")]}
 
 
 def cell(text, factor=1.0):

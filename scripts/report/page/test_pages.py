@@ -10,8 +10,10 @@ from .names import is_number, naming
 
 # Soil values: key, words, unit, factor.
 SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 1e-3), ("n", "sinkage exponent n", "", 1.0),
-        ("cohesion_Pa", "cohesion c", "kPa", 1e-3), ("friction_angle_deg", "friction angle φ", "°", 1.0), ("janosi_K_m", "shear modulus K", "mm", 1e3),
-        ("final_cohesion_Pa", "cohesion at the end", "kPa", 1e-3), ("final_friction_angle_deg", "friction angle at the end", "°", 1.0),
+        ("cohesion_Pa", "cohesion c", "kPa", 1e-3), ("friction_angle_deg", "friction angle φ", "°", 1.0),
+        ("janosi_K_m", "shear modulus K", "mm", 1e3),
+        ("final_cohesion_Pa", "cohesion at the end", "kPa", 1e-3),
+        ("final_friction_angle_deg", "friction angle at the end", "°", 1.0),
         ("cone_index_Pa", "cone index", "kPa", 1e-3), ("repose_angle_deg", "angle of repose", "°", 1.0),
         ("repose_angle_without_cohesion_deg", "angle of repose without cohesion", "°", 1.0))
 # Tables of soil tests: file, title, keys that distinguish its runs, x, y.
@@ -51,7 +53,7 @@ def soil_curves(soil, arrays):
         (x_words, x_unit, x_factor), (words, unit, factor) = naming(x), naming(y)
         lines = []
         for mark, which in runs(table, *keys):
-            label = ", ".join(f"{naming(key)[0].replace('nominal ', '')} {naming(key)[2] * value:g} {naming(key)[1]}".strip() for key, value in zip(keys, mark))
+            label = (", ".join(f"{naming(key)[0].replace('nominal ', '')} {naming(key)[2] * value:g} {naming(key)[1]}".strip() for key, value in zip(keys, mark)))
             lines.append(line(arrays, label, x_factor * table[x][which], factor * table[y][which]))
         items.append({**blocks.chart(f"{title}: {words}", x_words, x_unit, unit, lines[:40]), "wide": True})
     if not items:
@@ -80,9 +82,11 @@ def soil(page, arrays, run, sections):
 def stability(values):
     """(sentence, tone) on the equilibria of a press; older results say nothing of the way."""
     if not values["statically_stable"]:
-        return "The tire wrinkles under its pressure before it is pressed: its equilibria need not be the only ones.", "warn"
+        return ("The tire wrinkles under its pressure before it is pressed: its equilibria need not be the only ones.",
+                "warn")
     if values.get("stable_while_pressed") is False:
-        return "The inflated tire is stable, and buckles while it is pressed: its equilibria need not be the only ones.", "warn"
+        return ("The inflated tire is stable, and buckles while it is pressed: its equilibria need not be the only "
+                "ones.", "warn")
     return ("The tire is statically stable along the whole curve." if values.get("stable_while_pressed") else
             "The inflated tire is statically stable before it is pressed."), "good"
 
@@ -99,7 +103,9 @@ def press_answer(run):
             items.append(blocks.card(f"footprint {naming(key)[0]}", value, unit))
     made = [blocks.cards(items)]
     if is_number(values.get("deflection_m")) and is_number(values.get("load_N")):
-        made.insert(0, blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by {1e3 * values['deflection_m']:.4g} mm.", "lead"))
+        made.insert(0,
+                    blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by "
+                                f"{1e3 * values['deflection_m']:.4g} mm.", "lead"))
     if isinstance(values.get("statically_stable"), bool):
         made.append(blocks.text(*stability(values)))
     return {"id": "answer", "title": "Result", "blocks": made}
@@ -113,7 +119,8 @@ def press_curves(run, arrays):
     for name, which, dash in (("loading", ~back, None), ("unloading", back, [6, 6])):
         if which.any():
             rising = order[which[order]]
-            lines.append({**line(arrays, name, 1e3 * table["deflection_m"][rising], 1e-3 * table["force_N"][rising], "points"), "dash": dash})
+            lines.append({**line(arrays, name, 1e3 * table["deflection_m"][rising],
+                                 1e-3 * table["force_N"][rising], "points"), "dash": dash})
     return {"id": "series", "title": "Load and deflection",
             "blocks": [blocks.charts([{**blocks.chart("Force", "deflection", "mm", "kN", lines), "wide": True}])]}
 
@@ -125,19 +132,23 @@ def footprint(run, arrays):
             "type": "scatter", "x": arrays.add(1e3 * table["x_m"]), "y": arrays.add(1e3 * table["y_m"]),
             "values": arrays.add(1e-3 * table["pressure_Pa"]), "label": "contact pressure", "unit": "kPa"}]}
     lines = [line(arrays, "pressure along the centre line", 1e3 * table["x_m"], 1e-3 * table["pressure_Pa"], "points")]
-    return {"id": "footprint", "title": "Footprint", "blocks": [blocks.charts([{**blocks.chart("Pressure", "along", "mm", "kPa", lines), "wide": True}])]}
+    return {"id": "footprint", "title": "Footprint",
+            "blocks": [blocks.charts([{**blocks.chart("Pressure", "along", "mm", "kPa", lines), "wide": True}])]}
 
 
 def flat(values, **groups):
     """The values with those of nested groups beside them, each group's words before their keys."""
-    return {**values, **{f"{words} {key}": value for group, words in groups.items() for key, value in (values.get(group) or {}).items()}}
+    return {**values, **{f"{words} {key}": value for group, words in groups.items() for key,
+                         value in (values.get(group) or {}).items()}}
 
 
 def press(page, arrays, run, sections):
-    page["title"] = f"{run.values.get('scenario', '')} · {run.values.get('tire', '')} on a {run.values.get('obstacle', '')}"
+    page["title"] = (f"{run.values.get('scenario', '')} · {run.values.get('tire', '')} on a "
+                     f"{run.values.get('obstacle', '')}")
     sections(page, [("result", lambda: press_answer(run)), ("load and deflection", lambda: press_curves(run, arrays)),
                     ("footprint", lambda: footprint(run, arrays)), ("scenario", lambda: kept_scenario(run.directory)),
-                    ("all values", lambda: provenance(flat(run.values, footprint="footprint", sticking_stiffness="sticking stiffness")))])
+                    ("all values", lambda: provenance(flat(run.values, footprint="footprint",
+                                                           sticking_stiffness="sticking stiffness")))])
 
 
 def mode_frequencies(run, arrays):
@@ -148,13 +159,15 @@ def mode_frequencies(run, arrays):
         lines.append(line(arrays, f"frequency {number}", np.array(orders, dtype=float),
                           np.array([found[order, number] for order in orders]), "points"))
     return {"id": "series", "title": "Natural frequencies",
-            "blocks": [blocks.charts([{**blocks.chart("Frequency", "circumferential order", "", "Hz", lines), "wide": True}])]}
+            "blocks": [blocks.charts([{**blocks.chart("Frequency", "circumferential order", "", "Hz", lines),
+                                       "wide": True}])]}
 
 
 def modes(page, arrays, run, sections):
     page["title"] = f"{run.values.get('tire', '')} · natural frequencies on a rim at rest"
     sections(page, [("frequencies", lambda: mode_frequencies(run, arrays)),
-                    ("all values", lambda: provenance({key: value for key, value in run.values.items() if key != "modes"}))])
+                    ("all values",
+                     lambda: provenance({key: value for key, value in run.values.items() if key != "modes"}))])
 
 
 def motion(run, arrays, name):
@@ -170,14 +183,18 @@ def motion(run, arrays, name):
         if column in ("motion", "wheel", against) or not column:
             continue
         words, unit, factor = naming(column)
-        lines = [line(arrays, wheel, x_factor * places[wheel], factor * values) for wheel, values in run.curves(name, column) if np.isfinite(values).any()]
-        if lines and any(np.ptp(values[np.isfinite(values)]) > 0 for _, values in run.curves(name, column) if np.isfinite(values).any()):
+        lines = [line(arrays, wheel, x_factor * places[wheel], factor * values) for wheel,
+                 values in run.curves(name, column) if np.isfinite(values).any()]
+        if lines and any(np.ptp(values[np.isfinite(values)]) > 0 for _,
+                         values in run.curves(name, column) if np.isfinite(values).any()):
             items.append(blocks.chart(words.capitalize(), x_words, x_unit, unit, lines))
-    return {"id": name, "title": {"parallel": "Both wheels lifted alike", "opposite": "One wheel lifted, the other lowered",
+    return {"id": name, "title": {"parallel": "Both wheels lifted alike",
+                                  "opposite": "One wheel lifted, the other lowered",
                                   "steering": "Steered"}[name], "blocks": [blocks.charts(items)]}
 
 
 def kinematics(page, arrays, run, sections):
     page["title"] = f"{run.values.get('vehicle', '')} · suspensions"
-    sections(page, [(name, lambda name=name: motion(run, arrays, name)) for name in ("parallel", "opposite", "steering") if name in run.motions]
+    sections(page, [(name, lambda name=name: motion(run, arrays, name))
+                    for name in ("parallel", "opposite", "steering") if name in run.motions]
              + [("all values", lambda: provenance(run.values))])

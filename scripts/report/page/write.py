@@ -14,7 +14,8 @@ from .playback import playback
 NAME = "report.html"
 LARGEST = 14.6e6  # bytes of a page
 BUNDLE = pathlib.Path(__file__).resolve().parents[1] / "bundle"
-PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError, TypeError, ValueError, RuntimeError, OSError, csv.Error, Missing, Damaged)
+PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError,
+            TypeError, ValueError, RuntimeError, OSError, csv.Error, Missing, Damaged)
 
 HEAD = """<!DOCTYPE html>
 <html lang="en">
@@ -59,10 +60,12 @@ def sections(page, makers):
 
 def html(page, arrays, blobs):
     title = printable(page["title"]).replace("&", "&amp;").replace("<", "&lt;")
-    parts = [HEAD, f"<title>{title}</title>\n<style>\n", (BUNDLE / "report.css").read_text(encoding="utf-8"), "</style>\n</head>\n<body>\n",
+    parts = [HEAD, f"<title>{title}</title>\n<style>\n", (BUNDLE / "report.css").read_text(encoding="utf-8"),
+             "</style>\n</head>\n<body>\n",
              "<noscript>This page needs JavaScript.</noscript>\n<main id=\"page\"></main>\n"]
     page["arrays"] = arrays.places
-    parts.append(f'<script type="application/json" id="document">{inert(json.dumps(finite(page), ensure_ascii=False))}</script>\n')
+    parts.append(f'<script type="application/json" '
+                 f'id="document">{inert(json.dumps(finite(page), ensure_ascii=False))}</script>\n')
     for name, data in {"numbers": arrays.base64(), **blobs}.items():
         parts.append(f'<script type="text/plain" id="{name}">{data}</script>\n')
     parts += ["<script>\n", (BUNDLE / "report.js").read_text(encoding="utf-8"), "</script>\n</body>\n</html>\n"]
@@ -93,7 +96,8 @@ def compare(directories, folder, may_write):
             print(f"furrow: error: {directory}: {printable(error or repr(error))}", file=sys.stderr)
             return 5
         if not runs[-1].scenario or not run_page.wheel_tables(runs[-1]):
-            print(f"furrow: error: {directory}: holds no results of a run, expected scenario.json and a table of a wheel", file=sys.stderr)
+            print(f"furrow: error: {directory}: holds no results of a run, expected scenario.json and a table of a "
+                  f"wheel", file=sys.stderr)
             return 5
     if why := why_no_folder(folder):
         print(f"furrow: error: {printable(folder)}: {why}", file=sys.stderr)

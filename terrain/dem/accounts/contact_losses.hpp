@@ -118,8 +118,7 @@ inline SpringLosses<T> spring_losses(const SpringStep<T>& at, S dt) {
   out.stored = half * per_stiffness * dot(spring, spring);
   out.slid = bears ? (slides ? taken - dt * dot(force, at.rate) : zero) : zero;
   out.damped = slides ? zero : -(dt * dot(damper, at.rate));
-  out.opened =
-      held * (at.root / larger(at.root_before, tiny) - unloading * unloading) + (bears ? zero : taken);
+  out.opened = held * (at.root / larger(at.root_before, tiny) - unloading * unloading) + (bears ? zero : taken);
   return out;
 }
 
@@ -184,8 +183,8 @@ requires(!Law::kHistory) inline ContactSampleOf<T> contact_sample(const Coeffici
 }
 
 /// What the tangential and rolling springs of a contact of law mindlin hold when `root_overlap` is √δ, J.
-inline double held_by_springs(const ContactCoefficients& c, const Triple<double>& tangential,
-                              double root_overlap, const Triple<double>& rolling) {
+inline double held_by_springs(const ContactCoefficients& c, const Triple<double>& tangential, double root_overlap,
+                              const Triple<double>& rolling) {
   if (!(root_overlap > 0.0) || !(c.shear_stiffness > 0.0)) return 0.0;
   const double k = c.shear_stiffness * root_overlap, r2 = c.rolling_radius * c.rolling_radius;
   double held = 0.0;
@@ -197,8 +196,7 @@ inline double held_by_springs(const ContactCoefficients& c, const Triple<double>
 /// contact_sample() out of line, so that the code of the law beside it, and with it every bit of the motion, is the
 /// same whether samples are taken or not.
 template <class Law, bool kRolling>
-[[gnu::noinline]] ContactSample sample_of(const ContactCoefficients& c, double dt,
-                                          const ContactMotion<double>& at,
+[[gnu::noinline]] ContactSample sample_of(const ContactCoefficients& c, double dt, const ContactMotion<double>& at,
                                           const ContactHistory<double>& history) {
   return contact_sample<Law, kRolling>(c, dt, at, history);
 }

@@ -26,9 +26,7 @@ Stored in_pairs(const Grains& grains, const Strips& strips, int k, const Contact
                 double radius) {
   const Strip& strip = strips[k];
   const int n = strip.grains(), next = strips.next(k);
-  const auto grain = [&](int place) {
-    return place < n ? strip.first + place : strips[next].first + place - n;
-  };
+  const auto grain = [&](int place) { return place < n ? strip.first + place : strips[next].first + place - n; };
   Stored sum;
   for (int p = 0; p < strip.pairs; ++p) {
     if (!(strip.touching[p / kFloatLanes] >> p % kFloatLanes & 1)) continue;

@@ -11,8 +11,7 @@
 namespace furrow::terrain::dem {
 
 /// Of grains with radii r_i, r_j; `radius`: for which the coefficients are, m.
-inline ContactCoefficients pair_coefficients(const ContactCoefficients& c, double radius, double r_i,
-                                             double r_j) {
+inline ContactCoefficients pair_coefficients(const ContactCoefficients& c, double radius, double r_i, double r_j) {
   if (r_i == radius && r_j == radius) return c;
   return scaled(c, pair_scale(r_i / radius, r_j / radius));
 }

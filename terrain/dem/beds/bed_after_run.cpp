@@ -31,8 +31,8 @@ Archive grains_of(const Archive& state) {
 
 }  // namespace
 
-Archive bed_after_run(const Archive& state, const DemOptions& options, double rest,
-                      const ProgressCall& progress, RestResult& result) {
+Archive bed_after_run(const Archive& state, const DemOptions& options, double rest, const ProgressCall& progress,
+                      RestResult& result) {
   FURROW_ASSERT(rest >= 0.0 && options.step > 0.0, rest, options.step);
   SolverParams params = solver_params(options);
   params.threads = std::max(1, options.threads);
@@ -50,8 +50,7 @@ Archive bed_after_run(const Archive& state, const DemOptions& options, double re
     if (n == resting) solver.set_drag(kRestDrag);
     const bool check = (n + 1) % kSettleCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
-      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
-                          " was lost while the bed lay");
+      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) + " was lost while the bed lay");
     if (!check) continue;
     const Accounts& a = solver.accounts();
     result.time = dt * static_cast<double>(n + 1);

@@ -20,7 +20,7 @@ struct RestResult {
 /// @returns a bed as prepare_bed reads it
 /// @throws Error(physics) when a grain is lost, Error(io) when the state is of another kind
 /// @pre rest ≥ 0, options.step > 0
-Archive bed_after_run(const Archive& state, const DemOptions& options, double rest,
-                      const ProgressCall& progress, RestResult& result);
+Archive bed_after_run(const Archive& state, const DemOptions& options, double rest, const ProgressCall& progress,
+                      RestResult& result);
 
 }  // namespace furrow::terrain::dem

@@ -19,8 +19,8 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 5;        // raise when the bits of a bed or its digest may change
-constexpr std::int64_t kOldestBedFormat = 4;  // that can be read
+constexpr std::int64_t kBedFormat = 5;         // raise when the bits of a bed or its digest may change
+constexpr std::int64_t kOldestBedFormat = 4;   // that can be read
 constexpr const char* kDigest = "bed/digest";  // in files of the cache alone
 
 constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, kOldestBedFormat, ""};

@@ -13,8 +13,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kPressSpeed =
-    1.0;  // m/s: the load grows over the time that this speed takes for the bed's depth
+constexpr double kPressSpeed = 1.0;     // m/s: the load grows over the time that this speed takes for the bed's depth
 constexpr double kMaxHold = 8.0;        // of that time
 constexpr double kLidAtRest = 1e-3;     // m/s: a slower lid counts as at rest
 constexpr double kSolidFraction = 0.5;  // of a loose bed, for the lid's mass
@@ -53,15 +52,13 @@ std::vector<Quad> positions_by_id(const GrainSolver& solver) {
   return positions;
 }
 
-std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options,
-                                      const ProgressCall& progress) {
+std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress) {
   FURROW_ASSERT(options.compaction_pressure > 0.0, options.compaction_pressure);
   FURROW_ASSERT(solver.grains().count > 0, solver.grains().count);
   const Bin& bin = solver.params().bin;
   const double dt = settle_step(options), depth = top_of(solver), area = bin.length * bin.width;
   const double load = options.compaction_pressure * area;
-  LoadedLid body(area, options.compaction_pressure, kSolidFraction * options.density, depth,
-                 grain_modulus(options));
+  LoadedLid body(area, options.compaction_pressure, kSolidFraction * options.density, depth, grain_modulus(options));
   Lid lid = lid_at(bin, depth);
   solver.set_coefficients(settle_coefficients(options));
   ContactCoefficients smooth = solver.coefficients().floor;

@@ -12,8 +12,7 @@ namespace furrow::terrain::dem {
 /// `compaction_pressure` × area, stays until the lid rests, and goes again. Side walls are without friction as while
 /// settling, so that the pressure reaches the floor. Returns the positions, by grain id; contacts are to be settled
 /// again. @throws Error(physics) when a grain is lost. @pre compaction_pressure > 0, some grains
-std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options,
-                                      const ProgressCall& progress);
+std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress);
 
 /// Positions by grain id.
 std::vector<Quad> positions_by_id(const GrainSolver& solver);

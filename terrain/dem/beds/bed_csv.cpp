@@ -15,9 +15,9 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr std::size_t kMaxLine = 1024;  // bytes
+constexpr std::size_t kMaxLine = 1024;     // bytes
 constexpr std::size_t kCheckEvery = 1024;  // lines
-constexpr std::size_t kShown = 30;      // of a line in messages: files that are no beds are nobody's to print
+constexpr std::size_t kShown = 30;         // of a line in messages: files that are no beds are nobody's to print
 
 /// The lines of a file, none of them longer than kMaxLine.
 class Lines {
@@ -38,9 +38,7 @@ class Lines {
     if (std::strlen(line_.data()) != length) throw wrong("holds a zero byte, expected a CSV file of positions");
     return line_.data();
   }
-  Error wrong(const std::string& what) const {
-    return input_error(name_, "line " + std::to_string(row_), what);
-  }
+  Error wrong(const std::string& what) const { return input_error(name_, "line " + std::to_string(row_), what); }
 
  private:
   std::string name_;
@@ -73,8 +71,7 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const Pr
   std::erase_if(header, [](char c) { return c == '\r' || c == ' '; });
   const bool radii = header == "x_m,y_m,z_m,radius_m";
   if (header != "x_m,y_m,z_m" && !radii)
-    throw lines.wrong("'" + excerpt(header, kShown) +
-                      "', expected the header x_m,y_m,z_m or x_m,y_m,z_m,radius_m");
+    throw lines.wrong("'" + excerpt(header, kShown) + "', expected the header x_m,y_m,z_m or x_m,y_m,z_m,radius_m");
   std::vector<Quad> positions;
   PacedCall tell(progress);
   for (std::size_t row = 2; const char* const line = lines.next(); ++row) {
@@ -95,8 +92,8 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const Pr
 void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y) {
   std::ofstream out(file);
   out.precision(17);
-  const bool radii = std::any_of(positions.begin(), positions.end(),
-                                 [&](const Quad& p) { return p.w != positions.front().w; });
+  const bool radii =
+      std::any_of(positions.begin(), positions.end(), [&](const Quad& p) { return p.w != positions.front().w; });
   out << "x_m,y_m,z_m" << (radii ? ",radius_m\n" : "\n");
   for (const Quad& p : positions) {
     out << p.x << ',' << p.y + y << ',' << p.z;

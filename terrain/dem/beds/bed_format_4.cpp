@@ -91,16 +91,15 @@ void name_walls(const Archive& bed, Archive& named) {
 }  // namespace
 
 Archive from_format_4(const Archive& bed) {
-  static const std::set<std::string> kRenamed{"accounts",      "strips/sizes",    "strips/values",
-                                              "walls/grain",   "walls/wall",      "walls/history",
-                                              "surfaces/keys", "surfaces/history"};
+  static const std::set<std::string> kRenamed{"accounts",   "strips/sizes",  "strips/values", "walls/grain",
+                                              "walls/wall", "walls/history", "surfaces/keys", "surfaces/history"};
   Archive named;
   for (const auto& [name, array] : bed.arrays())
     if (!kRenamed.contains(name)) named.put_array(name, array);
   save_fields(named, "accounts", accounts_of(bed));
   name_strips(bed, named);
   name_walls(bed, named);
-  SurfaceContacts({}, 0.0, false).save(named);  // a bed bears none
+  SurfaceContacts({}, 0.0, false).save(named);         // a bed bears none
   named.put("samples/strips", std::vector<double>());  // none taken: the first step does
   named.put("samples/until", std::int64_t{0});
   return named;

@@ -23,11 +23,10 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kMinDistance =
-    1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
-constexpr double kSingle = 1e-7;  // relative round-off of a float
-constexpr double kMinWall = 0.8;  // radii between a centre and a wall
-constexpr double kMaxFall = 100.0;  // largest radii between a grain's centre and that of the next one below it
+constexpr double kMinDistance = 1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
+constexpr double kSingle = 1e-7;      // relative round-off of a float
+constexpr double kMinWall = 0.8;      // radii between a centre and a wall
+constexpr double kMaxFall = 100.0;    // largest radii between a grain's centre and that of the next one below it
 constexpr std::size_t kMaxGrains = 500'000'000;
 
 Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
@@ -98,8 +97,7 @@ const Generator& generator_of(const DemOptions& o) {
     if (o.bed_generator == g.name) return g;
     names += (names.empty() ? "" : " or ") + std::string(g.name);
   }
-  throw input_error(o.scenario, "terrain.bed_generator",
-                    "'" + o.bed_generator + "' is unknown, expected " + names);
+  throw input_error(o.scenario, "terrain.bed_generator", "'" + o.bed_generator + "' is unknown, expected " + names);
 }
 
 std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
@@ -112,9 +110,8 @@ struct Hanging {
 std::optional<Hanging> find_hanging(const std::vector<Quad>& grains, double most) {
   std::vector<std::size_t> order(grains.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(grains[a].z, a) < std::pair(grains[b].z, b);
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return std::pair(grains[a].z, a) < std::pair(grains[b].z, b); });
   double below = 0.0;
   for (const std::size_t g : order) {
     if (grains[g].z - below > most) return Hanging{g, grains[g].z - below};
@@ -136,8 +133,7 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
   const bool hdf5 = is_hdf5(file);
   const Bin bin = bin_of(o);
   const auto wrong = [&](std::size_t g, const std::string& what) {
-    return input_error(file.string(), hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2),
-                       what);
+    return input_error(file.string(), hdf5 ? fmt::format("grain {}", g) : fmt::format("line {}", g + 2), what);
   };
   if (grains.size() > kMaxGrains)
     throw input_error(file.string(), "",
@@ -154,27 +150,24 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
                                  radius, smallest_radius(o), largest_radius(o)));
     const double least = kMinWall * radius * (1.0 - 1e-9);
     const auto& p = grains[g];
-    if ((o.periodic_x && !(p.x >= 0.0 && p.x <= o.length)) ||
-        (o.periodic_y() && !(std::abs(p.y) <= 0.5 * o.width)))
-      throw wrong(g, fmt::format("the grain stands at {}, expected x 0 to {:g} m, y {:g} to {:g} m",
-                                 place_text(p), o.length, -0.5 * o.width, 0.5 * o.width));
+    if ((o.periodic_x && !(p.x >= 0.0 && p.x <= o.length)) || (o.periodic_y() && !(std::abs(p.y) <= 0.5 * o.width)))
+      throw wrong(g, fmt::format("the grain stands at {}, expected x 0 to {:g} m, y {:g} to {:g} m", place_text(p),
+                                 o.length, -0.5 * o.width, 0.5 * o.width));
     for (int wall = 0; wall < kWalls; ++wall)
       if (bin.has_wall(wall) && !(bin.distance(wall, grains[g]) >= least))
         throw wrong(
-            g, fmt::format(
-                   "the grain stands at {}, expected a centre inside the bin, x {:g} to {:g} m, y {:g} to "
-                   "{:g} m, z from {:g} m",
-                   place_text(grains[g]), least, o.length - least, least - 0.5 * o.width,
-                   0.5 * o.width - least, least));
+            g, fmt::format("the grain stands at {}, expected a centre inside the bin, x {:g} to {:g} m, y {:g} to "
+                           "{:g} m, z from {:g} m",
+                           place_text(grains[g]), least, o.length - least, least - 0.5 * o.width, 0.5 * o.width - least,
+                           least));
   }
   const double fall = kMaxFall * largest_radius(o);
   if (const std::optional<Hanging> hanging = find_hanging(grains, fall))
     throw wrong(
         hanging->grain,
-        fmt::format(
-            "the grain stands at {}, {:.4g} m above all that is below it, expected at most {:g} m, {:g} "
-            "radii: it would fall too fast to be at rest as a bed",
-            place_text(grains[hanging->grain]), hanging->height, fall, kMaxFall));
+        fmt::format("the grain stands at {}, {:.4g} m above all that is below it, expected at most {:g} m, {:g} "
+                    "radii: it would fall too fast to be at rest as a bed",
+                    place_text(grains[hanging->grain]), hanging->height, fall, kMaxFall));
   const double reach = kMinDistance * largest_radius(o);
   const auto check_pair = [&](std::size_t a, std::size_t b, double distance) {
     const double mean = 0.5 * (grains[a].w + grains[b].w), least = kMinDistance * mean;
@@ -188,8 +181,7 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
   for_close_pairs(grains, bin, reach, check_pair, progress);
 }
 
-std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted,
-                                bool around) {
+std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted, bool around) {
   const Lattice lattice = lattice_of(bin, radius, around);
   std::mt19937_64 bits(seed);
   const auto jitter = [&] {
@@ -220,8 +212,7 @@ std::vector<Quad> starting_positions(const DemOptions& options, const ProgressCa
 }
 
 double expected_grains(const DemOptions& options) {
-  if (!options.bed.empty() && is_positions_file(options.bed))
-    return static_cast<double>(positions_of(options).size());
+  if (!options.bed.empty() && is_positions_file(options.bed)) return static_cast<double>(positions_of(options).size());
   if (is_tiled(options)) return expected_tiled_grains(options, generator_of(options).count(piece_of(options)));
   return generator_of(options).count(options);
 }

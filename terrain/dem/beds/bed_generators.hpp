@@ -18,8 +18,7 @@ inline constexpr double kLatticeJitter = 0.14;
 /// One layer of a square lattice, each point moved by up to ±kLatticeJitter r along x and y; every other layer is
 /// shifted by half a spacing along both. z = 0. `around`: continues across periodic sides of
 /// the bin, without a gap at them.
-std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted,
-                                bool around = false);
+std::vector<Quad> lattice_layer(const Bin& bin, double radius, std::uint64_t seed, bool shifted, bool around = false);
 
 /// Grains before they settle: layers by `bed_generator`, or those of the CSV file `bed`.
 /// @throws Error(bad_input) listing the valid generators, or what is wrong with the file and in which line.

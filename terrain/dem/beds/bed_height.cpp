@@ -10,16 +10,14 @@ namespace furrow::terrain::dem {
 
 HeightField bed_height_field(const Grains& grains, const Bin& bin, double cell) {
   FURROW_ASSERT(cell > 0.0 && bin.length > 0.0 && bin.width > 0.0, cell, bin.length, bin.width);
-  FURROW_ASSERT(grains.position.size() >= static_cast<std::size_t>(grains.count), grains.position.size(),
-                grains.count);
+  FURROW_ASSERT(grains.position.size() >= static_cast<std::size_t>(grains.count), grains.position.size(), grains.count);
   HeightField field;
   field.cell = cell;
   field.nx = std::max(1, static_cast<int>(bin.length / field.cell));
   field.ny = std::max(1, static_cast<int>(bin.width / field.cell));
   field.x0 = 0.5 * field.cell;
   field.y0 = 0.5 * field.cell - 0.5 * bin.width;
-  field.height.assign(static_cast<std::size_t>(field.nx) * field.ny,
-                      std::numeric_limits<double>::quiet_NaN());
+  field.height.assign(static_cast<std::size_t>(field.nx) * field.ny, std::numeric_limits<double>::quiet_NaN());
   for (int g = 0; g < grains.count; ++g) {
     const Quad& p = grains.position[g];
     const int ix = std::clamp(static_cast<int>(p.x / field.cell), 0, field.nx - 1);
@@ -31,8 +29,8 @@ HeightField bed_height_field(const Grains& grains, const Bin& bin, double cell) 
 }
 
 double mean_height(const HeightField& field, double x_min, double x_max, double y_min, double y_max) {
-  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, field.height.size(),
-                field.nx, field.ny);
+  FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, field.height.size(), field.nx,
+                field.ny);
   FURROW_ASSERT(x_min <= x_max && y_min <= y_max, x_min, x_max, y_min, y_max);
   double sum = 0.0;
   int cells = 0;

@@ -13,9 +13,8 @@ namespace {
 
 constexpr const char* kPlacing = "placing the grains";
 constexpr std::size_t kCheckEvery = 1024;  // samples
-constexpr int kTries = 30;  // candidates around a sample before it is retired [Bridson 2007]
-constexpr double kDiskCoverage =
-    0.491;  // share of the area covered by discs of the spacing's diameter, measured
+constexpr int kTries = 30;                 // candidates around a sample before it is retired [Bridson 2007]
+constexpr double kDiskCoverage = 0.491;    // share of the area covered by discs of the spacing's diameter, measured
 
 class Uniform {
  public:
@@ -116,10 +115,9 @@ void sample(const Side& x_side, const Side& y_side, double spacing, std::uint64_
 
 }  // namespace
 
-std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed,
-                                const std::function<void()>& each, bool around) {
-  FURROW_ASSERT(radius > 0.0 && bin.length > 2.0 * radius && bin.width > 2.0 * radius, radius, bin.length,
-                bin.width);
+std::vector<Quad> poisson_layer(const Bin& bin, double radius, std::uint64_t seed, const std::function<void()>& each,
+                                bool around) {
+  FURROW_ASSERT(radius > 0.0 && bin.length > 2.0 * radius && bin.width > 2.0 * radius, radius, bin.length, bin.width);
   const double spacing = kSpacing * radius;
   const double edge_x = around && bin.periodic_x ? 0.0 : radius, edge_y = around && bin.periodic_y ? 0.0 : radius;
   const double cell = spacing / std::numbers::sqrt2;  // at most one sample per cell
@@ -147,8 +145,8 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
     const auto each = [&] {
       if (++samples_made % kCheckEvery == 0) tell(kPlacing, share);
     };
-    std::vector<Quad> samples = poisson_layer(
-        bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer), each, around);
+    std::vector<Quad> samples =
+        poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer), each, around);
     for (Quad& s : samples) s.z = (layer + 0.5) * kSpacing * radius;
     all.insert(all.end(), samples.begin(), samples.end());
   }

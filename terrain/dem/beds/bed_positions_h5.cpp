@@ -28,8 +28,7 @@ std::vector<double> numbers(const Hdf5Reader& file, const std::string& name, hsi
                              : "expected N × 3 numbers, m, as frames/terrain_*.h5 of a run has them");
   const auto values = file.get<double>(name);
   for (std::size_t k = 0; k < values.size(); ++k)
-    if (!std::isfinite(values[k]))
-      throw wrong("grain " + std::to_string(k / columns) + " is not a finite number");
+    if (!std::isfinite(values[k])) throw wrong("grain " + std::to_string(k / columns) + " is not a finite number");
   return values;
 }
 
@@ -54,9 +53,9 @@ std::vector<Quad> read_positions_h5(const std::filesystem::path& file) {
   if (!in.has("radius")) return grains;
   const std::vector<double> radius = numbers(in, "radius", 1, file);
   if (radius.size() != grains.size())
-    throw input_error(file.string(), "dataset 'radius'",
-                      "has " + std::to_string(radius.size()) + " numbers, expected one per grain, " +
-                          std::to_string(grains.size()));
+    throw input_error(
+        file.string(), "dataset 'radius'",
+        "has " + std::to_string(radius.size()) + " numbers, expected one per grain, " + std::to_string(grains.size()));
   for (std::size_t k = 0; k < grains.size(); ++k) grains[k].w = radius[k];
   return grains;
 }

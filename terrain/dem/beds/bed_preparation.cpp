@@ -1,7 +1,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -23,8 +23,7 @@ const char* sides(bool periodic) { return periodic ? "periodic" : "walls"; }
 
 /// A bed from a file must be one of this bin, these grains and this law.
 void check_bed(const Archive& bed, const DemOptions& o) {
-  if (bed.get_int("surfaces/count") != 0)
-    throw io_error(o.bed, "holds a tire besides its grains, expected a bed");
+  if (bed.get_int("surfaces/count") != 0) throw io_error(o.bed, "holds a tire besides its grains, expected a bed");
   const auto& made = bed.get<double>("bed/geometry", 4);
   constexpr const char* kKey[] = {"radius", "density", "length", "width"};
   const std::vector<double> wanted = geometry(o);
@@ -38,14 +37,14 @@ void check_bed(const Archive& bed, const DemOptions& o) {
                       fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
   const bool periodic = bed.has("bed/periodic_sides") && bed.get_int("bed/periodic_sides") != 0;
   if (periodic != o.periodic_y())
-    throw input_error(o.scenario, "terrain.sides",
-                      fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y()), o.bed,
-                                  sides(periodic)));
+    throw input_error(
+        o.scenario, "terrain.sides",
+        fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y()), o.bed, sides(periodic)));
   const auto& law = bed.get<std::uint8_t>("bed/law");
   if (law_from(std::string(law.begin(), law.end())) != law_from(o.law))
-    throw input_error(o.scenario, "terrain.law",
-                      fmt::format("is {} but the bed '{}' was settled with {}", o.law, o.bed,
-                                  std::string(law.begin(), law.end())));
+    throw input_error(
+        o.scenario, "terrain.law",
+        fmt::format("is {} but the bed '{}' was settled with {}", o.law, o.bed, std::string(law.begin(), law.end())));
   if ((o.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() && bed.get_int("count") > 0 &&
       o.law == "mindlin")
     throw input_error(o.scenario, "terrain.rolling_friction",
@@ -106,9 +105,8 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
   solver.place(starting_positions(options, progress));
   result = settle(solver, first, progress);
   if (options.compaction_pressure > 0.0 || first.friction != options.friction) {
-    const std::vector<Quad> positions = options.compaction_pressure > 0.0
-                                            ? compacted_positions(solver, first, progress)
-                                            : positions_by_id(solver);
+    const std::vector<Quad> positions =
+        options.compaction_pressure > 0.0 ? compacted_positions(solver, first, progress) : positions_by_id(solver);
     const SettleResult before = result;
     solver = GrainSolver(settling_params(options));
     solver.place(positions);
@@ -120,8 +118,7 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
 }
 
 /// A cache that cannot be written costs time, not the run.
-bool keep(const std::filesystem::path& file, const DemOptions& options, Archive& bed,
-          const ProgressCall& progress) {
+bool keep(const std::filesystem::path& file, const DemOptions& options, Archive& bed, const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
     keep_bed(file, bed, bed_digest(options), progress);
@@ -142,15 +139,13 @@ DemOptions level(DemOptions o) {
   return o;
 }
 
-bool bed_is_settled_anew(const DemOptions& options) {
-  return options.bed.empty() || is_positions_file(options.bed);
-}
+bool bed_is_settled_anew(const DemOptions& options) { return options.bed.empty() || is_positions_file(options.bed); }
 
 Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const SettleResult& settled) {
   Archive bed;
   solver.save(bed);
-  bed.put("bed/settled", std::vector<double>{settled.settled ? 1.0 : 0.0, settled.force_ratio,
-                                             settled.floor_error, settled.time});
+  bed.put("bed/settled",
+          std::vector<double>{settled.settled ? 1.0 : 0.0, settled.force_ratio, settled.floor_error, settled.time});
   bed.put("bed/geometry", geometry(options));
   bed.put("bed/size_spread", options.size_spread);
   bed.put("bed/periodic_sides", std::int64_t{options.periodic_y()});
@@ -173,10 +168,9 @@ void check_bed_options(const DemOptions& o) {
     throw input_error(o.scenario, "terrain.compaction_pressure",
                       fmt::format("{} is out of range, expected 0 to 1e9 Pa", o.compaction_pressure));
   if (o.compaction_pressure > 0.0 && !bed_is_settled_anew(o))
-    throw input_error(
-        o.scenario, "terrain.compaction_pressure",
-        fmt::format("is {:g} Pa but the bed '{}' is a settled one and taken as it is, expected 0",
-                    o.compaction_pressure, o.bed));
+    throw input_error(o.scenario, "terrain.compaction_pressure",
+                      fmt::format("is {:g} Pa but the bed '{}' is a settled one and taken as it is, expected 0",
+                                  o.compaction_pressure, o.bed));
 }
 
 PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress) {

@@ -40,8 +40,8 @@ SolverCoefficients settle_coefficients(const DemOptions& options) {
   return c;
 }
 
-SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
-                    double most_time, double drag) {
+SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress, double most_time,
+                    double drag) {
   FURROW_ASSERT(most_time > 0.0 && drag >= 0.0, most_time, drag);
   SettleResult result;
   const double dt = settle_step(options);
@@ -59,8 +59,7 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
     tell("settling the bed", share);
     const bool check = ++result.steps % kSettleCheckEvery == 0;
     if (const int lost = solver.step(dt, check); lost >= 0)
-      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) +
-                          " was lost while the bed settled");
+      throw physics_error("grain " + std::to_string(solver.grains().id[lost]) + " was lost while the bed settled");
     if (!check) continue;
     const Accounts& a = solver.accounts();
     result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;

@@ -46,8 +46,7 @@ BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin,
     largest = std::max(largest, p.w);
     bulk += volume_below(p.w, p.z, high) - volume_below(p.w, p.z, low);
     s.top = std::max(s.top, p.z + p.w);
-    for (int wall = 0; wall < kWalls; ++wall)
-      s.wall_contacts += bin.has_wall(wall) && bin.distance(wall, p) < p.w;
+    for (int wall = 0; wall < kWalls; ++wall) s.wall_contacts += bin.has_wall(wall) && bin.distance(wall, p) < p.w;
   }
   const auto count_pair = [&](std::size_t a, std::size_t b, double distance) {
     const double overlap = positions[a].w + positions[b].w - distance;

@@ -12,12 +12,12 @@ namespace furrow::terrain::dem {
 
 struct BedStatistics {
   std::int64_t grains = 0;
-  std::int64_t pairs = 0;          // of grains that touch
-  std::int64_t wall_contacts = 0;  // with walls and floor
-  double coordination = 0.0;       // 2 pairs / grains: touching neighbours of a grain
-  double depth = 0.0;              // mean surface height: mean over cells of 2 r of the highest grain top, m
-  double top = 0.0;                // highest grain top, m
-  double solid_fraction = 0.0;     // of the box up to `depth`, doubly covered volume counted once
+  std::int64_t pairs = 0;            // of grains that touch
+  std::int64_t wall_contacts = 0;    // with walls and floor
+  double coordination = 0.0;         // 2 pairs / grains: touching neighbours of a grain
+  double depth = 0.0;                // mean surface height: mean over cells of 2 r of the highest grain top, m
+  double top = 0.0;                  // highest grain top, m
+  double solid_fraction = 0.0;       // of the box up to `depth`, doubly covered volume counted once
   double solid_fraction_bulk = 0.0;  // of its middle half, depth/4 to 3 depth/4, the same way
   double grain_volume = 0.0;         // of all grains, m³
   double max_overlap = 0.0;          // of two grains, m

@@ -65,8 +65,7 @@ Column column_of(const std::vector<Quad>& piece, const DemOptions& o, const Tili
 }
 
 /// The largest overlap of two grains, of the sum of their radii.
-double largest_overlap(const std::vector<Quad>& piece, const DemOptions& of_piece,
-                       const ProgressCall& progress) {
+double largest_overlap(const std::vector<Quad>& piece, const DemOptions& of_piece, const ProgressCall& progress) {
   double largest = 0.0;
   const auto pair = [&](std::size_t a, std::size_t b, double distance) {
     largest = std::max(largest, 1.0 - distance / (piece[a].w + piece[b].w));
@@ -197,8 +196,7 @@ double expected_tiled_grains(const DemOptions& o, double piece) {
 
 void check_tiling(const DemOptions& o) {
   if (!(o.tile >= 0.0) || !std::isfinite(o.tile))
-    throw input_error(o.scenario, "terrain.tile",
-                      fmt::format("{} is out of range, expected 0 or more, m", o.tile));
+    throw input_error(o.scenario, "terrain.tile", fmt::format("{} is out of range, expected 0 or more, m", o.tile));
   if (!is_tiled(o)) return;
   const Tiling tiling = tiling_of(o);
   const double least = kLeastPiece * largest_radius(o);

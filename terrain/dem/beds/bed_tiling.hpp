@@ -23,8 +23,7 @@
 
 namespace furrow::terrain::dem {
 
-inline constexpr double kSeamBand =
-    10.0;  // largest radii that packings reach into each other, on either side
+inline constexpr double kSeamBand = 10.0;    // largest radii that packings reach into each other, on either side
 inline constexpr double kLeastPiece = 40.0;  // sides of a piece in largest radii
 
 /// Pieces along the bin and across it.

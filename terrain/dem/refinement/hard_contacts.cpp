@@ -19,18 +19,12 @@ Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 class Search {
  public:
   Search(const GrainSolver& solver, double above, double ahead)
-      : grains_(solver.grains()),
-        strips_(solver.strips()),
-        bin_(solver.params().bin),
-        above_(above),
-        ahead_(ahead) {}
+      : grains_(solver.grains()), strips_(solver.strips()), bin_(solver.params().bin), above_(above), ahead_(ahead) {}
 
   void pairs(int k) {
     const Strip& strip = strips_[k];
     const int n = strip.grains(), next = strips_.next(k);
-    const auto grain = [&](int place) {
-      return place < n ? strip.first + place : strips_[next].first + place - n;
-    };
+    const auto grain = [&](int place) { return place < n ? strip.first + place : strips_[next].first + place - n; };
     for (int p = 0; p < strip.pairs; ++p) {
       const int i = grain(strip.grain_i(p)), j = grain(strip.grain_j(p));
       const Quad &a = grains_.position[i], &b = grains_.position[j];
@@ -40,15 +34,13 @@ class Search {
       const double distance = std::sqrt(distance2);
       const Vec3 normal = distance > 0.0 ? Vec3(vec(d) / distance) : Vec3(Vec3::UnitZ());
       const Vec3 velocity = vec(grains_.velocity[i]) - vec(grains_.velocity[j]);
-      add(a.w + b.w - distance, velocity.dot(normal), std::min(a.w, b.w), i,
-          [] { return std::string("two grains"); });
+      add(a.w + b.w - distance, velocity.dot(normal), std::min(a.w, b.w), i, [] { return std::string("two grains"); });
     }
   }
 
   void walls(int k) {
-    constexpr std::array<const char*, kWalls> kNames{"the wall x = 0", "the wall x = length",
-                                                     "the wall y = -width/2", "the wall y = width/2",
-                                                     "the floor"};
+    constexpr std::array<const char*, kWalls> kNames{"the wall x = 0", "the wall x = length", "the wall y = -width/2",
+                                                     "the wall y = width/2", "the floor"};
     const Strip& strip = strips_[k];
     for (const WallContact& contact : strip.walls) {
       const int g = strip.first + contact.grain;

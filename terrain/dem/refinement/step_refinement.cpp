@@ -78,10 +78,9 @@ Outcome StepRefinement::too_deep(double overlap) const {
   const StableStep stable = stable_at(options_, overlap);
   return Outcome::failure(
       "needs a smaller step",
-      fmt::format(
-          "grains overlap by {:.3g} m, where {:.3g} s is the stable step ({}): {} parts of the step of "
-          "{:.3g} s are not enough; expected a smaller run.step or more terrain.substeps",
-          overlap, stable.step, stable.reason, 1 << (limits_.size() - 1), step_));
+      fmt::format("grains overlap by {:.3g} m, where {:.3g} s is the stable step ({}): {} parts of the step of "
+                  "{:.3g} s are not enough; expected a smaller run.step or more terrain.substeps",
+                  overlap, stable.step, stable.reason, 1 << (limits_.size() - 1), step_));
 }
 
 void StepRefinement::relax(const GrainSolver& solver) {
@@ -118,15 +117,14 @@ Outcome StepRefinement::too_hard(const HardContacts& hard) const {
   stiffness *= stiffer;
   return Outcome::failure(
       "has contacts that are too hard for its grains",
-      fmt::format(
-          "{} {} deeper than {:.0f} % of a grain's diameter, the deepest by {:.3g} m ({:.0f} %) between {} "
-          "at "
-          "({:.4g}, {:.4g}, {:.4g}) m; expected stiffer grains (about {:.2g} {} in terrain.{}, which needs a "
-          "step of at most {:.2g} s), or less load or speed; {}",
-          hard.past, hard.past == 1 ? "contact is" : "contacts are", 100.0 * kDeepestShare, hard.deepest,
-          100.0 * hard.share, hard.between, hard.at.x(), hard.at.y(), hard.at.z(), stiffness,
-          hertz ? "Pa" : "N/m^1.5", hertz ? "young_modulus" : "normal_stiffness",
-          stable_at(other, stated_overlap(other)).step, kNoStepHelps));
+      fmt::format("{} {} deeper than {:.0f} % of a grain's diameter, the deepest by {:.3g} m ({:.0f} %) between {} "
+                  "at "
+                  "({:.4g}, {:.4g}, {:.4g}) m; expected stiffer grains (about {:.2g} {} in terrain.{}, which needs a "
+                  "step of at most {:.2g} s), or less load or speed; {}",
+                  hard.past, hard.past == 1 ? "contact is" : "contacts are", 100.0 * kDeepestShare, hard.deepest,
+                  100.0 * hard.share, hard.between, hard.at.x(), hard.at.y(), hard.at.z(), stiffness,
+                  hertz ? "Pa" : "N/m^1.5", hertz ? "young_modulus" : "normal_stiffness",
+                  stable_at(other, stated_overlap(other)).step, kNoStepHelps));
 }
 
 }  // namespace furrow::terrain::dem

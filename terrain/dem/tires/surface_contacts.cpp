@@ -95,8 +95,8 @@ void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
 }
 
 void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
-  FURROW_ASSERT(range.from <= range.to && static_cast<std::size_t>(range.to) <= strips_.size(), range.from,
-                range.to, strips_.size());
+  FURROW_ASSERT(range.from <= range.to && static_cast<std::size_t>(range.to) <= strips_.size(), range.from, range.to,
+                strips_.size());
   std::vector<SurfaceHistory> all;
   for (int s = range.from; s < range.to; ++s) {
     all.insert(all.end(), strips_[s].history.begin(), strips_[s].history.end());
@@ -131,8 +131,8 @@ double SurfaceContacts::abandoned(const Grains& grains, const SurfaceStrip& mine
   for (std::size_t k = 0; k < mine.history.size(); ++k) {
     const SurfaceHistory& h = mine.history[k];
     if (!mine.taken[k])
-      held += held_by_springs(coefficients(surfaces_[h.surface], grains.position[h.grain].w),
-                              triple(h.tangential), h.tangential.w, triple(h.rolling));
+      held += held_by_springs(coefficients(surfaces_[h.surface], grains.position[h.grain].w), triple(h.tangential),
+                              h.tangential.w, triple(h.rolling));
   }
   return held;
 }
@@ -168,8 +168,7 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
     }
     if (losses)
       add(sums.sample,
-          rolling_ ? sample_of<Law, true>(c, dt, motion, history)
-                   : sample_of<Law, false>(c, dt, motion, history),
+          rolling_ ? sample_of<Law, true>(c, dt, motion, history) : sample_of<Law, false>(c, dt, motion, history),
           hit.share);
     const ContactForce<double> f = rolling_ ? Law::template force<true>(c, dt, motion, history)
                                             : Law::template force<false>(c, dt, motion, history);
@@ -205,8 +204,8 @@ void SurfaceContacts::evaluate(const Grains& grains, const Strip& strip, int s, 
   FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
   FURROW_ASSERT(0 <= from && from <= to && to <= strip.grains(), from, to, strip.grains());
   SurfaceStrip& mine = strips_[s];
-  const bool any_near = std::any_of(surfaces_.begin(), surfaces_.end(),
-                                    [&](const Surface& surface) { return near(surface, strip); });
+  const bool any_near =
+      std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& surface) { return near(surface, strip); });
   if (!any_near) return;
   for (int g = strip.first + from; g < strip.first + to; ++g)
     for (int k = 0; k < count(); ++k)
@@ -223,8 +222,8 @@ void SurfaceContacts::end(const Grains& grains, int s, double dt, bool losses, C
 
 template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, const Strip&, int, int, int, double, bool,
                                                     const Loads&, ContactTotals&);
-template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, const Strip&, int, int, int, double,
-                                                      bool, const Loads&, ContactTotals&);
+template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, const Strip&, int, int, int, double, bool,
+                                                      const Loads&, ContactTotals&);
 
 Vec3 SurfaceContacts::add_substep_forces(double kick, double dt) {
   FURROW_ASSERT(kick > 0.0 && dt > 0.0, kick, dt);

@@ -55,8 +55,8 @@ class SurfaceContacts {
       : grain_(grain), largest_(largest), rolling_(rolling) {}
 
   /// @pre start has the mesh's vertex count.
-  void attach(const SurfaceMesh& mesh, const ContactMaterial& material,
-              const ContactCoefficients& coefficients, const SurfaceState& start);
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const ContactCoefficients& coefficients,
+              const SurfaceState& start);
   /// Whether surfaces attached from now on get their contact tangents beside the forces.
   void give_tangents(bool yes) { tangents_ = yes; }
   int count() const { return static_cast<int>(surfaces_.size()); }
@@ -165,8 +165,8 @@ class SurfaceContacts {
     return surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack;
   }
   template <class Law>
-  void touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses,
-             const Loads& load, ContactTotals& sums);
+  void touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses, const Loads& load,
+             ContactTotals& sums);
   ContactCoefficients coefficients(const Surface& surface, double radius) const;
   /// What is left in histories that nobody took over, J.
   double abandoned(const Grains& grains, const SurfaceStrip& mine) const;

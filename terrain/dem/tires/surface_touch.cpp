@@ -5,8 +5,7 @@
 namespace furrow::terrain::dem {
 
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n) {
-  FURROW_ASSERT(in_range(triangle, surface.mesh().triangles.size()), triangle,
-                surface.mesh().triangles.size());
+  FURROW_ASSERT(in_range(triangle, surface.mesh().triangles.size()), triangle, surface.mesh().triangles.size());
   const auto& t = surface.mesh().triangles[triangle];
   const auto x = surface.positions(), v = surface.velocities();
   const Vec3 ab = x[t[1]] - x[t[0]], ac = x[t[2]] - x[t[0]];

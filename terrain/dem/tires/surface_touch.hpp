@@ -21,9 +21,8 @@ inline constexpr double kSameNormal = 0.5;
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n);
 
 /// @param arm from the grain's centre to the point, m  @param velocity of the centre, m/s  @param spin rad/s
-inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const SurfaceHit& hit,
-                                       const Triple<double>& arm, const Triple<double>& velocity,
-                                       const Triple<double>& spin) {
+inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const SurfaceHit& hit, const Triple<double>& arm,
+                                       const Triple<double>& velocity, const Triple<double>& spin) {
   ContactMotion<double> motion;
   motion.normal = triple(hit.normal);
   motion.overlap = hit.overlap;

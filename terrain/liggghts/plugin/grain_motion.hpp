@@ -92,8 +92,7 @@ class GrainMotion {
       Twelve speed;
       for (int k = 0; k < 3; ++k) {
         const int at = kLanes * k;
-        const Double4 a = simd::load(f + at) * per_mass + gravity[k],
-                      alpha = simd::load(t + at) * per_inertia;
+        const Double4 a = simd::load(f + at) * per_mass + gravity[k], alpha = simd::load(t + at) * per_inertia;
         const Double4 spin = simd::load(w + at) + kick * alpha;
         speed[k] = simd::load(v + at) + kick * a;
         const Double4 place = simd::load(x + at) + dt * speed[k];

@@ -44,8 +44,7 @@ namespace {
 
 using LAMMPS_NS::LAMMPS;
 
-constexpr double kMargin =
-    10.0;  // of the box around the bin, largest radii: nothing is deleted before it is reported
+constexpr double kMargin = 10.0;  // of the box around the bin, largest radii: nothing is deleted before it is reported
 
 std::string number(double v) {
   char text[40];
@@ -80,8 +79,8 @@ class LiggghtsEngine final : public Engine {
           std::string("communicate single vel yes"), std::string("units si"),
           "processors " + std::to_string(ranks) + " 1 1",
           "region bin block " + number(-room) + " " + number(bin.length + room) + " " +
-              number(-0.5 * bin.width - across) + " " + number(0.5 * bin.width + across) + " " +
-              number(-room) + " " + number(setup.top + room) + " units box",
+              number(-0.5 * bin.width - across) + " " + number(0.5 * bin.width + across) + " " + number(-room) + " " +
+              number(setup.top + room) + " units box",
           std::string("create_box 1 bin"), "neighbor " + number(reach) + " bin",
           std::string("neigh_modify delay 0 every 2000000000 check no"), std::string("pair_style gran"),
           std::string("pair_coeff * *"), std::string("thermo_style custom step"),
@@ -120,9 +119,7 @@ class LiggghtsEngine final : public Engine {
     }
   }
 
-  void remember(std::span<const PairRecord> records) override {
-    records_.assign(records.begin(), records.end());
-  }
+  void remember(std::span<const PairRecord> records) override { records_.assign(records.begin(), records.end()); }
 
   void begin(StepWork& work, bool exchange) override {
     LAMMPS_NS::Atom& atom = *lmp_->atom;

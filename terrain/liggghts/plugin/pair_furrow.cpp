@@ -42,8 +42,8 @@ std::vector<PairRecord> PairFurrow::records() {
   lists_.for_touching([&](int i, int j, int entry) {
     const bool turned = id[i] > id[j];
     const PairHistory h = turned ? lists_.history(entry).turned() : lists_.history(entry);
-    all.push_back({(turned ? id[j] : id[i]) - 1, (turned ? id[i] : id[j]) - 1, array(h.tangential),
-                   h.tangential.w, array(h.rolling)});
+    all.push_back({(turned ? id[j] : id[i]) - 1, (turned ? id[i] : id[j]) - 1, array(h.tangential), h.tangential.w,
+                   array(h.rolling)});
   });
   return all;
 }
@@ -61,8 +61,7 @@ void PairFurrow::compute_force(int, int, int) {
 }
 
 double PairFurrow::held(int entry, double r_i, double r_j) const {
-  const auto c =
-      sizes_ ? dem::scaled(coefficients_, dem::pair_scale(r_i / radius_, r_j / radius_)) : coefficients_;
+  const auto c = sizes_ ? dem::scaled(coefficients_, dem::pair_scale(r_i / radius_, r_j / radius_)) : coefficients_;
   const PairHistory h = lists_.history(entry);
   return dem::held_by_springs(c, triple(h.tangential), h.tangential.w, triple(h.rolling));
 }

@@ -13,9 +13,7 @@ constexpr double kMostCells = 512;   // along z: higher grains share the top cel
 constexpr double kMostAcross = 1e5;  // along x and y
 
 /// Rounded down into [0, count). What is not a number stands in the first.
-int cell_at(double place, int count) {
-  return place > 0.0 ? static_cast<int>(std::min(place, count - 1.0)) : 0;
-}
+int cell_at(double place, int count) { return place > 0.0 ? static_cast<int>(std::min(place, count - 1.0)) : 0; }
 
 int count_of(double length, double per_cell, double most) {
   const double cells = std::floor(length * per_cell) + 1.0;
@@ -100,8 +98,7 @@ void PairLists::list_rows(const Grains& grains) {
   const bool any_ghosts = grains.all > grains.own;
   for (int x = 0; x < nx_; ++x) {
     const int left = std::max(x - 1, 0), right = std::min(x + 1, nx_ - 1);
-    const bool ghosts_near =
-        any_ghosts && ghosts_.start[left * ny_ * nz_] < ghosts_.start[(right + 1) * ny_ * nz_];
+    const bool ghosts_near = any_ghosts && ghosts_.start[left * ny_ * nz_] < ghosts_.start[(right + 1) * ny_ * nz_];
     for (int y = 0; y < ny_; ++y) {
       const int before = std::max(y - 1, 0), after = std::min(y + 1, ny_ - 1);
       for (int z = 0; z < nz_; ++z) {

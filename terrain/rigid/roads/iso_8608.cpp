@@ -44,8 +44,7 @@ ProfilePoints iso_8608_road(char name, double from, double length, std::uint64_t
   double low = kLeastRoadFrequency;
   for (Harmonic& h : harmonics) {
     const double high = low * ratio;
-    const double variance =
-        road_density(name, kReference) * kReference * kReference * (1.0 / low - 1.0 / high);
+    const double variance = road_density(name, kReference) * kReference * kReference * (1.0 / low - 1.0 / high);
     h.amplitude = std::sqrt(2.0 * variance);
     h.wave_number = kTwoPi * low * std::pow(ratio, draw(bits));
     h.phase = kTwoPi * draw(bits);

@@ -22,7 +22,7 @@ namespace furrow::terrain {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = 512u << 20;
-constexpr std::size_t kHeaderColumns = 72;  // what stands beyond is left out
+constexpr std::size_t kHeaderColumns = 72;                                     // what stands beyond is left out
 constexpr std::size_t kTextRecord = 80, kSingleField = 10, kDoubleField = 20;  // characters
 constexpr double kSameCut = 1e-6;                                              // m
 constexpr double kLeastIncrement = 1e-6, kFarthest = 1e6;                      // m; the latter as of terrain.profile
@@ -62,9 +62,7 @@ class Reader {
   }
 
  private:
-  Error wrong(const std::string& place, const std::string& what) const {
-    return input_error(name_, place, what);
-  }
+  Error wrong(const std::string& place, const std::string& what) const { return input_error(name_, place, what); }
   Error wrong_line(const std::string& what) const { return wrong(fmt::format("line {}", line_), what); }
 
   std::optional<std::string_view> next_line() {
@@ -83,24 +81,21 @@ class Reader {
       if (line.starts_with("$$")) return;
       if (line.starts_with('$')) {
         section = section.empty() ? upper(trimmed(line.substr(1, line.find_first_of(" \t!") - 1))) : "";
-        if (section == "ROAD_CRG_FILE")
-          throw wrong_line("refers to another file, expected the road in one file");
+        if (section == "ROAD_CRG_FILE") throw wrong_line("refers to another file, expected the road in one file");
         continue;
       }
       const std::string_view content = trimmed(line.substr(0, line.find('!')));
       if (content.empty() || content.starts_with('*')) continue;
       if (section == "ROAD_CRG") take_parameter(content);
       if (section == "KD_DEFINITION") take_definition(content);
-      if (section == "ROAD_CRG_MODS")
-        throw wrong_line("modifies the road, expected no $ROAD_CRG_MODS with entries");
+      if (section == "ROAD_CRG_MODS") throw wrong_line("modifies the road, expected no $ROAD_CRG_MODS with entries");
     }
     throw wrong("", "has no road data, expected an OpenCRG file whose header ends with a line $$");
   }
 
   void take_parameter(std::string_view content) {
     const std::size_t equals = content.find('=');
-    const auto value =
-        equals == std::string_view::npos ? std::nullopt : number_of(content.substr(equals + 1));
+    const auto value = equals == std::string_view::npos ? std::nullopt : number_of(content.substr(equals + 1));
     if (!value) throw wrong_line("is '" + excerpt(std::string(content)) + "', expected PARAMETER = number");
     if (!parameters_.emplace(upper(trimmed(content.substr(0, equals))), *value).second)
       throw wrong_line("gives a parameter twice, expected it once");
@@ -132,14 +127,12 @@ class Reader {
   void take_cut(std::string_view text) {
     const std::size_t comma = text.find(','), equals = text.find('=');
     const bool placed = equals != std::string_view::npos;
-    const auto value =
-        comma == std::string_view::npos
-            ? std::nullopt
-            : number_of(text.substr(placed ? equals + 1 : 0, comma - (placed ? equals + 1 : 0)));
+    const auto value = comma == std::string_view::npos
+                           ? std::nullopt
+                           : number_of(text.substr(placed ? equals + 1 : 0, comma - (placed ? equals + 1 : 0)));
     if (!value || trimmed(text.substr(comma + 1)) != "M")
       throw wrong_line("is not a cut, expected 'D:long section at v = X,m' or 'D:long section N,m'");
-    if (!cuts_.empty() && placed != placed_)
-      throw wrong_line("mixes cuts by number with cuts at v, expected one kind");
+    if (!cuts_.empty() && placed != placed_) throw wrong_line("mixes cuts by number with cuts at v, expected one kind");
     placed_ = placed;
     cuts_.push_back(*value);
   }
@@ -194,16 +187,14 @@ class Reader {
   std::vector<double> binary_rows() const {
     const std::size_t size = double_ ? 8 : 4;
     std::size_t count = rest_.size() / size;
-    const double steps =
-        (parameter("REFERENCE_LINE_END_U", kNaN) - parameter("REFERENCE_LINE_START_U", 0.0)) /
-        needed("REFERENCE_LINE_INCREMENT");
+    const double steps = (parameter("REFERENCE_LINE_END_U", kNaN) - parameter("REFERENCE_LINE_START_U", 0.0)) /
+                         needed("REFERENCE_LINE_INCREMENT");
     if (std::isfinite(steps)) {
       const double wanted = (std::floor(steps + 0.5) + 1.0) * static_cast<double>(channels_.size());
       if (!(wanted >= 1.0) || wanted > static_cast<double>(count))
-        throw wrong(
-            "", fmt::format("holds {} numbers, expected {:g}: the file is cut short, or its header is of "
-                            "another road",
-                            count, wanted));
+        throw wrong("", fmt::format("holds {} numbers, expected {:g}: the file is cut short, or its header is of "
+                                    "another road",
+                                    count, wanted));
       count = static_cast<std::size_t>(wanted);
     } else {
       count -= count % channels_.size();
@@ -234,8 +225,8 @@ class Reader {
     const double end = road.start + static_cast<double>(rows.size() / channels_.size()) * road.increment;
     if (!(std::abs(road.start) <= kFarthest && end <= kFarthest))
       throw wrong("REFERENCE_LINE_START_U",
-                  fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m", road.start,
-                              end, -kFarthest, kFarthest));
+                  fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m", road.start, end,
+                              -kFarthest, kFarthest));
     std::vector<std::size_t> order(cuts_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cuts_[a] < cuts_[b]; });
@@ -244,12 +235,10 @@ class Reader {
       if (road.v[k] - road.v[k - 1] < kSameCut)
         throw wrong("", fmt::format("has two cuts at v = {:g} m, expected one", road.v[k]));
 
-    const double slope_before = constant("S", Channel::slope),
-                 banking_before = constant("B", Channel::banking);
+    const double slope_before = constant("S", Channel::slope), banking_before = constant("B", Channel::banking);
     if (!has(Channel::slope) && parameters_.contains("REFERENCE_LINE_END_Z") && slope_before == 0.0 &&
         parameter("REFERENCE_LINE_END_Z", 0.0) != parameter("REFERENCE_LINE_START_Z", 0.0))
-      throw wrong("REFERENCE_LINE_END_Z",
-                  "differs from the start without a slope, expected the slope of the road");
+      throw wrong("REFERENCE_LINE_END_Z", "differs from the start without a slope, expected the slope of the road");
     double line = parameter("REFERENCE_LINE_START_Z", 0.0) + parameter("REFERENCE_LINE_OFFSET_Z", 0.0);
     const std::size_t width = channels_.size();
     for (std::size_t row = 0; row + width <= rows.size(); row += width) {
@@ -266,14 +255,11 @@ class Reader {
       for (std::size_t k = 0; k < order.size(); ++k)
         road.heights.push_back(cuts[order[k]] + line + banking * road.v[k]);
     }
-    if (road.count() < 2)
-      throw wrong("", fmt::format("has {} cross-sections, expected two at least", road.count()));
+    if (road.count() < 2) throw wrong("", fmt::format("has {} cross-sections, expected two at least", road.count()));
     return road;
   }
 
-  bool has(Channel channel) const {
-    return std::find(channels_.begin(), channels_.end(), channel) != channels_.end();
-  }
+  bool has(Channel channel) const { return std::find(channels_.begin(), channels_.end(), channel) != channels_.end(); }
 
   /// Slope (S) or banking (B) of the whole line, where there is no channel for it.
   double constant(const std::string& letter, Channel channel) const {
@@ -302,16 +288,14 @@ OpenCrg read_open_crg(const std::filesystem::path& file) { return Reader(file).r
 
 ProfilePoints profile_of(const OpenCrg& road, double v, const std::filesystem::path& file) {
   if (v < road.v.front() - kSameCut || v > road.v.back() + kSameCut)
-    throw input_error(
-        file.string(), "",
-        fmt::format("has no height at v = {:g} m, expected terrain.profile_v from {:g} to {:g} m", v,
-                    road.v.front(), road.v.back()));
+    throw input_error(file.string(), "",
+                      fmt::format("has no height at v = {:g} m, expected terrain.profile_v from {:g} to {:g} m", v,
+                                  road.v.front(), road.v.back()));
   const std::size_t cuts = road.v.size();
   std::size_t right = 0;
   while (right + 2 < cuts && road.v[right + 1] <= v) ++right;
   const std::size_t left = std::min(right + 1, cuts - 1);
-  const double share =
-      left == right ? 0.0 : std::clamp((v - road.v[right]) / (road.v[left] - road.v[right]), 0.0, 1.0);
+  const double share = left == right ? 0.0 : std::clamp((v - road.v[right]) / (road.v[left] - road.v[right]), 0.0, 1.0);
   ProfilePoints points;
   for (std::size_t k = 0; k < road.count(); ++k) {
     const double *row = &road.heights[k * cuts], u = road.start + static_cast<double>(k) * road.increment;
@@ -323,11 +307,10 @@ ProfilePoints profile_of(const OpenCrg& road, double v, const std::filesystem::p
                         fmt::format("has the height {:g} m at u = {:g} m, v = {:g} m, expected {:g} to {:g} m", z, u, v,
                                     -kFarthest, kFarthest));
     if (!std::isfinite(z))
-      throw input_error(
-          file.string(), "",
-          fmt::format("has no height at u = {:g} m, v = {:g} m, expected a cut that lies on the road "
-                      "(terrain.profile_v)",
-                      u, v));
+      throw input_error(file.string(), "",
+                        fmt::format("has no height at u = {:g} m, v = {:g} m, expected a cut that lies on the road "
+                                    "(terrain.profile_v)",
+                                    u, v));
     points.push_back({u, z});
   }
   return points;

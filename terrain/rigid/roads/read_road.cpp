@@ -20,23 +20,21 @@ ProfilePoints read_csv(const std::filesystem::path& file) {
     for (const auto& [name, value] : {std::pair("x_m", &point[0]), std::pair("z_m", &point[1])}) {
       *value = csv.number(row, name);
       if (std::abs(*value) > kFarthest)
-        throw csv.wrong(
-            row, fmt::format("{} is {:g}, expected {:g} to {:g}", name, *value, -kFarthest, kFarthest));
+        throw csv.wrong(row, fmt::format("{} is {:g}, expected {:g} to {:g}", name, *value, -kFarthest, kFarthest));
     }
     points.push_back(point);
     switch (fault_of(points, points.size() - 1)) {
       case ProfileFault::none:
         break;
       case ProfileFault::goes_back:
-        throw csv.wrong(row, fmt::format("x_m is {:g}, expected {:g}, as in the row before, or more",
-                                         point[0], points[points.size() - 2][0]));
+        throw csv.wrong(row, fmt::format("x_m is {:g}, expected {:g}, as in the row before, or more", point[0],
+                                         points[points.size() - 2][0]));
       case ProfileFault::repeated:
         throw csv.wrong(row, "is the row before once more, expected another point");
       case ProfileFault::third_at_one_x:
-        throw csv.wrong(row,
-                        fmt::format("x_m is {:g} a third time, expected two rows at most: the foot and the "
-                                    "top of an upright face",
-                                    point[0]));
+        throw csv.wrong(row, fmt::format("x_m is {:g} a third time, expected two rows at most: the foot and the "
+                                         "top of an upright face",
+                                         point[0]));
     }
   }
   return points;
@@ -45,8 +43,7 @@ ProfilePoints read_csv(const std::filesystem::path& file) {
 }  // namespace
 
 ProfilePoints read_road(const std::filesystem::path& file, double v) {
-  const ProfilePoints points =
-      file.extension() == ".crg" ? profile_of(read_open_crg(file), v, file) : read_csv(file);
+  const ProfilePoints points = file.extension() == ".crg" ? profile_of(read_open_crg(file), v, file) : read_csv(file);
   if (points.size() > kMostProfilePoints)
     throw input_error(file.string(), "",
                       fmt::format("has {} points, expected at most {}", points.size(), kMostProfilePoints));

@@ -18,10 +18,9 @@ using testing::TemporaryFolder;
 
 Archive example() {
   Archive archive;
-  archive.put("grains/x", std::vector<double>{0.1, -0.0, 5e-324, std::nan("7"),
-                                              std::numeric_limits<double>::infinity(), 1.0 / 3.0});
-  archive.put("grains/list/start",
-              std::vector<std::int64_t>{0, -1, std::numeric_limits<std::int64_t>::min()});
+  archive.put("grains/x", std::vector<double>{0.1, -0.0, 5e-324, std::nan("7"), std::numeric_limits<double>::infinity(),
+                                              1.0 / 3.0});
+  archive.put("grains/list/start", std::vector<std::int64_t>{0, -1, std::numeric_limits<std::int64_t>::min()});
   archive.put("index", std::vector<std::int32_t>{1, 2, -3});
   archive.put("random", std::vector<std::uint64_t>{0, ~std::uint64_t{0}});
   archive.put("flags", std::vector<std::uint8_t>{0, 1, 255});
@@ -64,8 +63,7 @@ TEST(ArchiveFile, every_type_comes_back_bit_for_bit) {
   const auto file = folder.path() / "rig.h5";
   write_archive(file, example());
   expect_same_bits(example(), read_archive(file));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
-      << "a temporary file is left";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "a temporary file is left";
 }
 
 TEST(ArchiveFile, a_kind_without_a_group_keeps_the_names_as_they_are) {
@@ -76,8 +74,7 @@ TEST(ArchiveFile, a_kind_without_a_group_keeps_the_names_as_they_are) {
   EXPECT_TRUE(Hdf5Reader(file).has("grains/list/start"));
   EXPECT_TRUE(may_be_archive(file, kBed));
   EXPECT_FALSE(may_be_archive(file, kSavedState));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
-      << "a temporary file is left";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "a temporary file is left";
 }
 
 TEST(ArchiveFile, other_kinds_and_versions_are_refused_by_name) {
@@ -181,8 +178,7 @@ TEST(Hdf5File, a_newer_format_version_is_refused_by_name) {
   const auto file = folder.path() / "newer.h5";
   const hid_t handle = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t space = H5Screate(H5S_SCALAR);
-  const hid_t attribute =
-      H5Acreate2(handle, "format_version", H5T_NATIVE_INT, space, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t attribute = H5Acreate2(handle, "format_version", H5T_NATIVE_INT, space, H5P_DEFAULT, H5P_DEFAULT);
   const int version = 99;
   H5Awrite(attribute, H5T_NATIVE_INT, &version);
   H5Aclose(attribute);

@@ -1,4 +1,5 @@
-// HDF5 files of strangers: no memory beyond the file's size, no other file, no program; one message that names the file.
+// HDF5 files of strangers: no memory beyond the file's size, no other file, no program; one message that names the
+// file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,14 +88,11 @@ TEST_F(ForeignHdf5, numbers_of_every_usual_kind_are_read) {
 TEST_F(ForeignHdf5, declared_and_never_written_takes_no_memory) {
   const hsize_t huge = 1000000000000000;
   make([&](hid_t out) { put(out, {huge}, H5T_NATIVE_UINT64, Handle(created({1024}), H5Pclose)); });
-  EXPECT_NE(complaint().find("'x' is said to have more than 2147483648 numbers"), std::string::npos)
-      << complaint();
+  EXPECT_NE(complaint().find("'x' is said to have more than 2147483648 numbers"), std::string::npos) << complaint();
   make([&](hid_t out) { put(out, {1000000000}, H5T_NATIVE_DOUBLE, Handle(created({1024}), H5Pclose)); });
-  EXPECT_NE(complaint().find("is said to have 8000000000 bytes, but 0 are stored"), std::string::npos)
-      << complaint();
+  EXPECT_NE(complaint().find("is said to have 8000000000 bytes, but 0 are stored"), std::string::npos) << complaint();
   make([&](hid_t out) { put(out, {1000000000}); });
-  EXPECT_NE(complaint().find("is said to have 8000000000 bytes, but 0 are stored"), std::string::npos)
-      << complaint();
+  EXPECT_NE(complaint().find("is said to have 8000000000 bytes, but 0 are stored"), std::string::npos) << complaint();
   make([&](hid_t out) {
     put(out, {huge, huge, huge, huge}, H5T_NATIVE_UINT64, Handle(created({1, 1, 1, 1}), H5Pclose));
   });
@@ -108,10 +106,8 @@ TEST_F(ForeignHdf5, sizes_beyond_the_end_of_the_file_are_not_believed) {
   std::ifstream in(file(), std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), {});
   const auto replace_all = [&](std::uint64_t from, std::uint64_t to) {
-    const std::string old(reinterpret_cast<const char*>(&from), 8),
-        put(reinterpret_cast<const char*>(&to), 8);
-    for (std::size_t at = 0; (at = bytes.find(old, at)) != std::string::npos; at += 8)
-      bytes.replace(at, 8, put);
+    const std::string old(reinterpret_cast<const char*>(&from), 8), put(reinterpret_cast<const char*>(&to), 8);
+    for (std::size_t at = 0; (at = bytes.find(old, at)) != std::string::npos; at += 8) bytes.replace(at, 8, put);
   };
   replace_all(1000, 100000000);  // numbers
   replace_all(8000, 800000000);  // bytes
@@ -135,8 +131,7 @@ TEST_F(ForeignHdf5, chunks_larger_than_what_is_stored_are_refused) {
     const Handle made(created({100000000}), H5Pclose);
     H5Pset_deflate(made, 1);
     const Handle space(H5Screate_simple(1, now.data(), most.data()), H5Sclose);
-    const Handle set(H5Dcreate2(out, "x", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, made, H5P_DEFAULT),
-                     H5Dclose);
+    const Handle set(H5Dcreate2(out, "x", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, made, H5P_DEFAULT), H5Dclose);
     const std::array<unsigned char, 64> noise{};  // a chunk as it might come, written past the filters
     const hsize_t at = 0;
     H5Dwrite_chunk(set, H5P_DEFAULT, 0, &at, noise.size(), noise.data());
@@ -152,8 +147,7 @@ TEST_F(ForeignHdf5, nothing_is_read_from_other_files) {
     H5Pset_external(made, secret.c_str(), 0, 24);
     put(out, {3}, H5T_NATIVE_DOUBLE, made);
   });
-  EXPECT_EQ(complaint(),
-            "the dataset 'x' is stored in another file, expected the numbers themselves in this file");
+  EXPECT_EQ(complaint(), "the dataset 'x' is stored in another file, expected the numbers themselves in this file");
 
   const std::filesystem::path other = folder_.path() / "other.h5";
   {
@@ -162,16 +156,14 @@ TEST_F(ForeignHdf5, nothing_is_read_from_other_files) {
     out.finish();
   }
   make([&](hid_t out) { H5Lcreate_external(other.c_str(), "/x", out, "x", H5P_DEFAULT, H5P_DEFAULT); });
-  const std::string linked =
-      "the dataset 'x' is a link to another file, expected the numbers themselves in this file";
+  const std::string linked = "the dataset 'x' is a link to another file, expected the numbers themselves in this file";
   EXPECT_EQ(complaint(), linked);
   EXPECT_EQ(complaint([](const Hdf5Reader& in) { in.has("x"); }), linked);
   EXPECT_EQ(complaint([](const Hdf5Reader& in) { in.datasets(); }), linked);
   make([&](hid_t out) { H5Lcreate_external(other.c_str(), "/", out, "group", H5P_DEFAULT, H5P_DEFAULT); });
-  EXPECT_NE(complaint([](const Hdf5Reader& in) {
-              in.get<double>("group/x");
-            }).find("'group' is a link to another file"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint([](const Hdf5Reader& in) { in.get<double>("group/x"); }).find("'group' is a link to another file"),
+      std::string::npos);
 
   make([&](hid_t out) {
     const Handle made(created(), H5Pclose);
@@ -180,8 +172,7 @@ TEST_F(ForeignHdf5, nothing_is_read_from_other_files) {
     H5Pset_virtual(made, space, other.c_str(), "x", space);
     put(out, {3}, H5T_NATIVE_DOUBLE, made);
   });
-  EXPECT_EQ(complaint(),
-            "the dataset 'x' is made of other datasets, expected the numbers themselves in this file");
+  EXPECT_EQ(complaint(), "the dataset 'x' is made of other datasets, expected the numbers themselves in this file");
 }
 
 TEST_F(ForeignHdf5, soft_and_user_defined_links_are_refused_by_name) {
@@ -219,8 +210,7 @@ TEST_F(ForeignHdf5, the_same_bytes_under_many_names_do_not_add_up) {
 }
 
 TEST_F(ForeignHdf5, datasets_of_anything_but_plain_numbers_are_refused_by_name) {
-  const std::string plain =
-      "the dataset 'x' does not hold plain numbers, expected integers or floats of 1 to 8 bytes";
+  const std::string plain = "the dataset 'x' does not hold plain numbers, expected integers or floats of 1 to 8 bytes";
   const Handle text(H5Tcopy(H5T_C_S1), H5Tclose), variable(H5Tcopy(H5T_C_S1), H5Tclose),
       list(H5Tvlen_create(H5T_NATIVE_DOUBLE), H5Tclose), pair(H5Tcreate(H5T_COMPOUND, 16), H5Tclose);
   H5Tset_size(text, 8);
@@ -233,9 +223,7 @@ TEST_F(ForeignHdf5, datasets_of_anything_but_plain_numbers_are_refused_by_name) 
     EXPECT_EQ(complaint(), plain);
     EXPECT_EQ(Hdf5Reader(file()).type("x"), Hdf5Type::other);
   }
-  make([](hid_t out) {
-    const Handle group(H5Gcreate2(out, "x", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  });
+  make([](hid_t out) { const Handle group(H5Gcreate2(out, "x", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose); });
   EXPECT_EQ(complaint(), "lacks the dataset 'x'");
 }
 
@@ -246,8 +234,7 @@ TEST_F(ForeignHdf5, filters_that_not_every_library_has_are_refused_by_number) {
     H5Pset_scaleoffset(made, H5Z_SO_FLOAT_DSCALE, 2);
     put(out, {64}, H5T_NATIVE_DOUBLE, made, values.data());
   });
-  EXPECT_EQ(complaint(),
-            "the dataset 'x' was written through filter 6, expected none, gzip, shuffle or fletcher32");
+  EXPECT_EQ(complaint(), "the dataset 'x' was written through filter 6, expected none, gzip, shuffle or fletcher32");
 }
 
 /// A thousand numbers where one is expected would be written over whatever stands behind it in memory.

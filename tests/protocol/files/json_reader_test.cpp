@@ -57,8 +57,7 @@ TEST(JsonReader, wrong_values_are_told_with_their_path_and_what_is_expected) {
   EXPECT_EQ(inside([](JsonReader& r) { r.number("b"); }), "key 'a.b': is 'big', expected a number");
   EXPECT_EQ(inside([](JsonReader& r) { r.number("m"); }), "key 'a.m': is missing, expected a number");
   EXPECT_EQ(inside([](JsonReader& r) { r.positive("n"); }), "key 'a.n': is -1, expected a number above zero");
-  EXPECT_EQ(inside([](JsonReader& r) { r.not_negative("n"); }),
-            "key 'a.n': is -1, expected a number of zero or above");
+  EXPECT_EQ(inside([](JsonReader& r) { r.not_negative("n"); }), "key 'a.n': is -1, expected a number of zero or above");
   EXPECT_EQ(inside([](JsonReader& r) { r.count("c", 1, 9); }),
             "key 'a.c': is 1.5, expected a whole number from 1 to 9");
   EXPECT_EQ(inside([](JsonReader& r) { r.count("n", 0); }),

@@ -35,8 +35,7 @@ std::string complaint_of_file(const std::string& bytes) {
 }
 
 TEST(JsonText, values_come_out_as_written) {
-  const auto json =
-      parse_json(R"({"a": [1, -2, 2.5e3, {"b": null}], "c": {"d": "é", "e": [true, []]}})", "f");
+  const auto json = parse_json(R"({"a": [1, -2, 2.5e3, {"b": null}], "c": {"d": "é", "e": [true, []]}})", "f");
   EXPECT_EQ(json.dump(), R"({"a":[1,-2,2500.0,{"b":null}],"c":{"d":"é","e":[true,[]]}})");
 }
 
@@ -62,20 +61,18 @@ TEST(JsonText, numbers_beyond_a_double_are_refused) {
 TEST(JsonText, nesting_beyond_64_levels_is_refused_where_it_begins) {
   const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
   EXPECT_EQ(complaint(nested(64)), "");
-  EXPECT_EQ(complaint(nested(65)),
-            "f:1:65: lists and objects are nested deeper than 64 levels, expected fewer");
+  EXPECT_EQ(complaint(nested(65)), "f:1:65: lists and objects are nested deeper than 64 levels, expected fewer");
   EXPECT_EQ(complaint(nested(1000000)).substr(0, 7), "f:1:65:");
   EXPECT_EQ(complaint(std::string(200000, '[')).substr(0, 7), "f:1:65:");
   std::string objects = "{\n\"a\": ";
   for (int k = 0; k < 100000; ++k) objects += "{\"a\": ";
   EXPECT_NE(complaint(objects).find("nested deeper"), std::string::npos);
-  EXPECT_EQ(complaint("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"), "")
-      << "in a text";
+  EXPECT_EQ(complaint("[\"" + std::string(100, '[') + "\\\"" + std::string(100, '{') + "\"]"), "") << "in a text";
 }
 
 TEST(JsonText, comments_are_skipped_and_those_of_other_languages_refused) {
-  for (const char* text : {"// note\n{}", "{\n/* [[ \" */\n}", "{\"a\": 1 // note\n}", "{\"a\": 1 } // [ \"",
-                           "{\"a//\": \"/* no */\"}"})
+  for (const char* text :
+       {"// note\n{}", "{\n/* [[ \" */\n}", "{\"a\": 1 // note\n}", "{\"a\": 1 } // [ \"", "{\"a//\": \"/* no */\"}"})
     EXPECT_EQ(complaint(text), "") << text;
   EXPECT_EQ(parse_json("{\"a\": /* 1 */ 2}", "f")["a"], 2);
   EXPECT_EQ(parse_json("{\"a\": \"// b\"}", "f")["a"], "// b");
@@ -92,8 +89,7 @@ TEST(JsonText, keys_that_nobody_could_type_are_refused) {
             "f: key 'a.b\\x1b[31m\\n': has a control character or is longer than 256 bytes, expected the "
             "name of a key");
   EXPECT_EQ(complaint("{\"" + std::string(256, 'k') + "\": 1}"), "");
-  EXPECT_NE(complaint("{\"" + std::string(257, 'k') + "\": 1}").find("longer than 256 bytes"),
-            std::string::npos);
+  EXPECT_NE(complaint("{\"" + std::string(257, 'k') + "\": 1}").find("longer than 256 bytes"), std::string::npos);
 }
 
 /// To find a key among ordered ones takes as long as there are keys: a million of them would take an hour.
@@ -104,8 +100,7 @@ TEST(JsonText, objects_of_more_keys_than_anybody_writes_are_refused) {
     return text + "}";
   };
   EXPECT_EQ(complaint(object(10000)), "");
-  EXPECT_EQ(complaint(object(1000000)),
-            "f: key 'k10000': is one too many, expected at most 10000 keys in an object");
+  EXPECT_EQ(complaint(object(1000000)), "f: key 'k10000': is one too many, expected at most 10000 keys in an object");
   const testing::TemporaryFolder folder;
   std::ofstream(folder.path() / "f") << object(1000000);
   EXPECT_TRUE(read_json_if_whole(folder.path() / "f").is_null());

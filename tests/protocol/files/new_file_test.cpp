@@ -100,7 +100,8 @@ struct LeaksOfTheLibrary {
 
 constexpr int kPuts = 8;
 
-/// A file like a frame, of datasets around the sizes of the library's buffers. @param before is called before each step.
+/// A file like a frame, of datasets around the sizes of the library's buffers. @param before is called before each
+/// step.
 template <class Before>
 void write_file(const fs::path& file, const Before& before) {
   before(0);
@@ -150,8 +151,8 @@ TEST(NewFile, only_names_of_its_form_are_in_the_making) {
   EXPECT_EQ(name_in_the_making(".a.h5.0123456789abcdef.part"), "a.h5");
   EXPECT_EQ(name_in_the_making("..furrow-run.0123456789abcdef.part"), ".furrow-run");
   for (const char* name :
-       {"a.h5", ".a.h5.part", ".a.h5.0123456789abcde.part", ".a.h5.0123456789abcdeF.part",
-        "a.h5.0123456789abcdef.part", ".0123456789abcdef.part", "..0123456789abcdef.part", ".part", ""})
+       {"a.h5", ".a.h5.part", ".a.h5.0123456789abcde.part", ".a.h5.0123456789abcdeF.part", "a.h5.0123456789abcdef.part",
+        ".0123456789abcdef.part", "..0123456789abcdef.part", ".part", ""})
     EXPECT_EQ(name_in_the_making(name), "") << name;
 }
 

@@ -117,7 +117,8 @@ def compare_csv(row, what, file_a, file_b, least):
         lines = [k for k, (x, y) in enumerate(zip(a[name], b[name])) if x != y]
         k = lines[0]
         kind = "text differs, same numbers" if all(same_number(a[name][i], b[name][i]) for i in lines) else "differs"
-        row.differences.append(f"{what}: {name}: {kind} in {len(lines)} of {len(a[name])} lines, first in line {k + 2}: "
+        row.differences.append(f"{what}: {name}: {kind} in {len(lines)} of {len(a[name])} lines, first in line "
+                               f"{k + 2}: "
                                f"{a[name][k]} | {b[name][k]}")
 
 
@@ -308,9 +309,11 @@ def main():
         rows.append(compare_beds(a, b, least))
     for side, folder in (("A", a), ("B", b)):
         if {"first_look", "resumed"} <= set(names) and all((folder / n).exists() for n in ("first_look", "resumed")):
-            rows.append(compare_case(f"({side}: resumed = whole)", folder / "first_look", folder / "resumed", least, state))
+            rows.append(compare_case(f"({side}: resumed = whole)", folder / "first_look",
+                                     folder / "resumed", least, state))
 
-    print(f"{'case':24s} | {'columns':>7s} | {'frames':>6s} | {'values':>6s} | {'arrays':>6s} | {'state':>5s} | verdict")
+    print(f"{'case':24s} | {'columns':>7s} | {'frames':>6s} | {'values':>6s} | {'arrays':>6s} | {'state':>5s} | "
+          f"verdict")
     for row in rows:
         c = row.counts
         verdict = f"DIFFERENT ({len(row.differences)})" if row.differences else "equal" if any(c.values()) else "-"
@@ -318,7 +321,8 @@ def main():
               f"{c['state']:5d} | {verdict}")
     if arguments.csv:
         both = [json.loads((x / "times.json").read_text()).get("made", {}) for x in (a, b)]
-        made = {key: " and ".join(one.get(key, provenance.UNKNOWN) for one in both) for key in ("commit", "compiler", "processor")}
+        made = {key: " and ".join(one.get(key, provenance.UNKNOWN) for one in both)
+                for key in ("commit", "compiler", "processor")}
         made["command"] = provenance.command()
         with open(arguments.csv, "w", newline="") as out:
             provenance.write_header(out, made)

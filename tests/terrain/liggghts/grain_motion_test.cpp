@@ -48,8 +48,7 @@ TEST(GrainMotion, a_kick_and_a_drift_of_each_grain_whatever_their_number) {
     for (int g = 0; g < count; ++g) {
       double speed2 = 0.0;
       for (int k = 0; k < 3; ++k) {
-        const double v =
-            before.velocity[g][k] + times.kick * (before.force[g][k] / 0.01 + setup().gravity[k]);
+        const double v = before.velocity[g][k] + times.kick * (before.force[g][k] / 0.01 + setup().gravity[k]);
         EXPECT_DOUBLE_EQ(crowd.velocity[g][k], v);
         EXPECT_DOUBLE_EQ(crowd.spin[g][k], before.spin[g][k] + times.kick * (before.torque[g][k] / 4e-7));
         EXPECT_DOUBLE_EQ(crowd.position[g][k], before.position[g][k] + times.dt * v);

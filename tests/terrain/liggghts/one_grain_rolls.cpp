@@ -1,6 +1,6 @@
-// A grain rolls on the floor under a plate that presses on it and moves along x, across the borders between the ranks: its
-// motion, and the forces on the plate, are those of one rank. A second time the borders move beneath it. Each rank computes the case of one rank beside the other.
-// Under mpirun; prints what differs and ends with 1.
+// A grain rolls on the floor under a plate that presses on it and moves along x, across the borders between the ranks:
+// its motion, and the forces on the plate, are those of one rank. A second time the borders move beneath it. Each rank
+// computes the case of one rank beside the other. Under mpirun; prints what differs and ends with 1.
 #include <mpi.h>
 
 #include <algorithm>
@@ -87,8 +87,7 @@ class Case {
     for (Vec3& x : plate_.vertex) x.x() += kSpeed * steps * kStep;
     NodalForces forces;
     ContactSums sums;
-    contacts_.end_interval(steps * kStep, std::span<NodalForces>(&forces, 1),
-                           std::span<ContactSums>(&sums, 1));
+    contacts_.end_interval(steps * kStep, std::span<NodalForces>(&forces, 1), std::span<ContactSums>(&sums, 1));
     Seen seen;
     for (int k = 0; k < 3; ++k) seen.push[k] = sums.force[k];
     const OwnGrains own = engine_->own();
@@ -117,8 +116,7 @@ double difference(const Seen& mine, const Seen& alone) {
   double worst = 0.0;
   const auto compare = [&](const double* a, const double* b) {
     double apart = 0.0, size = 0.0;
-    for (int k = 0; k < 3; ++k)
-      apart = std::max(apart, std::abs(a[k] - b[k])), size = std::max(size, std::abs(b[k]));
+    for (int k = 0; k < 3; ++k) apart = std::max(apart, std::abs(a[k] - b[k])), size = std::max(size, std::abs(b[k]));
     if (size > 0.0) worst = std::max(worst, apart / size);
   };
   for (int k = 0; k < 9; k += 3) compare(&sum.motion[k], &alone.motion[k]);

@@ -27,9 +27,7 @@ struct Crowd {
 
   explicit Crowd(unsigned seed, int own_count = 400, int ghosts = 60) : own(own_count) {
     std::mt19937 random(seed);
-    const auto within = [&](double lo, double hi) {
-      return std::uniform_real_distribution<double>(lo, hi)(random);
-    };
+    const auto within = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
     for (int i = 0; i < own + ghosts; ++i) {
       const bool left = i % 2 == 0;
       const double x = i < own ? within(-0.1 * kSkin, kLength + 0.1 * kSkin)
@@ -91,9 +89,7 @@ TEST(PairLists, no_grains_have_no_pairs) {
 /// The history of a pair as the lower of its numbers sees it.
 PairHistory of_lower(int i, int j, const PairHistory& h) { return i < j ? h : h.turned(); }
 
-PairHistory some_history(int i, int j) {
-  return {{1.0 + i, 2.0 + j, -3.0, 0.5 + i}, {4.0 + j, 5.0, 6.0 + i, 0.0}};
-}
+PairHistory some_history(int i, int j) { return {{1.0 + i, 2.0 + j, -3.0, 0.5 + i}, {4.0 + j, 5.0, 6.0 + i, 0.0}}; }
 
 /// Grains change their places in the grid, and so may pairs: then the other grain lists them, with the sign turned.
 TEST(PairLists, histories_are_kept_when_lists_are_made_again) {
@@ -119,10 +115,8 @@ TEST(PairLists, histories_are_kept_when_lists_are_made_again) {
   lists.for_touching([&](int i, int j, int entry) {
     kept.insert(std::minmax(i, j));
     turned += std::find(first.begin(), first.end(), std::pair(j, i)) != first.end() ? 1 : 0;
-    const PairHistory h = of_lower(i, j, lists.history(entry)),
-                      was = some_history(std::min(i, j), std::max(i, j));
-    for (const auto& [now, then] :
-         {std::pair(h.tangential, was.tangential), std::pair(h.rolling, was.rolling)}) {
+    const PairHistory h = of_lower(i, j, lists.history(entry)), was = some_history(std::min(i, j), std::max(i, j));
+    for (const auto& [now, then] : {std::pair(h.tangential, was.tangential), std::pair(h.rolling, was.rolling)}) {
       EXPECT_EQ(now.x, then.x);
       EXPECT_EQ(now.y, then.y);
       EXPECT_EQ(now.z, then.z);

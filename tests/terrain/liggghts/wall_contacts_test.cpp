@@ -27,14 +27,10 @@ struct Crowd {
 
   explicit Crowd(int count = 200) {
     std::mt19937 random(3);
-    const auto draw = [&](double lo, double hi) {
-      return std::uniform_real_distribution<double>(lo, hi)(random);
-    };
+    const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
     const auto near = [&](double lo, double hi) {
       const double pick = draw(0.0, 1.0), overlap = draw(-0.5e-3, 0.5e-3);
-      return pick < 0.3   ? lo + kRadius - overlap
-             : pick < 0.6 ? hi - kRadius + overlap
-                          : draw(lo + 0.05, hi - 0.05);
+      return pick < 0.3 ? lo + kRadius - overlap : pick < 0.6 ? hi - kRadius + overlap : draw(lo + 0.05, hi - 0.05);
     };
     for (int g = 0; g < count; ++g) {
       position.push_back({near(0.0, 0.5), near(-0.15, 0.15), near(0.0, 0.4)});
@@ -103,8 +99,7 @@ TEST(WallContacts, four_at_a_time_are_what_each_is_alone_in_parts_of_any_length)
       EXPECT_NEAR(sums.elastic, expected.elastic, 1e-12 * expected.elastic);
       EXPECT_NEAR(sums.floor_force, expected.floor_force, 1e-10 * expected.floor_force);
       double most = 0.0;
-      for (const auto& f : alone.force)
-        most = std::max({most, std::abs(f[0]), std::abs(f[1]), std::abs(f[2])});
+      for (const auto& f : alone.force) most = std::max({most, std::abs(f[0]), std::abs(f[1]), std::abs(f[2])});
       expect_near(together.force, alone.force, 1e-12 * most);
       expect_near(together.torque, alone.torque, 1e-12 * most * kRadius);
       for (Crowd* crowd : {&together, &alone})  // some open, others close

@@ -39,8 +39,8 @@ TEST(PatchWidth, of_a_disc_is_its_radius_and_does_not_turn_with_a_plate) {
   EXPECT_NEAR(patch_width(disc, 0.001), 0.0805, 2e-4);
   for (const double angle : {0.3, 0.7854, 1.1}) {
     const double c = std::cos(angle), s = std::sin(angle);
-    const auto turned = cells_where(
-        [=](int i, int j) { return std::abs(c * i + s * j) <= 80.0 && std::abs(c * j - s * i) <= 30.0; });
+    const auto turned =
+        cells_where([=](int i, int j) { return std::abs(c * i + s * j) <= 80.0 && std::abs(c * j - s * i) <= 30.0; });
     EXPECT_NEAR(patch_width(turned, 0.001) / (0.161 * 0.061 / 0.222), 1.0, 0.02) << angle;
   }
 }

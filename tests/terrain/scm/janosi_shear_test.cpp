@@ -31,8 +31,7 @@ TEST(JanosiShear, work_is_stored_or_lost_by_sliding) {
   Vec3 m = Vec3::Zero();
   const double limit = kSand.limit(40e3);
   double work = 0.0, lost = 0.0;
-  for (const Vec3& v :
-       {Vec3(0.2, 0.0, 0.0), Vec3(-0.2, 0.0, 0.0), Vec3(0.0, 0.1, 0.05), Vec3(-0.3, 0.2, 0.0)})
+  for (const Vec3& v : {Vec3(0.2, 0.0, 0.0), Vec3(-0.2, 0.0, 0.0), Vec3(0.0, 0.1, 0.05), Vec3(-0.3, 0.2, 0.0)})
     for (int k = 0; k < 10; ++k) {
       const double dt = 0.01;
       const ShearStep step = shear(kSand, v, dt, m);

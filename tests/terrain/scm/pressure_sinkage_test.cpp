@@ -28,9 +28,7 @@ struct Way {
   }
 };
 
-double stored(const SoilNode& node, double z) {
-  return 0.5 * node.elastic(z) * std::max(z - node.plastic, 0.0);
-}
+double stored(const SoilNode& node, double z) { return 0.5 * node.elastic(z) * std::max(z - node.plastic, 0.0); }
 
 TEST(PressureSinkage, first_loading_is_bekkers_curve) {
   for (const double n : {0.3, 0.79, 1.0, 1.6}) {
@@ -42,8 +40,7 @@ TEST(PressureSinkage, first_loading_is_bekkers_curve) {
     double z = 0.0;
     for (int i = 1; i <= 50; ++i) {
       const double next = 1e-3 * i;
-      EXPECT_NEAR(press(law, k, z, next, 0.0, node).pressure / (k * std::pow(next, n)), 1.0, 1e-12)
-          << n << ' ' << i;
+      EXPECT_NEAR(press(law, k, z, next, 0.0, node).pressure / (k * std::pow(next, n)), 1.0, 1e-12) << n << ' ' << i;
       z = next;
     }
   }
@@ -55,8 +52,7 @@ TEST(PressureSinkage, unloading_and_reloading_are_wongs_line_and_the_curve_goes_
   PressureLaw law = kLete;
   law.k_phi = 505.8e3;  // softer than its own line from the beginning on
   law.n = 0.7;
-  const double k = law.modulus(0.1), z_u = 0.02, p_u = k * std::pow(z_u, law.n),
-               k_u = law.unloading_rate * z_u;
+  const double k = law.modulus(0.1), z_u = 0.02, p_u = k * std::pow(z_u, law.n), k_u = law.unloading_rate * z_u;
   way.go(law, k, node, z_u);
   for (const double z : {0.018, 0.0175, 0.019, z_u}) {
     way.go(law, k, node, z, 7);
@@ -86,8 +82,7 @@ TEST(PressureSinkage, work_is_stored_or_lost_and_never_gained) {
         most = std::max(most, way.work);
         EXPECT_GE(way.lost, lost - 1e-9 * most) << n << ' ' << rate << ' ' << z;
         lost = way.lost;
-        EXPECT_NEAR((way.lost + stored(node, z) - way.work) / most, 0.0, 2e-3)
-            << n << ' ' << rate << ' ' << z;
+        EXPECT_NEAR((way.lost + stored(node, z) - way.work) / most, 0.0, 2e-3) << n << ' ' << rate << ' ' << z;
         EXPECT_GE(node.plastic, 0.0);
       }
     }

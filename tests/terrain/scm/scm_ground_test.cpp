@@ -1,4 +1,5 @@
-// Empirical soil under a plate against Bekker's, Wong's and Janosi's closed forms; momentum, energy, continuation, messages.
+// Empirical soil under a plate against Bekker's, Wong's and Janosi's closed forms; momentum, energy, continuation,
+// messages.
 #include "terrain/scm/scm_ground.hpp"
 
 #include <gtest/gtest.h>
@@ -41,8 +42,7 @@ TEST(ScmGround, a_plate_meets_bekkers_curve_with_the_width_of_its_patch) {
     for (int i = 0; i < 100; ++i) {
       tool.move(*ground, {0.0, 0.0, -speed}, 0.0, dt);
       const double z = speed * dt * (i + 0.5);  // forces are those of the middle
-      EXPECT_NEAR(tool.sums.force.z() / (kArea * bekker(options, given > 0.0 ? given : kWidth, z)), 1.0, 1e-9)
-          << i;
+      EXPECT_NEAR(tool.sums.force.z() / (kArea * bekker(options, given > 0.0 ? given : kWidth, z)), 1.0, 1e-9) << i;
       EXPECT_NEAR(tool.sums.force.head<2>().norm() / tool.sums.force.z(), 0.0, 1e-12);
       EXPECT_LT(tool.sums.transfer_force_residual, 1e-12);
       EXPECT_LT(tool.sums.transfer_moment_residual, 1e-12);
@@ -87,8 +87,7 @@ TEST(ScmGround, a_plate_unloads_and_reloads_along_wongs_line_and_leaves_a_rut) {
   const TerrainEnergies e = ground->state().energies;
   EXPECT_EQ(e.stored(), 0.0);
   const double compaction =
-      kArea *
-      ((options.bekker_k_c / 0.1 + options.bekker_k_phi) * std::pow(z_u, 1.7) / 1.7 - 0.5 * p_u * p_u / k_u);
+      kArea * ((options.bekker_k_c / 0.1 + options.bekker_k_phi) * std::pow(z_u, 1.7) / 1.7 - 0.5 * p_u * p_u / k_u);
   EXPECT_NEAR(e.normal_damping_loss / compaction, 1.0, 0.01);
   EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * compaction);
   // The second load meets nothing above the rut, then the line, then the curve.
@@ -150,8 +149,7 @@ TEST(ScmGround, a_plate_that_slides_meets_janosis_curve_under_mohr_coulombs_limi
   tool.attach(*ground, 10.0);
   for (int i = 0; i < 100; ++i) tool.move(*ground, {0.0, 0.0, -0.1}, 0.0, 1e-3);
   const double dt = 1e-3, speed = 0.045, p = bekker(options, kWidth, 0.01);
-  const double limit =
-      kArea * (options.mohr_cohesion + p * std::tan(options.mohr_friction_angle * M_PI / 180.0));
+  const double limit = kArea * (options.mohr_cohesion + p * std::tan(options.mohr_friction_angle * M_PI / 180.0));
   const Vec3 way(0.6, -0.8, 0.0);
   for (int i = 0; i < 100; ++i) {
     tool.move(*ground, speed * way, 0.0, dt);
@@ -228,8 +226,7 @@ TEST(ScmGround, says_what_is_wrong_with_its_options) {
   EXPECT_EQ(told([](ScmOptions& o) { o.grid_spacing = 1e-5; }),
             "mine.json: key 'terrain.grid_spacing': is 1e-05: 1 m x 0.4 m have 4e+09 nodes, expected at most "
             "1e+08");
-  EXPECT_NE(told([](ScmOptions& o) { o.mohr_friction_angle = 90.0; }).find("from 0 to 80 degrees"),
-            std::string::npos);
+  EXPECT_NE(told([](ScmOptions& o) { o.mohr_friction_angle = 90.0; }).find("from 0 to 80 degrees"), std::string::npos);
   EXPECT_NE(told([](ScmOptions& o) { o.rebound_damping = NAN; }).find("rebound_damping"), std::string::npos);
 }
 
@@ -246,17 +243,19 @@ TEST(ScmGround, refuses_a_grid_too_coarse_for_a_surface_and_a_soil_that_cannot_b
   options.grid_spacing = 0.025;
   EXPECT_EQ(refused(options), "");
   options.grid_spacing = 0.03;
-  EXPECT_EQ(refused(options),
-            "scenario: key 'terrain.grid_spacing': is 0.03 m, expected at most 0.025 m, a quarter of the tire's width (a "
-            "tenth is good)");
+  EXPECT_EQ(
+      refused(options),
+      "scenario: key 'terrain.grid_spacing': is 0.03 m, expected at most 0.025 m, a quarter of the tire's width (a "
+      "tenth is good)");
   options.grid_spacing = 0.01;
   options.bekker_k_phi = 291e3;
   options.bekker_k_c = -29e3;
   EXPECT_EQ(refused(options), "");
   options.bekker_k_c = -30e3;
-  EXPECT_EQ(refused(options),
-            "scenario: key 'terrain.bekker_k_c': is -30000, expected above -2.91e+04: k_c/b + k_phi has to be above 0 for "
-            "a b of the tire's width, 0.1 m");
+  EXPECT_EQ(
+      refused(options),
+      "scenario: key 'terrain.bekker_k_c': is -30000, expected above -2.91e+04: k_c/b + k_phi has to be above 0 for "
+      "a b of the tire's width, 0.1 m");
 }
 
 TEST(ScmGround, stops_when_a_tire_leaves_it_and_refuses_one_that_starts_in_it) {

@@ -1,8 +1,9 @@
-// A rigid wheel on empirical soil against the integrals of Bekker, Wong & Reece and Janosi (terrain/soil/bekker_wong.hpp).
+// A rigid wheel on empirical soil against the integrals of Bekker, Wong & Reece and Janosi
+// (terrain/soil/bekker_wong.hpp).
 //
-// The theory's stresses with the largest pressure at the lowest point (c₁ = c₂ = 0) are those of the engine but for what
-// springs back behind that point. With Wong & Reece's θ_m the largest pressure stands farther ahead, which soil that is
-// pressed node by node does not know: the pull is lower then.
+// The theory's stresses with the largest pressure at the lowest point (c₁ = c₂ = 0) are those of the engine but for
+// what springs back behind that point. With Wong & Reece's θ_m the largest pressure stands farther ahead, which soil
+// that is pressed node by node does not know: the pull is lower then.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,8 +69,7 @@ soil::WheelEstimate theory(const ScmOptions& o, double load, double slip, double
                                 .cohesion = o.mohr_cohesion,
                                 .phi = o.mohr_friction_angle * M_PI / 180.0,
                                 .K = o.janosi_k};
-  return soil::rigid_wheel(soil, {.radius = kRadius, .width = kWheelWidth, .load = load, .c1 = c1, .c2 = c2},
-                           slip);
+  return soil::rigid_wheel(soil, {.radius = kRadius, .width = kWheelWidth, .load = load, .c1 = c1, .c2 = c2}, slip);
 }
 
 TEST(ScmWheel, pulls_and_sinks_as_the_integrals_of_its_stresses_say) {
@@ -81,8 +81,8 @@ TEST(ScmWheel, pulls_and_sinks_as_the_integrals_of_its_stresses_say) {
     std::printf(
         "slip %.2f: load %.0f N; sinkage 30.0 mm, theory %.1f, with theta_m %.1f; pull %.1f N, %.1f, %.1f; "
         "torque %.1f N m, %.1f, %.1f\n",
-        slip, found.lift, 1e3 * same.sinkage, 1e3 * reece.sinkage, found.pull, same.pull, reece.pull,
-        found.torque, same.torque, reece.torque);
+        slip, found.lift, 1e3 * same.sinkage, 1e3 * reece.sinkage, found.pull, same.pull, reece.pull, found.torque,
+        same.torque, reece.torque);
     EXPECT_NEAR(same.sinkage / 0.03, 1.0, 0.02) << slip;
     EXPECT_NEAR((found.pull - same.pull) / found.lift, 0.0, 0.02) << slip;
     EXPECT_NEAR(found.torque / same.torque, 1.0, 0.03) << slip;

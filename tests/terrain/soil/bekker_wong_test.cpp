@@ -28,8 +28,7 @@ TEST(BekkerWong, resistance_of_bekkers_pressure_is_the_compaction_work) {
     s.n = n;
     const WheelEstimate e = rigid_wheel(s, kBekkerWheel, 0.2);
     ASSERT_TRUE(e.found);
-    EXPECT_NEAR(e.resistance, compaction_resistance(s, kBekkerWheel.width, e.sinkage), 2e-3 * e.resistance)
-        << n;
+    EXPECT_NEAR(e.resistance, compaction_resistance(s, kBekkerWheel.width, e.sinkage), 2e-3 * e.resistance) << n;
     EXPECT_NEAR(e.pull, -e.resistance, 1e-9);
   }
 }

@@ -26,8 +26,7 @@ PlateCurve bekker_curve(double width, double k_c, double k_phi, double n, double
 TEST(Fits, bekker_parameters_of_exact_curves_come_back) {
   // Dry sand of the Land Locomotion Laboratory [Wong, Theory of Ground Vehicles, Table 2.3].
   const double k_c = 990.0, k_phi = 1528430.0, n = 1.1;
-  const std::vector<PlateCurve> plates{bekker_curve(0.05, k_c, k_phi, n, 0.0),
-                                       bekker_curve(0.1, k_c, k_phi, n, 0.0)};
+  const std::vector<PlateCurve> plates{bekker_curve(0.05, k_c, k_phi, n, 0.0), bekker_curve(0.1, k_c, k_phi, n, 0.0)};
   const BekkerFit fit = fit_bekker(plates);
   EXPECT_NEAR(fit.n, n, 1e-12);
   EXPECT_NEAR(fit.k_c, k_c, 1e-6 * k_phi * 0.05);
@@ -36,8 +35,7 @@ TEST(Fits, bekker_parameters_of_exact_curves_come_back) {
 }
 
 TEST(Fits, bekker_fit_ignores_what_no_logarithm_takes) {
-  std::vector<PlateCurve> plates{bekker_curve(0.1, 15e3, 250e3, 0.4, 0.0),
-                                 bekker_curve(0.2, 15e3, 250e3, 0.4, 0.0)};
+  std::vector<PlateCurve> plates{bekker_curve(0.1, 15e3, 250e3, 0.4, 0.0), bekker_curve(0.2, 15e3, 250e3, 0.4, 0.0)};
   plates[0].sinkage.push_back(-0.01), plates[0].pressure.push_back(5e3);
   plates[1].sinkage.push_back(0.01), plates[1].pressure.push_back(-5.0);
   EXPECT_NEAR(fit_bekker(plates).n, 0.4, 1e-12);

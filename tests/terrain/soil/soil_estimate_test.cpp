@@ -24,9 +24,8 @@ class SoilEstimate : public ::testing::Test {
                 {"tread_width_m", 0.25},
                 {"vertical_load_N", 4600.0},
                 {"slip", 0.3}};
-    soil_ = {
-        {"format_version", 1},        {"k_c", 1e3},        {"k_phi", 1e6}, {"n", 1.0}, {"cohesion_Pa", 100.0},
-        {"friction_angle_deg", 30.0}, {"janosi_K_m", 0.01}};
+    soil_ = {{"format_version", 1},        {"k_c", 1e3},        {"k_phi", 1e6}, {"n", 1.0}, {"cohesion_Pa", 100.0},
+             {"friction_angle_deg", 30.0}, {"janosi_K_m", 0.01}};
   }
 
   /// What is told, or the error.
@@ -61,10 +60,8 @@ TEST_F(SoilEstimate, values_of_other_kinds_are_named) {
     EXPECT_NE(text.find(words), std::string::npos) << text;
   };
   expect(told(with(summary_, "wheels", 3), soil_), "summary.json: key 'wheels': is 3, expected a list");
-  expect(told(with(summary_, "wheels", {3}), soil_),
-         "summary.json: key 'wheels.0': is 3, expected an object");
-  expect(told(summary_, with(soil_, "quick", "no")),
-         "soil.json: key 'quick': is 'no', expected true or false");
+  expect(told(with(summary_, "wheels", {3}), soil_), "summary.json: key 'wheels.0': is 3, expected an object");
+  expect(told(summary_, with(soil_, "quick", "no")), "soil.json: key 'quick': is 'no', expected true or false");
   expect(told(summary_, with(soil_, "standard_error", 3)), "soil.json: key 'standard_error': is 3, expected");
   for (const Json& value : {Json("x"), Json(-1.0)})
     expect(told(summary_, with(soil_, "standard_error", {{"n", value}})), "key 'standard_error.n': is ");

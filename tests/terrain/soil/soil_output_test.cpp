@@ -20,10 +20,10 @@ struct Truth {
   double value = 0.0, scatter = 0.0;  // of one test, or of one bed
 };
 /// What `furrow soil` says of cohesive grains, about, under the names of soil.json.
-const std::map<std::string, Truth> kTruth{
-    {"cohesion_Pa", {6.8e3, 0.0}},  {"friction_angle_deg", {26.5, 0.0}}, {"janosi_K_m", {0.02, 0.003}},
-    {"cone_index_Pa", {80e3, 8e3}}, {"repose_angle_deg", {24.0, 1.0}},   {"k_c", {15e3, 3e3}},
-    {"k_phi", {240e3, 10e3}}};
+const std::map<std::string, Truth> kTruth{{"cohesion_Pa", {6.8e3, 0.0}},     {"friction_angle_deg", {26.5, 0.0}},
+                                          {"janosi_K_m", {0.02, 0.003}},     {"cone_index_Pa", {80e3, 8e3}},
+                                          {"repose_angle_deg", {24.0, 1.0}}, {"k_c", {15e3, 3e3}},
+                                          {"k_phi", {240e3, 10e3}}};
 constexpr double kSinkageExponent = 0.4;
 constexpr double kShearScatter = 1.5e3;  // of τ_max of one test, Pa
 

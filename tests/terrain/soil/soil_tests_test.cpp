@@ -47,10 +47,8 @@ Vec3 area_vector(const Tool& tool) {
 
 TEST(SoilTools, faces_look_outwards) {
   EXPECT_NEAR((area_vector(strip_plate(0.5, 0.2, 0.1, 0.3, 0.1)) - Vec3(0.0, 0.0, -0.04)).norm(), 0.0, 1e-15);
-  EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, 1)) - Vec3(0, 0, 0.24)).norm(), 0.0,
-              1e-15);
-  EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, -1)) + Vec3(0, 0, 0.24)).norm(),
-              0.0, 1e-15);
+  EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, 1)) - Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, -1)) + Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
   const Tool cone = cone_on_shaft(Vec3(0.0, 0.0, 0.0), 0.06, kConeAngle, kConeShaft, 0.1);
   EXPECT_LT(area_vector(cone).norm(), 1e-15);  // closed
   double volume = 0.0;
@@ -58,8 +56,7 @@ TEST(SoilTools, faces_look_outwards) {
     const auto& x = cone.state().position;
     volume += x[t[0]].dot(x[t[1]].cross(x[t[2]])) / 6.0;
   }
-  const double expected =
-      cone_base_area(0.06) * (cone_height(0.06, kConeAngle) / 3.0 + 0.1 * kConeShaft * kConeShaft);
+  const double expected = cone_base_area(0.06) * (cone_height(0.06, kConeAngle) / 3.0 + 0.1 * kConeShaft * kConeShaft);
   EXPECT_NEAR(volume, expected, 1e-9 * expected);
   EXPECT_NEAR(cone_base_area(0.06), std::numbers::pi * 0.0009, 0.02 * std::numbers::pi * 0.0009);
 }

@@ -65,8 +65,7 @@ TEST(Cohesion, pulling_a_pair_apart_takes_the_cohesion_force) {
     Worst path(std::string(law) + ", pair", "force on the way to pull-off", 1e-5, "K delta^1.5 - F_c");
     double largest = 0.0;
     for (int step = 0; step < 5000; ++step) {
-      const double overlap =
-          2 * kRadius - (terrain::dem::position(s, 1) - terrain::dem::position(s, 0)).norm();
+      const double overlap = 2 * kRadius - (terrain::dem::position(s, 1) - terrain::dem::position(s, 0)).norm();
       const double force = force_while_moving(s, {3e-4, 0, 0}).x();
       if (s.accounts().contacts == 0) break;
       path.add(force, stiffness * std::pow(overlap, 1.5) - cohesion_force(), cohesion_force());
@@ -88,8 +87,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
       const terrain::dem::ContactCoefficients k = few.coefficients().floor;
       const double overlap = rest_overlap(k.stiffness, std::max(share - 1.0, 0.005) * weight);
       terrain::dem::GrainSolver s = few.make({{0.3, 0.0, 0.3 - kRadius + overlap}});
-      testing::Surface ceiling =
-          testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [](double, double) { return 0.3; });
+      testing::Surface ceiling = testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [](double, double) { return 0.3; });
       for (auto& t : ceiling.mesh.triangles) std::swap(t[1], t[2]);  // outside down
       SurfaceState start{ceiling.vertex, std::vector<Vec3>(ceiling.vertex.size(), Vec3::Zero())};
       s.surfaces().attach(ceiling.mesh, {}, k, start);
@@ -99,8 +97,8 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
       if (share < 1.0) {
         EXPECT_LT(depth, -0.05) << law;
       } else {
-        verify(std::string(law) + ", hanging from a mesh, F_c = " + brief(share) + " m g", "overlap, m",
-               depth, rest_overlap(k.stiffness, (share - 1.0) * weight), 1e-6, "K delta^1.5 = F_c - m g");
+        verify(std::string(law) + ", hanging from a mesh, F_c = " + brief(share) + " m g", "overlap, m", depth,
+               rest_overlap(k.stiffness, (share - 1.0) * weight), 1e-6, "K delta^1.5 = F_c - m g");
       }
     }
 }
@@ -115,8 +113,7 @@ TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
   const double at_slip = limit / (k.shear_stiffness * std::sqrt(delta));  // m
   terrain::dem::GrainSolver s = pair(few, delta);
   const std::string name = "mindlin, pair, no net load";
-  Worst sticking(name, "friction before slip, of mu F_c", 1e-3,
-                 "Mindlin 1949, 8 G* sqrt(R* delta) x displacement");
+  Worst sticking(name, "friction before slip, of mu F_c", 1e-3, "Mindlin 1949, 8 G* sqrt(R* delta) x displacement");
   Worst sliding(name, "friction after slip, of mu F_c", 1e-3, "mu F_c");
   const double speed = 0.01;
   for (double moved = 0.0; moved < 2.0 * at_slip; moved += kStep * speed) {
@@ -133,11 +130,9 @@ TEST(Cohesion, hertz_tanh_pair_without_net_load_resists_by_speed) {
   const double limit = few.options.friction * cohesion_force();
   Worst worst("hertz_tanh, pair, no net load", "friction by speed, of mu F_c", 1e-4, "mu F_c tanh(c v)");
   for (const double speed : {0.001, 0.01, 0.1, 1.0}) {
-    terrain::dem::GrainSolver s =
-        pair(few, rest_overlap(few.coefficients().pair.stiffness, cohesion_force()));
+    terrain::dem::GrainSolver s = pair(few, rest_overlap(few.coefficients().pair.stiffness, cohesion_force()));
     const double friction = -force_while_moving(s, {0, speed, 0}).y();
-    worst.add(friction / limit, std::tanh(few.options.friction_velocity_scale * speed), 0.0,
-              brief(speed) + " m/s");
+    worst.add(friction / limit, std::tanh(few.options.friction_velocity_scale * speed), 0.0, brief(speed) + " m/s");
   }
 }
 

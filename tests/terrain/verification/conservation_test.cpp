@@ -73,21 +73,20 @@ TEST(Conservation, crowd_keeps_momentum_and_angular_momentum_with_spin) {
         double exchanged = 0.0;
         for (int id = 0; id < count; ++id)
           exchanged += s.params().grain.inertia * (terrain::dem::spin(s, id) - spin_before[id]).norm();
-        const std::string name = std::string(law) + (rolling > 0.0 ? ", rolling resistance" : "") + ", " +
-                                 std::to_string(count) + " grains";
+        const std::string name =
+            std::string(law) + (rolling > 0.0 ? ", rolling resistance" : "") + ", " + std::to_string(count) + " grains";
         EXPECT_GT(exchanged, 1e-7 * count);
         EXPECT_EQ(s.accounts().wall_impulse.norm(), 0.0);
         verify(name, "momentum lost, of all", (after.momentum - before.momentum).norm(), 0.0, 1e-13,
                "Newton's third law", before.speed);
-        verify(name, "angular momentum lost, of the spins' change", (after.angular - before.angular).norm(),
-               0.0, 1e-7, "one contact point for both arms", exchanged);
+        verify(name, "angular momentum lost, of the spins' change", (after.angular - before.angular).norm(), 0.0, 1e-7,
+               "one contact point for both arms", exchanged);
       }
 }
 
 /// Frictionless and undamped the kinetic energy after an oblique collision is that before; at the integrator's order.
 TEST(Conservation, elastic_collision_keeps_its_energy) {
-  Worst worst("mindlin, elastic, frictionless", "kinetic energy after a pair's collision", 1e-5,
-              "energy balance");
+  Worst worst("mindlin, elastic, frictionless", "kinetic energy after a pair's collision", 1e-5, "energy balance");
   for (const double offset : {0.0, 0.004, 0.008, 0.011}) {  // m, of the lines of flight
     EngineGrains few;
     few.options.restitution = 1.0;

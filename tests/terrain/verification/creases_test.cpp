@@ -35,8 +35,7 @@ EngineGrains carried() {
 }
 
 /// Forces on a grain whose centre goes along path(0 … 1) in `steps` steps, in shares of the plane's normal force.
-std::vector<Vec3> forces_along(const testing::Surface& surface, const std::function<Vec3(double)>& path,
-                               int steps) {
+std::vector<Vec3> forces_along(const testing::Surface& surface, const std::function<Vec3(double)>& path, int steps) {
   const EngineGrains few = carried();
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
   const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, dt = 1e-5;
@@ -60,8 +59,7 @@ std::vector<Vec3> forces_along(const testing::Surface& surface, const std::funct
 
 double largest_jump(const std::vector<Vec3>& forces, std::size_t from) {
   double jump = 0.0;
-  for (std::size_t n = from + 1; n < forces.size(); ++n)
-    jump = std::max(jump, (forces[n] - forces[n - 1]).norm());
+  for (std::size_t n = from + 1; n < forces.size(); ++n) jump = std::max(jump, (forces[n] - forces[n - 1]).norm());
   return jump;
 }
 
@@ -119,8 +117,7 @@ TEST(Creases, force_over_creases_warped_quads_and_fans_is_continuous) {
       const double height = (kRadius - kOverlap) / std::cos(half);
       expect_continuous(
           brief(degrees) + " degrees", testing::crease(half),
-          [=](double share) { return Vec3(reach * (2.0 * share - 1.0), 0.0013 + 2e-4 * share, height); },
-          worst);
+          [=](double share) { return Vec3(reach * (2.0 * share - 1.0), 0.0013 + 2e-4 * share, height); }, worst);
     }
   }
   {
@@ -134,8 +131,7 @@ TEST(Creases, force_over_creases_warped_quads_and_fans_is_continuous) {
         const Vec3 from(0.02 * any(), 0.02 * any(), kRadius - kOverlap);
         const Vec3 way(0.008 * any(), 0.008 * any(), 0.0);
         expect_continuous(
-            "roughness " + brief(rough) + " m", warped,
-            [=](double share) { return Vec3(from + share * way); }, worst);
+            "roughness " + brief(rough) + " m", warped, [=](double share) { return Vec3(from + share * way); }, worst);
       }
     }
   }
@@ -149,9 +145,7 @@ TEST(Creases, force_over_creases_warped_quads_and_fans_is_continuous) {
           const double reach = std::min(1e-3, 0.5 * kOverlap / std::abs(slope));
           expect_continuous(
               std::to_string(count) + " triangles, slope " + brief(slope), around,
-              [=](double share) {
-                return Vec3(reach * (2.0 * share - 1.0), aside + 0.1 * reach * share, height);
-              },
+              [=](double share) { return Vec3(reach * (2.0 * share - 1.0), aside + 0.1 * reach * share, height); },
               worst);
         }
   }
@@ -167,8 +161,7 @@ TEST(Creases, force_over_warped_quads_tends_to_the_planes) {
     const testing::Surface warped =
         testing::sheet(-0.05, -0.05, 0.01, 10, 10, [&](double, double) { return rough * any(); });
     const auto forces = forces_along(
-        warped, [](double share) { return Vec3(-0.02 + 0.04 * share, 0.0137 * share, kRadius - kOverlap); },
-        4000);
+        warped, [](double share) { return Vec3(-0.02 + 0.04 * share, 0.0137 * share, kRadius - kOverlap); }, 4000);
     double off = 0.0;
     for (std::size_t n = 1000; n < forces.size(); ++n) {
       const Vec3 way = Vec3(0.04, 0.0137, 0.0).normalized();

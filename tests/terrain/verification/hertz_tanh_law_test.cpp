@@ -80,9 +80,8 @@ TEST(HertzTanhLaw, restitution_falls_with_speed_as_the_integrated_equation_says)
 // along the elastic path, twice g ∫ √δ δ̇ dδ, gives
 //   e = 1 − ζ + 3/5 ζ² + O(ζ³),    ζ = 4/5 B(3/5, 3/2) g δ_m^{3/2} / (m v),  δ_m^{5/2} = 5 m v²/(4 k):  ζ ∝ v^{1/5}.
 TEST(HertzTanhLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
-  Worst worst(
-      "hertz_tanh, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
-      "Kuwabara & Kono 1987 doi:10.1143/JJAP.26.1230, Ramirez et al. 1999 doi:10.1103/PhysRevE.60.4465");
+  Worst worst("hertz_tanh, weak damping", "(1 - e)/v^(1/5) by zeta, 1 cm/s to 1 m/s", 1e-3,
+              "Kuwabara & Kono 1987 doi:10.1143/JJAP.26.1230, Ramirez et al. 1999 doi:10.1103/PhysRevE.60.4465");
   for (const double speed : {0.01, 0.1, 1.0}) {
     EngineGrains few = hertz_tanh();
     few.options.normal_damping = 3.0;
@@ -110,8 +109,7 @@ TEST(HertzTanhLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
       const Vec3 foot(0.2, 0.0, 0.3);
       const double rest = kRadius - std::pow(load / k.stiffness, 2.0 / 3.0);
       terrain::dem::GrainSolver s = few.make({terrain::dem::quad(foot + turn * Vec3(0.0, 0.0, rest))});
-      testing::Surface slope =
-          testing::sheet(-0.0931, -0.0172, 0.02, 20, 2, [](double, double) { return 0.0; });
+      testing::Surface slope = testing::sheet(-0.0931, -0.0172, 0.02, 20, 2, [](double, double) { return 0.0; });
       for (Vec3& x : slope.vertex) x = foot + turn * x;
       SurfaceState start{slope.vertex, std::vector<Vec3>(slope.vertex.size(), Vec3::Zero())};
       s.surfaces().attach(slope.mesh, {}, k, start);
@@ -143,8 +141,7 @@ TEST(HertzTanhLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
       few.make({{0.1, 0, kRadius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0)}});
   terrain::dem::set_velocity(s, 0, {speed, 0, 0});
   // The arm is r − δ; δ/r is 1.3e-3.
-  Worst path("hertz_tanh, sliding sphere", "speed along the way", 1e-3,
-             "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");
+  Worst path("hertz_tanh, sliding sphere", "speed along the way", 1e-3, "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");
   const double dt = 1e-5;
   for (int step = 1; step <= 60000; ++step) {
     s.step(dt);
@@ -153,8 +150,8 @@ TEST(HertzTanhLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
     path.add(terrain::dem::velocity(s, 0).x(), (5.0 * speed + 2.0 * std::asinh(left) / c) / 7.0, speed,
              brief(step * dt) + " s");
   }
-  verify("hertz_tanh, sliding sphere", "final speed, m/s", terrain::dem::velocity(s, 0).x(),
-         5.0 / 7.0 * speed, 1e-3, "5 u0/7");
+  verify("hertz_tanh, sliding sphere", "final speed, m/s", terrain::dem::velocity(s, 0).x(), 5.0 / 7.0 * speed, 1e-3,
+         "5 u0/7");
 }
 
 }  // namespace

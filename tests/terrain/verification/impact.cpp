@@ -22,9 +22,7 @@ struct Law {
     inertia = 0.4 * mass * radius * radius;
     const double compliance = (1.0 - c.sphere.poisson * c.sphere.poisson) / c.sphere.young +
                               (1.0 - c.partner.poisson * c.partner.poisson) / c.partner.young;
-    const auto shear = [](const Elastic& e) {
-      return (2.0 - e.poisson) / (e.young / (2.0 * (1.0 + e.poisson)));
-    };
+    const auto shear = [](const Elastic& e) { return (2.0 - e.poisson) / (e.young / (2.0 * (1.0 + e.poisson))); };
     const double e_star = 1.0 / compliance, g_star = 1.0 / (shear(c.sphere) + shear(c.partner));
     const double root_r = std::sqrt(1.0 / (1.0 / c.radius + 1.0 / c.partner_radius));
     const double l = std::log(c.restitution), beta = -l / std::sqrt(l * l + kPi * kPi);
@@ -85,8 +83,7 @@ terrain::dem::ContactCoefficients solver_coefficients(const ImpactCase& c) {
   partner.young_modulus = c.partner.young, partner.poisson_ratio = c.partner.poisson;
   sphere.friction = partner.friction = c.friction;
   sphere.restitution = partner.restitution = c.restitution;
-  terrain::dem::ContactCoefficients k =
-      terrain::dem::mix(sphere, partner, terrain::dem::Partner::surface, grain, {});
+  terrain::dem::ContactCoefficients k = terrain::dem::mix(sphere, partner, terrain::dem::Partner::surface, grain, {});
   // The engine's surfaces are flat; a round partner is one with another R*.
   const double share = 1.0 / (1.0 + c.radius / c.partner_radius);
   k.stiffness *= std::sqrt(share), k.shear_stiffness *= std::sqrt(share);
@@ -115,8 +112,7 @@ Rebound hertz_impact(double stiffness, double mass, double speed) {
   return out;
 }
 
-Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground ground, int steps,
-                      const Watch& watch) {
+Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground ground, int steps, const Watch& watch) {
   const double r = impact.radius;
   terrain::dem::SolverParams params;
   params.grain = terrain::dem::grain_properties(r, impact.density);
@@ -132,8 +128,7 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   const Vec3 foot(40.0 * r, 0.0, mesh ? 20.0 * r : 0.0), up = turn * Vec3::UnitZ();
   solver.place({terrain::dem::quad(foot + r * up)});
   if (mesh) {
-    testing::Surface sheet =
-        testing::sheet(-4.3 * r, -3.83 * r, 2.0 * r, 4, 4, [](double, double) { return 0.0; });
+    testing::Surface sheet = testing::sheet(-4.3 * r, -3.83 * r, 2.0 * r, 4, 4, [](double, double) { return 0.0; });
     for (Vec3& x : sheet.vertex) x = foot + turn * x;
     SurfaceState start;
     start.position = sheet.vertex;
@@ -176,8 +171,8 @@ Rebound integrated_impact(const ImpactCase& impact, const Motion& before) {
   State s{1e-9 * h * before.normal, before.normal, before.tangential, before.spin, 0.0};
   Rebound out;
   for (int step = 0; step < 20 * kSteps && s[0] > 0.0; ++step) {
-    const State k1 = rate(law, s), k2 = rate(law, advanced(s, k1, 0.5 * h)),
-                k3 = rate(law, advanced(s, k2, 0.5 * h)), k4 = rate(law, advanced(s, k3, h));
+    const State k1 = rate(law, s), k2 = rate(law, advanced(s, k1, 0.5 * h)), k3 = rate(law, advanced(s, k2, 0.5 * h)),
+                k4 = rate(law, advanced(s, k3, h));
     for (std::size_t k = 0; k < s.size(); ++k) s[k] += h / 6.0 * (k1[k] + 2.0 * k2[k] + 2.0 * k3[k] + k4[k]);
     if (!(s[0] > 0.0)) break;
     cut(law, s);
@@ -192,13 +187,11 @@ Rebound integrated_impact(const ImpactCase& impact, const Motion& before) {
 Motion sliding_rebound(const ImpactCase& impact, const Motion& before) {
   const double way = before.sliding(impact.radius) > 0.0 ? 1.0 : -1.0;
   const double impulse = way * impact.friction * (1.0 + impact.restitution) * before.normal;
-  return {impact.restitution * before.normal, before.tangential - impulse,
-          before.spin + 2.5 * impulse / impact.radius};
+  return {impact.restitution * before.normal, before.tangential - impulse, before.spin + 2.5 * impulse / impact.radius};
 }
 
 bool slides_throughout(const ImpactCase& impact, const Motion& before) {
-  return std::abs(before.sliding(impact.radius)) >=
-         3.5 * impact.friction * (1.0 + impact.restitution) * before.normal;
+  return std::abs(before.sliding(impact.radius)) >= 3.5 * impact.friction * (1.0 + impact.restitution) * before.normal;
 }
 
 // With x = (δ/δ_m)^{5/2}, δ̇² = v_n² (1 − x), and λ = 7/2 · 8G*/(2E*), neglecting δ against R:

@@ -74,8 +74,7 @@ TEST(NormalImpact, chung_ooi_2011_test_1_of_two_equal_spheres_is_hertz) {
     Elastic material;
     double density;
   };
-  for (const Case& one :
-       {Case{"glass", chung_ooi::kGlass, 2800.0}, Case{"limestone", chung_ooi::kLimestone, 2500.0}}) {
+  for (const Case& one : {Case{"glass", chung_ooi::kGlass, 2800.0}, Case{"limestone", chung_ooi::kLimestone, 2500.0}}) {
     const std::string name = std::string("C&O test 1, pair, ") + one.name;
     const double radius = 0.010, speed = 10.0;
     Trace trace;
@@ -129,16 +128,15 @@ TEST(NormalImpact, chung_ooi_2011_test_3_rebounds_with_the_restitution_asked_for
     Elastic material;
     double density;
   };
-  for (const Case& one : {Case{"aluminium oxide", chung_ooi::kAluminiumOxide, 4000.0},
-                          Case{"cast iron", chung_ooi::kCastIron, 7000.0}})
+  for (const Case& one :
+       {Case{"aluminium oxide", chung_ooi::kAluminiumOxide, 4000.0}, Case{"cast iron", chung_ooi::kCastIron, 7000.0}})
     for (const Ground ground : {Ground::plane, Ground::mesh}) {
       Worst worst(std::string("C&O test 3, ") + name_of(ground) + ", " + one.name, "restitution", 1e-2,
                   "Antypov & Elliott 2011 doi:10.1209/0295-5075/94/50004");
       for (const double e : {0.2, 0.4, 0.6, 0.8, 1.0}) {
         ImpactCase impact{0.0025, one.density, one.material, rigid()};
         impact.restitution = e;
-        worst.add(solver_impact(impact, {3.9, 0.0, 0.0}, ground, kSteps).after.normal / 3.9, e, 0.0,
-                  brief(e));
+        worst.add(solver_impact(impact, {3.9, 0.0, 0.0}, ground, kSteps).after.normal / 3.9, e, 0.0, brief(e));
       }
     }
 }

@@ -62,8 +62,7 @@ class AgainstIntegration {
   Worst normal_, tangential_, spin_;
 };
 
-void test_4(const Material& material, Ground ground,
-            std::span<const verification::chung_ooi::Point> restitution,
+void test_4(const Material& material, Ground ground, std::span<const verification::chung_ooi::Point> restitution,
             std::span<const verification::chung_ooi::Point> spin,
             std::span<const verification::chung_ooi::Point> angle) {
   const std::string name = title(4, ground, material);
@@ -85,13 +84,11 @@ void test_4(const Material& material, Ground ground,
   Worst of_spin(name, "spin after, rad/s", 0.03, kDigitised);
   Worst of_spin_sticking(name, "spin after, rad/s, sticking", 0.05, kDigitised);
   for (const verification::chung_ooi::Point& p : spin)
-    (p.x < 7.0 ? of_spin_sticking : of_spin)
-        .add(rebound(p.x).second.spin, p.y, 620.0, brief(p.x) + " degrees");
+    (p.x < 7.0 ? of_spin_sticking : of_spin).add(rebound(p.x).second.spin, p.y, 620.0, brief(p.x) + " degrees");
   Worst of_angle(name, "rebound angle of the contact, degrees", 0.03, kDigitised);
   for (const verification::chung_ooi::Point& p : angle) {
     const Motion after = rebound(p.x).second;
-    of_angle.add(std::atan2(after.sliding(impact.radius), after.normal) / kDegree, p.y, 90.0,
-                 brief(p.x) + " degrees");
+    of_angle.add(std::atan2(after.sliding(impact.radius), after.normal) / kDegree, p.y, 90.0, brief(p.x) + " degrees");
   }
 }
 
@@ -100,8 +97,7 @@ TEST(ObliqueImpact, chung_ooi_2011_test_4_constant_speed_and_varied_angle) {
   const Material alloy{"aluminium alloy", chung_ooi::kAluminium, 2700.0};
   for (const Ground ground : {Ground::plane, Ground::mesh}) {
     test_4(oxide, ground, chung_ooi::kTest4Restitution, chung_ooi::kTest4Spin, chung_ooi::kTest4Angle);
-    test_4(alloy, ground, chung_ooi::kTest4RestitutionAlloy, chung_ooi::kTest4SpinAlloy,
-           chung_ooi::kTest4Angle);
+    test_4(alloy, ground, chung_ooi::kTest4RestitutionAlloy, chung_ooi::kTest4SpinAlloy, chung_ooi::kTest4Angle);
   }
 }
 
@@ -120,8 +116,7 @@ void test_5(const Material& material, Ground ground, std::span<const verificatio
     integrated.add(impact, before, out);
     // Mean arm, force-weighted: ∫ F δ dt / ∫ F dt = δ_m B(7/5, 1/2)/B(1, 1/2) = 0.8176 δ_m.
     const double arm = 1.0 - std::beta(1.4, 0.5) / std::beta(1.0, 0.5) * out.max_overlap / impact.radius;
-    if (slides_throughout(impact, before))
-      slide.add(out.after.spin, arm * sliding_rebound(impact, before).spin);
+    if (slides_throughout(impact, before)) slide.add(out.after.spin, arm * sliding_rebound(impact, before).spin);
     return out.after;
   };
   const auto local = [&](const Motion& after) {
@@ -173,8 +168,7 @@ TEST(ObliqueImpact, chung_ooi_2011_test_6_constant_normal_speed_and_varied_spin)
   const Material nylon{"nylon", chung_ooi::kNylon, 1000.0};
   for (const Ground ground : {Ground::plane, Ground::mesh}) {
     test_6(title(6, ground, alloy), impact_case(0.1, alloy, 0.5, 0.4), ground, chung_ooi::kTest6Restitution);
-    test_6(title(6, ground, nylon), impact_case(0.1, nylon, 0.5, 0.4), ground,
-           chung_ooi::kTest6RestitutionNylon);
+    test_6(title(6, ground, nylon), impact_case(0.1, nylon, 0.5, 0.4), ground, chung_ooi::kTest6RestitutionNylon);
     Worst angle(title(6, ground, alloy), "v_s'/v_n'", 0.04, kDigitised);
     const ImpactCase impact = impact_case(0.1, alloy, 0.5, 0.4);
     for (const verification::chung_ooi::Point& p : chung_ooi::kTest6Angle) {
@@ -238,8 +232,7 @@ TEST(ObliqueImpact, chung_ooi_2011_test_7_of_equal_spheres_with_opposite_spins_k
     const std::string name = std::string("C&O test 7, pair, ") + material.name;
     const ImpactCase impact = impact_case(0.1, material, 0.5, 0.4);
     Worst spin(name, "spin after, rad/s", 1e-5, "no sliding: unchanged; as the published curve");
-    Worst tangential(name, "tangential speed after, of the normal", 1e-5,
-                     "no sliding: none; as the published curve");
+    Worst tangential(name, "tangential speed after, of the normal", 1e-5, "no sliding: none; as the published curve");
     Worst normal(name, "normal speed after, m/s", 1e-2, "e v_n");
     for (const double omega : {0.175, 0.536, 0.933, 1.40, 2.0, 2.86, 4.29, 7.46, 22.86}) {
       const Motion after = pair_impact(impact, 0.2, omega, -omega, kSteps);
@@ -290,13 +283,11 @@ TEST(ObliqueImpact, friction_impulse_exceeds_the_rigid_bodys_by_the_dampers_pull
       const ImpactCase impact = impact_case(0.006, steel, e, 0.1);
       const Motion before{0.1, 1.0, 0.0};
       const double rigid_body = before.tangential - sliding_rebound(impact, before).tangential;
-      const double solved =
-          before.tangential - solver_impact(impact, before, ground, kSteps).after.tangential;
+      const double solved = before.tangential - solver_impact(impact, before, ground, kSteps).after.tangential;
       const double truth = before.tangential - integrated_impact(impact, before).after.tangential;
       const std::string name = std::string("sliding impact, ") + name_of(ground) + ", e = " + brief(e);
       verify(name, "friction impulse, of the rigid body's", solved / rigid_body, 1.0, tolerance, kSliding);
-      verify(name, "friction impulse, of the rigid body's", solved / rigid_body, truth / rigid_body, 1e-3,
-             kIntegrated);
+      verify(name, "friction impulse, of the rigid body's", solved / rigid_body, truth / rigid_body, 1e-3, kIntegrated);
     }
 }
 

@@ -108,8 +108,7 @@ TEST(Repose, angle_grows_with_rolling_and_sliding_friction_as_zhou_2001_found) {
 
   const Heap smooth = heap(0.2, 0.2), rough = heap(0.5, 0.2);
   EXPECT_GT(rough.angle, smooth.angle + 3.0);
-  verify(name, "ratio of angles, mu = 0.5 by 0.2, is above 1", rough.angle / smooth.angle > 1.0, 1.0, 0.0,
-         kZhou);
+  verify(name, "ratio of angles, mu = 0.5 by 0.2, is above 1", rough.angle / smooth.angle > 1.0, 1.0, 0.0, kZhou);
   const Heap soft = heap(0.5, 0.2, 1e7);
   verify(name, "mean height with a modulus of 1e7 by 2.5e7", soft.height / rough.height, 1.0, 0.1,
          kZhou + ": hardly any influence of the modulus");
@@ -127,8 +126,8 @@ TEST(Repose, hertz_tanh_heap_flows_on) {
   // It would take all day to see it flat; a tenth in as long again is not rest.
   EXPECT_LT(angle_of(s), angle);
   EXPECT_LT(mean_height(s), 0.9 * early);
-  verify("collapsed column, hertz_tanh", "mean height sinks by over 10 % from 1.5 to 3 s",
-         mean_height(s) < 0.9 * early, 1.0, 0.0, "no static friction: creep at any slope");
+  verify("collapsed column, hertz_tanh", "mean height sinks by over 10 % from 1.5 to 3 s", mean_height(s) < 0.9 * early,
+         1.0, 0.0, "no static friction: creep at any slope");
 }
 
 }  // namespace

@@ -23,8 +23,7 @@ testing::Surface plane_at(const Vec3& foot, const Quat& turn) {
   return s;
 }
 
-void attach(terrain::dem::GrainSolver& s, const testing::Surface& surface,
-            const terrain::dem::ContactCoefficients& k) {
+void attach(terrain::dem::GrainSolver& s, const testing::Surface& surface, const terrain::dem::ContactCoefficients& k) {
   const SurfaceState start{surface.vertex, std::vector<Vec3>(surface.vertex.size(), Vec3::Zero())};
   s.surfaces().attach(surface.mesh, {}, k, start);
   s.surfaces().move_to(0.0);
@@ -76,8 +75,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   few.options.length = 1.0;
   few.gravity = kStandardGravity;
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, angle = 0.2,
-               dt = 1e-5;
+  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, angle = 0.2, dt = 1e-5;
   const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   const Vec3 foot(0.1, 0.0, 0.3), down = turn * Vec3::UnitX(), up = turn * Vec3::UnitZ();
   const double load = mass * few.gravity * std::cos(angle);
@@ -102,8 +100,8 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
     normal.add(force.dot(up), load, 0.0, where);
   }
   const double time = step * dt;
-  verify(name, "way after its time, m", (terrain::dem::position(s, 0) - foot).dot(down),
-         0.5 * rolling * time * time, 1e-3, "5/7 g sin(a) t^2/2, with the arm r - delta");
+  verify(name, "way after its time, m", (terrain::dem::position(s, 0) - foot).dot(down), 0.5 * rolling * time * time,
+         1e-3, "5/7 g sin(a) t^2/2, with the arm r - delta");
 }
 
 /// A grain of 2000 t that keeps its velocity draws Mindlin's spring while its contact crosses edges and a vertex.
@@ -117,12 +115,10 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
     const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
     const double overlap = 1e-4, speed = 0.02, dt = 1e-5, height = 0.05;
     // Cells of 10 mm: the way of 16 mm crosses diagonals and two cell borders, or runs through vertices.
-    terrain::dem::GrainSolver s =
-        few.make({{0.296, through_vertex ? 0.0 : 0.0037, height + kRadius - overlap}});
+    terrain::dem::GrainSolver s = few.make({{0.296, through_vertex ? 0.0 : 0.0037, height + kRadius - overlap}});
     testing::Surface mesh = testing::sheet(0.2, -0.05, 0.01, 20, 10, [=](double, double) { return height; });
     attach(s, mesh, k);
-    Worst worst(std::string("sticking grain moved over a mesh") +
-                    (through_vertex ? ", along edges and vertices" : ""),
+    Worst worst(std::string("sticking grain moved over a mesh") + (through_vertex ? ", along edges and vertices" : ""),
                 "spring force, N", 1e-6, "Mindlin 1949, 8 G* sqrt(R delta) x displacement");
     const Vec3 way(speed, through_vertex ? 0.0 : 0.1 * speed, 0.0);
     for (int step = 1; step <= 80000; ++step) {

@@ -20,8 +20,7 @@ constexpr double kRadius = 0.006;  // m
 constexpr double kStep = 2e-5;     // s
 
 void attach_ground(terrain::dem::GrainSolver& s, const terrain::dem::ContactCoefficients& k, double height) {
-  const testing::Surface ground =
-      testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [=](double, double) { return height; });
+  const testing::Surface ground = testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [=](double, double) { return height; });
   const SurfaceState start{ground.vertex, std::vector<Vec3>(ground.vertex.size(), Vec3::Zero())};
   s.surfaces().attach(ground.mesh, {}, k, start);
   s.surfaces().move_to(0.0);
@@ -63,8 +62,8 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
             s.grains().spin[g] = {};
           }
         }
-        const std::string name = std::string("column of 12, ") + law + ", " + name_of(ground) +
-                                 (cohesion > 0.0 ? ", cohesion" : "");
+        const std::string name =
+            std::string("column of 12, ") + law + ", " + name_of(ground) + (cohesion > 0.0 ? ", cohesion" : "");
         Worst worst(name, "overlaps, m", 1e-5, "K delta^1.5 = n m g + F_c");
         double below = bottom - kRadius;
         for (int n = 0; n < kCount; ++n) {
@@ -75,8 +74,8 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         }
         const Vec3 before = s.accounts().surface_impulse;
         s.step(kStep);
-        const double carried = ground == Ground::plane ? s.accounts().floor_force
-                                                       : (s.accounts().surface_impulse - before).z() / kStep;
+        const double carried =
+            ground == Ground::plane ? s.accounts().floor_force : (s.accounts().surface_impulse - before).z() / kStep;
         verify(name, "force on the ground, N", carried, kCount * weight, 1e-5, "n m g");
       }
 }
@@ -94,17 +93,14 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
   std::vector<terrain::dem::Quad> at;
   for (int n = 0; n < 3; ++n) {
     const double phi = 2.0 * M_PI * n / 3.0 + 0.2;
-    at.push_back(
-        {0.3 + a / std::sqrt(3.0) * std::cos(phi), a / std::sqrt(3.0) * std::sin(phi), kRadius, 0.0});
+    at.push_back({0.3 + a / std::sqrt(3.0) * std::cos(phi), a / std::sqrt(3.0) * std::sin(phi), kRadius, 0.0});
   }
   at.push_back({0.3, 0.0, kRadius + height, 0.0});
   terrain::dem::GrainSolver s = few.make(at);
   s.set_drag(30.0);
   for (int step = 0; step < 40000; ++step) s.step(kStep);
-  verify("tetrahedron, mindlin", "force on the floor, N", s.accounts().floor_force, 4.0 * weight, 1e-5,
-         "4 m g");
-  Worst share("tetrahedron, mindlin", "overlap of a lower grain with the floor, m", 1e-4,
-              "K delta^1.5 = 4/3 m g");
+  verify("tetrahedron, mindlin", "force on the floor, N", s.accounts().floor_force, 4.0 * weight, 1e-5, "4 m g");
+  Worst share("tetrahedron, mindlin", "overlap of a lower grain with the floor, m", 1e-4, "K delta^1.5 = 4/3 m g");
   for (int n = 0; n < 3; ++n)
     share.add(kRadius - terrain::dem::position(s, n).z(),
               std::pow(4.0 / 3.0 * weight / few.coefficients().floor.stiffness, 2.0 / 3.0));

@@ -23,8 +23,7 @@ tire::Field consistent_weight(const tire::AncfTire& tire) {
   return weight;
 }
 
-TEST(AncfTireBalance,
-     momentum_and_angular_momentum_change_by_contact_gravity_and_spindle_impulse_to_round_off) {
+TEST(AncfTireBalance, momentum_and_angular_momentum_change_by_contact_gravity_and_spindle_impulse_to_round_off) {
   tire::AncfTire tire(small_file());
   const tire::ShellLayout& layout = tire.integrator().layout();
   const tire::Field weight = consistent_weight(tire);
@@ -54,8 +53,8 @@ TEST(AncfTireBalance,
       for (int i = 0; i < layout.columns; ++i) {
         force += layout.get(weight, i, j, 0);
         for (const int s : {0, 3})
-          moment += (0.5 * (layout.get(before, i, j, s) + layout.get(after, i, j, s)))
-                        .cross(layout.get(weight, i, j, s));
+          moment +=
+              (0.5 * (layout.get(before, i, j, s) + layout.get(after, i, j, s))).cross(layout.get(weight, i, j, s));
       }
     scale += 9.81 * tire.mass_properties().mass;
     for (std::size_t k = 0; k < f.vertex.size(); ++k) {
@@ -112,8 +111,8 @@ TEST(AncfTireBalance, energy_closes_to_second_order_of_the_step_with_the_numeric
   EXPECT_LT(std::abs(fine.left_over()), 0.4 * std::abs(coarse.left_over()) + 1e-9 * fine.end.dissipation)
       << coarse.left_over() << " and " << fine.left_over() << " J";
   std::printf("viscous %.4g, numerical %.4g and %.4g, solver %.2g and %.2g, left over %.2g and %.2g J\n",
-              fine.end.dissipation, coarse.end.numerical_loss, fine.end.numerical_loss,
-              coarse.end.solver_loss, fine.end.solver_loss, coarse.left_over(), fine.left_over());
+              fine.end.dissipation, coarse.end.numerical_loss, fine.end.numerical_loss, coarse.end.solver_loss,
+              fine.end.solver_loss, coarse.left_over(), fine.left_over());
 }
 
 /// Each free node loses ½ m |Δv|² = ½ m (ω² r h)² and gets it back through the moment; so a steady spin loses nothing.

@@ -1,6 +1,6 @@
 // What a tire does at the edges of its range: changing and missing pressure, the rim, forces that are not finite.
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

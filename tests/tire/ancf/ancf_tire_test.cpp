@@ -1,6 +1,6 @@
 // The layered tire as a whole: rigid-body limits, free flight, restart, failure.
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -66,8 +66,8 @@ TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) 
   EXPECT_LT((p - m.mass * rim.velocity).norm(), 1e-12 * p.norm());
   const Vec3 expected = rim.position.cross(m.mass * rim.velocity) + inertia * rim.angular_velocity;
   EXPECT_LT((l - expected).norm(), 1e-12 * expected.norm());
-  const double kinetic = 0.5 * m.mass * rim.velocity.squaredNorm() +
-                         0.5 * rim.angular_velocity.dot(inertia * rim.angular_velocity);
+  const double kinetic =
+      0.5 * m.mass * rim.velocity.squaredNorm() + 0.5 * rim.angular_velocity.dot(inertia * rim.angular_velocity);
   EXPECT_NEAR(tire.diagnostics().kinetic_energy, kinetic, 1e-12 * kinetic);
 }
 

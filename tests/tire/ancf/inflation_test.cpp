@@ -55,8 +55,7 @@ TEST(Inflation, at_low_pressure_growth_is_linear_on_fine_meshes_too) {
     const tire::ShellMesh mesh = tire::make_shell_mesh(file);
     const tire::ShellCarcass shell(file, mesh);
     tire::InflationReport report;
-    growth[k] =
-        shell.layout().get(tire::inflate(shell, mesh, report), 0, mesh.rows / 2, 0).norm() - file.radius;
+    growth[k] = shell.layout().get(tire::inflate(shell, mesh, report), 0, mesh.rows / 2, 0).norm() - file.radius;
     EXPECT_LT(report.residual, 1e-6);
   }
   EXPECT_NEAR(growth[1] / growth[0], 2.0, 0.02);
@@ -82,8 +81,7 @@ TEST(Inflation, at_ten_times_the_pressure_it_converges_and_beyond_it_says_what_i
 }
 
 TEST(Inflation, all_shipped_tires_inflate_at_low_and_full_pressure) {
-  for (const char* name :
-       {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"})
+  for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json", "toroidal.json", "passenger_205_55r16.json"})
     for (const double share : {0.35, 1.0, 1.5}) {
       tire::TireFile file = small_file(name, 30, 12);
       file.pressure *= share;

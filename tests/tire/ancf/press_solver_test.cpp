@@ -11,12 +11,11 @@
 namespace furrow::test {
 namespace {
 
-std::unique_ptr<tire::PressSolver> solver_of(const tire::TireFile& file,
-                                             const tire::PressObstacle& obstacle) {
+std::unique_ptr<tire::PressSolver> solver_of(const tire::TireFile& file, const tire::PressObstacle& obstacle) {
   const tire::ShellMesh mesh = tire::make_shell_mesh(file);
   tire::InflationReport report;
-  return std::make_unique<tire::PressSolver>(
-      file, mesh, tire::inflate(tire::ShellCarcass(file, mesh), mesh, report), obstacle);
+  return std::make_unique<tire::PressSolver>(file, mesh, tire::inflate(tire::ShellCarcass(file, mesh), mesh, report),
+                                             obstacle);
 }
 
 tire::PressObstacle cleat() {

@@ -126,8 +126,7 @@ double rolling_loss(const std::vector<tire::MaxwellBranch>& prony) {
 }
 
 TEST(Prony, branches_raise_the_rolling_loss_the_more_the_stiffer_they_are) {
-  const double without = rolling_loss({}), some = rolling_loss({{0.1, 0.01}}),
-               more = rolling_loss({{0.2, 0.01}});
+  const double without = rolling_loss({}), some = rolling_loss({{0.1, 0.01}}), more = rolling_loss({{0.2, 0.01}});
   EXPECT_GT(without, 1.0);
   EXPECT_GT(some, 1.05 * without);
   EXPECT_GT(more - without, 1.5 * (some - without));
@@ -137,8 +136,7 @@ TEST(Prony, restored_tire_with_branches_and_a_changing_pressure_continues_bit_fo
   tire::TireFile file = small_file();
   file.prony = kTwo;
   tire::AncfTire tire(file), other(file);
-  expect_restart_bit_for_bit(tire, other,
-                             [](tire::AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
+  expect_restart_bit_for_bit(tire, other, [](tire::AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
 }
 
 }  // namespace

@@ -38,8 +38,7 @@ struct Ring {
     for (int j = 1; j + 1 < layout.rows; ++j)
       for (int c = 0; c < 6; ++c)
         for (int i = 0; i < layout.columns; ++i)
-          q[layout.offset(j, c) + i] +=
-              (c < 3 ? amount : 10 * amount) * (std::rand() / (0.5 * RAND_MAX) - 1.0);
+          q[layout.offset(j, c) + i] += (c < 3 ? amount : 10 * amount) * (std::rand() / (0.5 * RAND_MAX) - 1.0);
     layout.fill_padding(q);
     return q;
   }
@@ -91,8 +90,7 @@ TEST(ShellCarcass, vector_strains_equal_the_quadratic_forms) {
       const std::size_t at =
           (static_cast<std::size_t>(j) * ring.layout.batches() + i / kDoubleLanes) * kStrains * kDoubleLanes +
           i % kDoubleLanes;
-      for (int k = 0; k < kStrains; ++k)
-        EXPECT_NEAR(e[at + k * kDoubleLanes], reference[k], 1e-13) << "strain " << k;
+      for (int k = 0; k < kStrains; ++k) EXPECT_NEAR(e[at + k * kDoubleLanes], reference[k], 1e-13) << "strain " << k;
     }
 }
 
@@ -198,8 +196,7 @@ TEST(ShellCarcass, pressure_resultant_depends_on_the_bead_loops_alone_and_vanish
 TEST(ShellCarcass, pressure_resultant_of_an_open_surface_follows_stokes) {
   Ring ring(12, 6);
   Field q = ring.disturbed(5e-3);
-  for (int i = 0; i < ring.layout.columns; ++i)
-    q[ring.layout.offset(0, 1) + i] += 0.01 * std::sin(i);  // warped bead
+  for (int i = 0; i < ring.layout.columns; ++i) q[ring.layout.offset(0, 1) + i] += 0.01 * std::sin(i);  // warped bead
   ring.layout.fill_padding(q);
   const Field with = ring.forces(q);
   const double pressure = ring.shell->pressure();
@@ -308,8 +305,7 @@ TEST(ShellMass, acts_as_the_assembled_element_masses) {
   mass.apply(v, 1.0, p);
   for (int j = 0; j + 1 < ring.layout.rows; ++j)
     for (int i = 0; i < ring.layout.columns; ++i) {
-      const int next = (i + 1) % ring.layout.columns, column[4] = {i, next, next, i},
-                row[4] = {j, j, j + 1, j + 1};
+      const int next = (i + 1) % ring.layout.columns, column[4] = {i, next, next, i}, row[4] = {j, j, j + 1, j + 1};
       for (int a = 0; a < 8; ++a)
         for (int b = 0; b < 8; ++b)
           for (int x = 0; x < 3; ++x)

@@ -143,8 +143,8 @@ TEST(ShellContact, a_restored_tire_continues_bit_for_bit) {
   tire.place(t.start());
   Springs springs(tire);
   NodalForces f;
-  const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, Springs& ground,
-                           NodalForces& forces, int n) {
+  const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, Springs& ground, NodalForces& forces,
+                           int n) {
     const NodalForces next = ground.forces(which, h, true);
     path.extend(rolling_rim(n * h, which.radius(), 8.0, depth), h);
     ASSERT_TRUE(which.advance(path, forces, 1).ok);

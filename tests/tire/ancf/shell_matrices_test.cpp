@@ -23,10 +23,8 @@ struct Fixture {
     set_elements_width(file, 12);
     const ShellMesh mesh = make_shell_mesh(file);
     const Mat3 next = mesh.turn(1);
-    const Vec3 r[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1],
-                       mesh.position[j + 1]};
-    const Vec3 d[4] = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1],
-                       mesh.director[j + 1]};
+    const Vec3 r[4] = {mesh.position[j], next * mesh.position[j], next * mesh.position[j + 1], mesh.position[j + 1]};
+    const Vec3 d[4] = {mesh.director[j], next * mesh.director[j], next * mesh.director[j + 1], mesh.director[j + 1]};
     for (int n = 0; n < 4; ++n) x.row(2 * n) = r[n], x.row(2 * n + 1) = d[n];
     layers = shell_layers(file, file.section(j));
   }
@@ -52,10 +50,8 @@ Tensor plain_strain(const ElementNodes& q, const ElementNodes& x, double xi, dou
 /// Covariant strain with the assumed transverse parts.
 Tensor strain(const ElementNodes& q, const ElementNodes& x, double xi, double eta, double z) {
   Tensor e = plain_strain(q, x, xi, eta, z);
-  e(0, 2) = 0.5 * (1 - eta) * plain_strain(q, x, 0, -1, z)(0, 2) +
-            0.5 * (1 + eta) * plain_strain(q, x, 0, 1, z)(0, 2);
-  e(1, 2) = 0.5 * (1 - xi) * plain_strain(q, x, -1, 0, z)(1, 2) +
-            0.5 * (1 + xi) * plain_strain(q, x, 1, 0, z)(1, 2);
+  e(0, 2) = 0.5 * (1 - eta) * plain_strain(q, x, 0, -1, z)(0, 2) + 0.5 * (1 + eta) * plain_strain(q, x, 0, 1, z)(0, 2);
+  e(1, 2) = 0.5 * (1 - xi) * plain_strain(q, x, -1, 0, z)(1, 2) + 0.5 * (1 + xi) * plain_strain(q, x, 1, 0, z)(1, 2);
   const double sx[4] = {-1, 1, 1, -1}, se[4] = {-1, -1, 1, 1};
   e(2, 2) = 0.0;
   for (int n = 0; n < 4; ++n)
@@ -88,15 +84,14 @@ double layerwise_energy(const ElementNodes& q, const Fixture& f) {
           const double z = bottom + 0.5 * layer.thickness * (1 + points[c]);
           const Mat3 base_here = base(f.x, xi, eta, z);
           const double j = base_here.determinant(), volume = 0.5 * layer.thickness * weights[c] * j;
-          const Vec3 t1 = base_here.col(0).normalized(),
-                     n = base_here.col(0).cross(base_here.col(1)).normalized();
+          const Vec3 t1 = base_here.col(0).normalized(), n = base_here.col(0).cross(base_here.col(1)).normalized();
           const Vec3 t2 = n.cross(t1);
           Mat3 axes;
           axes << (std::cos(layer.angle) * t1 + std::sin(layer.angle) * t2).transpose(),
               (std::cos(layer.angle) * t2 - std::sin(layer.angle) * t1).transpose(), n.transpose();
           const Mat3 inverse = base_here.inverse();
-          const auto local = components(axes * inverse.transpose() * strain(q, f.x, xi, eta, z) * inverse *
-                                        axes.transpose());
+          const auto local =
+              components(axes * inverse.transpose() * strain(q, f.x, xi, eta, z) * inverse * axes.transpose());
           Eigen::Matrix<double, 6, 8> enhanced;
           const double zeta = 2 * z / total;
           for (int mode = 0; mode < 8; ++mode) {

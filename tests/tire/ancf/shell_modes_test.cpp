@@ -22,10 +22,8 @@ tire::TireFile tube(int columns, int width) {
   file.profile.clear();
   for (int k = 0; k <= 8; ++k) file.profile.push_back({k / 8.0, 0.0, kLength * (k / 8.0 - 0.5)});
   const double poisson = kModulus / (2.0 * kShear) - 1.0;
-  file.materials = {
-      {"tube", kDensity, Vec3::Constant(kModulus), Vec3::Constant(poisson), Vec3::Constant(kShear)}};
-  for (tire::Section* section : {&file.bead, &file.sidewall, &file.tread})
-    section->layers = {{kThickness, 0.0, 0}};
+  file.materials = {{"tube", kDensity, Vec3::Constant(kModulus), Vec3::Constant(poisson), Vec3::Constant(kShear)}};
+  for (tire::Section* section : {&file.bead, &file.sidewall, &file.tread}) section->layers = {{kThickness, 0.0, 0}};
   return file;
 }
 

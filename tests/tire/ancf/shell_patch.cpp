@@ -58,8 +58,7 @@ PatchMesh grid_mesh(int n, int m, const std::function<std::pair<Vec3, Vec3>(doub
 }
 
 PatchMesh plate_mesh(int n, int m, double length, double width) {
-  return grid_mesh(
-      n, m, [&](double s, double t) { return std::pair(Vec3(s * length, t * width, 0), Vec3(0, 0, 1)); });
+  return grid_mesh(n, m, [&](double s, double t) { return std::pair(Vec3(s * length, t * width, 0), Vec3(0, 0, 1)); });
 }
 
 PatchMesh distorted_mesh() {
@@ -97,8 +96,7 @@ void ShellPatch::make_pattern() {
     for (int b = 0; b < 24; ++b)
       for (int a = 0; a < 24; ++a) {
         const int column = row(e, b), *rows = pattern_.innerIndexPtr();
-        const int *first = rows + pattern_.outerIndexPtr()[column],
-                  *last = rows + pattern_.outerIndexPtr()[column + 1];
+        const int *first = rows + pattern_.outerIndexPtr()[column], *last = rows + pattern_.outerIndexPtr()[column + 1];
         place_.push_back(static_cast<int>(std::lower_bound(first, last, row(e, a)) - rows));
       }
 }
@@ -123,8 +121,7 @@ ShellPatch::Gradient ShellPatch::gradient(const tire::ElementNodes& nodes) {
 
 ShellPatch::ElementStrains ShellPatch::strains(const Vector& q) const {
   ElementStrains e(raw_.size());
-  for (std::size_t k = 0; k < e.size(); ++k)
-    e[k] = tire::raw_strains(gather(q, static_cast<int>(k))) - raw_[k];
+  for (std::size_t k = 0; k < e.size(); ++k) e[k] = tire::raw_strains(gather(q, static_cast<int>(k))) - raw_[k];
   return e;
 }
 
@@ -150,8 +147,7 @@ Vector ShellPatch::forces(const Vector& q, const ElementStrains& stress) const {
   return f;
 }
 
-Sparse ShellPatch::tangent(const Vector& q, const ElementStrains& stress, double material,
-                           double geometric) const {
+Sparse ShellPatch::tangent(const Vector& q, const ElementStrains& stress, double material, double geometric) const {
   Sparse total = pattern_;
   std::fill(total.valuePtr(), total.valuePtr() + total.nonZeros(), 0.0);
   const int* place = place_.data();
@@ -247,8 +243,7 @@ Eigen::Matrix<double, 6, 1> ShellPatch::resultants(const Vector& q, int e) const
     const Eigen::Matrix<double, 6, 1> s =
         layer.stiffness * (points[p].strain_map * strain + points[p].enhanced_map * alpha);
     const double c = std::cos(layer.angle), n = std::sin(layer.angle);
-    const Vec3 here(c * c * s[0] + n * n * s[1] - 2 * c * n * s[2],
-                    n * n * s[0] + c * c * s[1] + 2 * c * n * s[2],
+    const Vec3 here(c * c * s[0] + n * n * s[1] - 2 * c * n * s[2], n * n * s[0] + c * c * s[1] + 2 * c * n * s[2],
                     c * n * (s[0] - s[1]) + (c * c - n * n) * s[2]);
     sum.head<3>() += points[p].volume * here;
     sum.tail<3>() += points[p].volume * places[p].z * here;
@@ -366,8 +361,7 @@ Vector lowest_eigenvalues(const Sparse& k, const Sparse& m, int count) {
   Vector values = Vector::Constant(count, std::numeric_limits<double>::max());
   for (int iteration = 0; iteration < 200; ++iteration) {
     const Eigen::MatrixXd mx = m * x, y = solver.solve(mx);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(y.transpose() * mx,
-                                                                          y.transpose() * (m * y));
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(y.transpose() * mx, y.transpose() * (m * y));
     x = y * small.eigenvectors();
     const Vector now = small.eigenvalues().head(count);
     const double change = ((now - values).array() / now.array()).abs().maxCoeff();

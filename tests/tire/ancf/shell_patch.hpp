@@ -63,8 +63,7 @@ class ShellPatch {
   Vector forces(const Vector& q, const ElementStrains& stress) const;
   Vector forces(const Vector& q) const { return forces(q, stresses(strains(q))); }
   /// material × Bᵀ D̂ B + geometric × Σ S_k H_k.
-  Sparse tangent(const Vector& q, const ElementStrains& stress, double material = 1.0,
-                 double geometric = 1.0) const;
+  Sparse tangent(const Vector& q, const ElementStrains& stress, double material = 1.0, double geometric = 1.0) const;
   Sparse tangent(const Vector& q) const { return tangent(q, stresses(strains(q))); }
   /// D̂ (E(q) + B(q) Δq).
   ElementStrains linear_stresses(const Vector& q, const Vector& change) const;

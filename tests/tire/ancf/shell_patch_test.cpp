@@ -1,7 +1,7 @@
 // Patch tests on a distorted mesh and a cantilever; references: the exact states themselves, plate and beam
 // theory.
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <vector>
@@ -55,8 +55,7 @@ TEST(ShellPatch, thickness_state_keeps_the_full_stiffness_c33) {
   for (int n = 0; n < patch.nodes(); ++n) exact[6 * n + 5] = 1.02;  // directors held, as by a uniform squeeze
   const Vector q = solve(patch, Supports(8).fix(range(0, 4), "xyzabc").fix(range(4, 8), "abc"), exact);
   EXPECT_LT((q - exact).norm(), 1e-11);
-  const double e33 = 0.5 * (1.02 * 1.02 - 1),
-               c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
+  const double e33 = 0.5 * (1.02 * 1.02 - 1), c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
   EXPECT_NEAR(patch.energy(q), 0.5 * c33 * e33 * e33 * 2.0 * kThickness, 1e-9 * patch.energy(q));
 }
 
@@ -102,8 +101,7 @@ double cantilever_tip(int elements, double height, double force) {
 TEST(ShellPatch, cantilever_tip_matches_beam_theory_for_thick_and_thin_strips) {
   for (const double height : {0.05, 0.005}) {
     const double inertia = 0.1 * std::pow(height, 3) / 12, force = 1e-5 * kYoung * inertia;
-    const double shear =
-        force / (kYoung / 2.6 * 0.1 * height);  // δ = F L³/(3 E I) + F L/(G A), no shear correction
+    const double shear = force / (kYoung / 2.6 * 0.1 * height);  // δ = F L³/(3 E I) + F L/(G A), no shear correction
     const double theory = force / (3 * kYoung * inertia) + shear;
     const double tip = cantilever_tip(20, height, force);
     EXPECT_NEAR(tip, theory, 0.01 * theory) << "height " << height;

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""The Magic Formula of a tire property file (.tir), evaluated a second time: written from the equations of Pacejka, Tire and
-Vehicle Dynamics (2012), section 4.3.2, as MF-Tyre 5.2 has them, with numpy and without the program. It shares no line with
-tire/handling; formula_peer_test.py compares the two.
+"""The Magic Formula of a tire property file (.tir), evaluated a second time: written from the equations of Pacejka,
+Tire and
+Vehicle Dynamics (2012), section 4.3.2, as MF-Tyre 5.2 has them, with numpy and without the program. It shares no line
+with tire/handling; formula_peer_test.py compares the two.
 
 usage: evaluate_tir.py FILE.tir STATES.csv
 
@@ -72,7 +73,8 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     """Arrays of the five outputs, held within the file's ranges as furrow holds them: loads beyond in proportion."""
     given = np.asarray(Fz, float)
     Fz = np.clip(given, *t.limits("FZ"))
-    kappa, alpha, gamma = np.clip(kappa, *t.limits("KPU")), np.clip(alpha, *t.limits("ALP")), np.clip(gamma, *t.limits("CAM"))
+    kappa, alpha, gamma = np.clip(kappa, *t.limits("KPU")), np.clip(alpha,
+                                                                    *t.limits("ALP")), np.clip(gamma, *t.limits("CAM"))
     scale = np.divide(given, Fz, out=np.zeros_like(given), where=Fz > 0)
     R0, Fz0 = t.UNLOADED_RADIUS, t.FNOMIN
     Fz0s = t.lfzo * Fz0
@@ -126,7 +128,8 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     Bt = t.lky / t.lmuy * (t.qbz1 + t.qbz2 * df + t.qbz3 * df**2) * (1 + t.qbz4 * gz + t.qbz5 * abs(gz))
     Ct = t.qcz1
     Dt = t.ltr * Fz * R0 / Fz0 * (t.qdz1 + t.qdz2 * df) * (1 + t.qdz3 * gz + t.qdz4 * gz**2)
-    Et = one(1, (t.qez1 + t.qez2 * df + t.qez3 * df**2) * (1 + (t.qez4 + t.qez5 * gz) * 2 / np.pi * np.arctan(Bt * Ct * at)))
+    Et = one(1, (t.qez1 + t.qez2 * df + t.qez3 * df**2)
+             * (1 + (t.qez4 + t.qez5 * gz) * 2 / np.pi * np.arctan(Bt * Ct * at)))
     trail = cosine(at, Bt, Ct, Dt, Et) * np.cos(alpha)
     Br = t.qbz9 * t.lky / t.lmuy + t.qbz10 * By * Cy
     Dr = t.lmuy * R0 * Fz * (t.lres * (t.qdz6 + t.qdz7 * df) + gz * (t.qdz8 + t.qdz9 * df))

@@ -37,8 +37,8 @@ int main(int argc, char** argv) {
       at.camber = within(tire.camber, beyond);
       at.speed = 30.0 * std::uniform_real_distribution<double>()(random);
       const HandlingForces f = evaluate(tire, at);
-      out << fmt::format("{},{},{},{},{},{},{},{},{},{}\n", at.load, at.slip, at.slip_angle, at.camber, at.speed, f.fx, f.fy,
-                         f.mx, f.my, f.mz);
+      out << fmt::format("{},{},{},{},{},{},{},{},{},{}\n", at.load, at.slip, at.slip_angle, at.camber, at.speed, f.fx,
+                         f.fy, f.mx, f.my, f.mz);
     }
     return out.good() ? 0 : 1;
   } catch (const furrow::Error& error) {

@@ -91,9 +91,11 @@ TEST(HandlingTire, steady_rolling_gives_the_formula_at_the_rims_slips) {
     Rolling run(tire, rolling(depth, speed, spin, toe, camber));
     for (int n = 0; n < 4000; ++n) run.step();  // 4 m, ten relaxation lengths
     const WheelAxes axes = wheel_axes(run.rim(), Vec3::UnitX(), 0.0);
-    const HandlingForces f =
-        evaluate(t, {.load = 2.2e5 * depth / std::cos(camber), .slip = slip, .slip_angle = -toe, .camber = axes.camber_angle,
-                     .speed = speed * std::cos(toe)});
+    const HandlingForces f = evaluate(t, {.load = 2.2e5 * depth / std::cos(camber),
+                                          .slip = slip,
+                                          .slip_angle = -toe,
+                                          .camber = axes.camber_angle,
+                                          .speed = speed * std::cos(toe)});
     const Wrench spindle = tire.spindle_wrench();
     const Wrench found = axes.wrench(spindle.force - Vec3(0, 0, -9.81 * 10.0), spindle.moment, run.rim().position);
     const double scale = f.fz;

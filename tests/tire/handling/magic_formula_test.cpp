@@ -21,8 +21,10 @@ TEST(MagicFormula, slope_at_no_slip_is_the_slip_stiffness) {
     const double df = load / 4000.0 - 1.0;
     const auto& x = t.longitudinal;
     const double kx = load * (x.pkx1 + x.pkx2 * df) * std::exp(x.pkx3 * df);
-    const double ky = t.lateral.pky1 * 4000.0 * std::sin(2.0 * std::atan(load / (t.lateral.pky2 * 4000.0))) * t.scaling.lky;
-    const HandlingForces forward = evaluate(t, {.load = load, .slip = h}), back = evaluate(t, {.load = load, .slip = -h});
+    const double ky =
+        t.lateral.pky1 * 4000.0 * std::sin(2.0 * std::atan(load / (t.lateral.pky2 * 4000.0))) * t.scaling.lky;
+    const HandlingForces forward = evaluate(t, {.load = load, .slip = h}),
+                         back = evaluate(t, {.load = load, .slip = -h});
     EXPECT_NEAR((forward.fx - back.fx) / (2 * h), kx, 1e-6 * kx);
     EXPECT_DOUBLE_EQ(forward.slip_stiffness, kx);
     const HandlingForces left = evaluate(t, {.load = load, .slip_angle = h}),
@@ -53,7 +55,8 @@ TEST(MagicFormula, peak_is_d) {
 /// At very large slip the sine's argument goes to C π/2 where E < 1.
 TEST(MagicFormula, asymptote_is_d_times_the_sine_of_c) {
   MagicFormula t = symmetric_tire();
-  const double end = t.longitudinal.pdx1 * t.scaling.lmux * 4000.0 * std::sin(0.5 * std::numbers::pi * t.longitudinal.pcx1);
+  const double end =
+      t.longitudinal.pdx1 * t.scaling.lmux * 4000.0 * std::sin(0.5 * std::numbers::pi * t.longitudinal.pcx1);
   EXPECT_NEAR(evaluate_formula(t, {.load = 4000.0, .slip = 1e9}).fx, end, 1e-6 * std::abs(end));
 }
 
@@ -88,7 +91,8 @@ TEST(MagicFormula, camber_and_slip_angle_mirror_together) {
       EXPECT_NEAR(a.mz, -b.mz, 1e-9);
       EXPECT_NEAR(a.fx, b.fx, 1e-9);
     }
-  EXPECT_LT(evaluate(t, {.load = 3000.0, .camber = 0.1}).fy, 0.0) << "leaning to the right pulls to the right (ISO 8855)";
+  EXPECT_LT(evaluate(t, {.load = 3000.0, .camber = 0.1}).fy, 0.0)
+      << "leaning to the right pulls to the right (ISO 8855)";
 }
 
 TEST(MagicFormula, combined_slip_without_the_other_slip_is_pure) {
@@ -125,7 +129,8 @@ TEST(MagicFormula, holds_the_ends_of_its_ranges_and_scales_with_loads_beyond_the
   const MagicFormula t = example_tire();
   EXPECT_EQ(evaluate(t, {.load = 4000.0, .slip = 1.2}).fx, evaluate(t, {.load = 4000.0, .slip = 7.0}).fx);
   EXPECT_EQ(evaluate(t, {.load = 4000.0, .slip_angle = -0.6}).mz, evaluate(t, {.load = 4000.0, .slip_angle = -1.5}).mz);
-  EXPECT_NEAR(evaluate(t, {.load = 18000.0, .slip = 0.1}).fx, 2.0 * evaluate(t, {.load = 9000.0, .slip = 0.1}).fx, 1e-9);
+  EXPECT_NEAR(evaluate(t, {.load = 18000.0, .slip = 0.1}).fx, 2.0 * evaluate(t, {.load = 9000.0, .slip = 0.1}).fx,
+              1e-9);
   EXPECT_NEAR(evaluate(t, {.load = 1.0, .slip = 0.1}).fx, evaluate(t, {.load = 200.0, .slip = 0.1}).fx / 200.0, 1e-12);
   EXPECT_EQ(evaluate(t, {.load = 0.0, .slip = 0.1}).fx, 0.0);
   EXPECT_EQ(evaluate(t, {.load = 18000.0}).fz, 18000.0);

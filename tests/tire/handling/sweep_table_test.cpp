@@ -16,7 +16,8 @@ namespace {
 
 constexpr const char* kHead =
     "state,rig.mode,iso_w.force_N.0,iso_w.force_N.1,iso_w.force_N.2,iso_w.moment_Nm.0,iso_w.moment_Nm.1,"
-    "iso_w.moment_Nm.2,iso_w.slip_angle_rad,iso_w.camber_angle_rad,iso_w.loaded_radius_m,effective_rolling_radius_m,problem\n";
+    "iso_w.moment_Nm.2,iso_w.slip_angle_rad,iso_w.camber_angle_rad,iso_w.loaded_radius_m,effective_rolling_radius_m,"
+    "problem\n";
 
 std::filesystem::path written(const std::string& text) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "sweep_table.csv";
@@ -60,14 +61,19 @@ TEST(SweepTable, wrong_tables_are_refused_by_line) {
   EXPECT_NE(complaint(changed(head, "iso_w.force_N.1", "x") + rows).find("line 1': has no column 'iso_w.force_N.1'"),
             std::string::npos);
   EXPECT_NE(complaint(changed(head, "rig.mode", "x") + rows).find("has no column 'rig.mode'"), std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "1500", "nan")).find("line 3': iso_w.force_N.0 is 'nan'"), std::string::npos);
+  EXPECT_NE(complaint(head + changed(rows, "1500", "nan")).find("line 3': iso_w.force_N.0 is 'nan'"),
+            std::string::npos);
   EXPECT_NE(complaint(head + changed(rows, "3000", "-3000")).find("line 3': has a load"), std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "0.3415", "1e-300")).find("line 3': has a load of 3000 N and a rolling radius of 1e-300 m"),
+  EXPECT_NE(complaint(head + changed(rows, "0.3415", "1e-300"))
+                .find("line 3': has a load of 3000 N and a rolling radius of 1e-300 m"),
             std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "3000", "1e300")).find("line 3': has a load of 1e+300 N"), std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "1500,", "")).find("line 3': has 12 values, expected 13"), std::string::npos);
-  EXPECT_NE(complaint(head + "done,fixed_speed,1500,0,3000,0,-10,0,0,0,0.342,0.3415,\n").find("expected one at each load"),
+  EXPECT_NE(complaint(head + changed(rows, "3000", "1e300")).find("line 3': has a load of 1e+300 N"),
             std::string::npos);
+  EXPECT_NE(complaint(head + changed(rows, "1500,", "")).find("line 3': has 12 values, expected 13"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(head + "done,fixed_speed,1500,0,3000,0,-10,0,0,0,0.342,0.3415,\n").find("expected one at each load"),
+      std::string::npos);
   EXPECT_NE(complaint(head).find("expected one at each load"), std::string::npos);
 }
 

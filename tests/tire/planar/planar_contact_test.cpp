@@ -131,14 +131,8 @@ TEST(PlanarContact, a_corner_in_the_tire_pushes_its_side_as_a_force_at_the_corne
 
 TEST(PlanarContact, force_at_rest_is_the_derivative_of_its_energy) {
   const PlanarMesh mesh = small_wheel();
-  const PlanarGround rough({{-1.0, 0.0},
-                            {-0.1, 0.0},
-                            {-0.1, 0.03},
-                            {-0.05, 0.05},
-                            {0.02, 0.01},
-                            {0.07, 0.04},
-                            {0.2, 0.0},
-                            {1.0, 0.1}});
+  const PlanarGround rough(
+      {{-1.0, 0.0}, {-0.1, 0.0}, {-0.1, 0.03}, {-0.05, 0.05}, {0.02, 0.01}, {0.07, 0.04}, {0.2, 0.0}, {1.0, 0.1}});
   PlanarContact contact(mesh, rough, {1e5, 0.0});
   const PlanarField x = along(mapped(mesh.position, Eigen::Matrix2d::Identity(), 0.013, 0.47),
                               random_planar(mesh.position.size(), 0.003, 3), 1.0);

@@ -68,13 +68,12 @@ TEST(PlanarElements, small_strains_follow_hooke_and_the_printed_form_a_larger_po
 
 TEST(PlanarElements, a_stretched_triangle_pulls_its_nodes_together) {
   const PlanarMesh m = one_triangle();
-  const PlanarField f = force_at(PlanarElements(m, std::array{kRubber}, {}),
-                                 mapped(m.position, 1.1 * turn(0.0)), PlanarField(3));
+  const PlanarField f =
+      force_at(PlanarElements(m, std::array{kRubber}, {}), mapped(m.position, 1.1 * turn(0.0)), PlanarField(3));
   EXPECT_GT(std::min(f.x[0], f.z[0]), 0.0);  // towards the others
   EXPECT_LT(std::max(f.x[1], f.z[2]), 0.0);
   // Half of T n of each side that meets in the corner, T = p I: sides are 1.1 m long.
-  const double p =
-      PlanarElements(m, std::array{kRubber}, {}).stress(mapped(m.position, 1.1 * turn(0.0)), 0).xx;
+  const double p = PlanarElements(m, std::array{kRubber}, {}).stress(mapped(m.position, 1.1 * turn(0.0)), 0).xx;
   EXPECT_NEAR(f.x[0], 0.5 * p * 1.1, 1e-9 * p);
   EXPECT_NEAR(f.x[1], -0.5 * p * 1.1, 1e-9 * p);
 }
@@ -148,8 +147,7 @@ TEST(PlanarElements, force_is_the_derivative_of_the_energy_and_tangent_of_the_fo
         const PlanarField force = force_at(elements, x, still);
         const double slope = (elements.energy(ahead) - elements.energy(behind)) / (2.0 * h);
         EXPECT_NEAR(slope, -dot(force, way), 2e-7 * std::sqrt(dot(force, force) * dot(way, way)));
-        const PlanarField change =
-            along(force_at(elements, ahead, still), force_at(elements, behind, still), -1.0);
+        const PlanarField change = along(force_at(elements, ahead, still), force_at(elements, behind, still), -1.0);
         double off = 0.0, size = 0.0;
         for (std::size_t n = 0; n < x.size(); ++n)
           for (const int i : {0, 1}) {
@@ -193,8 +191,8 @@ TEST(PlanarElements, a_triangle_turned_inside_out_and_a_missing_number_are_notic
 }
 
 /// Static solution with linear stiffness at rest: unknowns of nodes with a held direction are zero.
-Eigen::VectorXd linear_solution(const PlanarElements& elements, const PlanarMesh& mesh,
-                                const Eigen::VectorXd& load, const std::vector<int>& held) {
+Eigen::VectorXd linear_solution(const PlanarElements& elements, const PlanarMesh& mesh, const Eigen::VectorXd& load,
+                                const std::vector<int>& held) {
   Eigen::MatrixXd k = assembled(elements, mesh.position);
   for (const int u : held) k.row(u).setZero(), k.col(u).setZero(), k(u, u) = 1.0;
   Eigen::VectorXd right = load;
@@ -242,11 +240,9 @@ TEST(PlanarElements, disc_under_diametral_load_converges_to_the_closed_form) {
     const PlanarMesh m = planar_disc(radius, around);
     const PlanarElements elements(m, std::array{PlanarMaterial{1000.0, e, nu, 0.0}}, {});
     Eigen::VectorXd push = Eigen::VectorXd::Zero(2 * m.nodes());
-    const int low = m.outer[0], high = m.outer[around / 2], side = m.outer[around / 4],
-              other = m.outer[3 * around / 4];
+    const int low = m.outer[0], high = m.outer[around / 2], side = m.outer[around / 4], other = m.outer[3 * around / 4];
     push[2 * low + 1] = load, push[2 * high + 1] = -load;
-    const Eigen::VectorXd u =
-        linear_solution(elements, m, push, {0, 1, 2 * low});  // the centre, and against turning
+    const Eigen::VectorXd u = linear_solution(elements, m, push, {0, 1, 2 * low});  // the centre, and against turning
     const double off = std::abs((u[2 * side] - u[2 * other]) / growth - 1.0);
     EXPECT_LT(off, 0.5 * before) << around;
     before = off;
@@ -254,8 +250,7 @@ TEST(PlanarElements, disc_under_diametral_load_converges_to_the_closed_form) {
     PlanarField x = m.position;
     for (int n = 0; n < m.nodes(); ++n) x.x[n] += u[2 * n], x.z[n] += u[2 * n + 1];
     double across = 0.0, along_load = 0.0;
-    for (int n = 0; n < 6; ++n)
-      across += elements.stress(x, n).xx / 6, along_load += elements.stress(x, n).zz / 6;
+    for (int n = 0; n < 6; ++n) across += elements.stress(x, n).xx / 6, along_load += elements.stress(x, n).zz / 6;
     EXPECT_NEAR(across, load / (std::numbers::pi * radius), 0.03 * load / (std::numbers::pi * radius));
     EXPECT_NEAR(along_load, -3.0 * load / (std::numbers::pi * radius), 0.03 * load / radius);
   }
@@ -285,8 +280,7 @@ double bending(double poisson_ratio, bool averaged, int size) {
   const double length = 1.0, height = 0.2, e = 3e5, moment = 1.0;
   const int along = 10 * size, through = 2 * size;
   const PlanarMesh m = strip(length, height, along, through);
-  const PlanarElements elements(m, std::array{PlanarMaterial{1000.0, e, poisson_ratio, 0.0}},
-                                {.averaged = averaged});
+  const PlanarElements elements(m, std::array{PlanarMaterial{1000.0, e, poisson_ratio, 0.0}}, {.averaged = averaged});
   const double inertia = height * height * height / 12.0, cell = height / through;
   Eigen::VectorXd push = Eigen::VectorXd::Zero(2 * m.nodes());
   for (int k = 0; k < through; ++k) {  // sides of the ends, with a stress that is linear between their nodes
@@ -303,8 +297,7 @@ double bending(double poisson_ratio, bool averaged, int size) {
   const Eigen::VectorXd u = linear_solution(elements, m, push, {2 * centre, 2 * centre + 1, 2 * middle + 1});
   const double sagitta =
       0.5 * u[2 * (middle + along) + 1];  // the other end, over the middle, were both ends free to turn
-  return -8.0 * sagitta / (length * length) /
-         (moment * (1.0 - poisson_ratio * poisson_ratio) / (e * inertia));
+  return -8.0 * sagitta / (length * length) / (moment * (1.0 - poisson_ratio * poisson_ratio) / (e * inertia));
 }
 
 TEST(PlanarElements, averaged_volumes_take_the_locking_out_of_bending_near_incompressibility) {

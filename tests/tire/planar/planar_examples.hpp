@@ -52,8 +52,7 @@ inline double largest(const PlanarField& a) {
 }
 
 /// x → A x + shift
-inline PlanarField mapped(const PlanarField& p, const Eigen::Matrix2d& a, double shift_x = 0.0,
-                          double shift_z = 0.0) {
+inline PlanarField mapped(const PlanarField& p, const Eigen::Matrix2d& a, double shift_x = 0.0, double shift_z = 0.0) {
   PlanarField out = p;
   for (std::size_t n = 0; n < p.size(); ++n) {
     out.x[n] = a(0, 0) * p.x[n] + a(0, 1) * p.z[n] + shift_x;

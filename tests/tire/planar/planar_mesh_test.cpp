@@ -21,9 +21,7 @@ double area(const PlanarMesh& m, int e) {
 }
 
 /// Of a regular polygon with n corners on a circle.
-double polygon(double radius, int n) {
-  return 0.5 * n * radius * radius * std::sin(2.0 * std::numbers::pi / n);
-}
+double polygon(double radius, int n) { return 0.5 * n * radius * radius * std::sin(2.0 * std::numbers::pi / n); }
 
 /// Every inner edge is run through once in each direction; the others are returned.
 std::set<std::pair<int, int>> edges_of_one_triangle(const PlanarMesh& m) {
@@ -63,15 +61,13 @@ TEST(PlanarMesh, triangles_fill_disc_and_annulus_without_gaps_and_overlaps) {
 
 TEST(PlanarMesh, disc_and_tire_share_the_nodes_of_the_rim) {
   for (const int rings : {1, 2, 3, 4}) {
-    const PlanarMesh disc = planar_disc(0.25, 24, rings % 2 ? 0.5 : 0.0),
-                     tire = planar_annulus(0.25, 0.5, rings, 24);
+    const PlanarMesh disc = planar_disc(0.25, 24, rings % 2 ? 0.5 : 0.0), tire = planar_annulus(0.25, 0.5, rings, 24);
     const PlanarMesh wheel = small_wheel(24, rings);
     EXPECT_EQ(wheel.nodes(), disc.nodes() + tire.nodes() - 24);
     EXPECT_EQ(wheel.elements(), disc.elements() + tire.elements());
     EXPECT_EQ(edges_of_one_triangle(wheel).size(), wheel.outer.size());
     EXPECT_EQ(wheel.rim.size(), 24U);
-    for (const int n : wheel.rim)
-      EXPECT_NEAR(std::hypot(wheel.position.x[n], wheel.position.z[n]), 0.25, 1e-12);
+    for (const int n : wheel.rim) EXPECT_NEAR(std::hypot(wheel.position.x[n], wheel.position.z[n]), 0.25, 1e-12);
     std::map<int, double> filled;
     for (int e = 0; e < wheel.elements(); ++e) filled[wheel.part[e]] += area(wheel, e);
     EXPECT_NEAR(filled[0], polygon(0.25, 24), 1e-12);

@@ -41,8 +41,7 @@ double first_root(const std::function<double(double)>& f) {
 double turning(const PlanarMaterial& m) {
   const double k = first_root([](double wave) {
     const double a = wave * kInner, b = wave * kOuter;
-    return std::cyl_bessel_j(1, a) * std::cyl_neumann(2, b) -
-           std::cyl_neumann(1, a) * std::cyl_bessel_j(2, b);
+    return std::cyl_bessel_j(1, a) * std::cyl_neumann(2, b) - std::cyl_neumann(1, a) * std::cyl_bessel_j(2, b);
   });
   return k * std::sqrt(planar_moduli(m, PlanarLaw::consistent).mu / m.density) / (2.0 * std::numbers::pi);
 }

@@ -16,8 +16,7 @@ constexpr PlanarIntegrator kBoth[] = {PlanarIntegrator::semi_implicit_euler, Pla
 /// A wheel that spins, flies and trembles.
 PlanarState thrown(const PlanarMesh& mesh, double tremble = 0.3) {
   PlanarState s{mesh.position, random_planar(mesh.position.size(), tremble, 11)};
-  for (std::size_t n = 0; n < s.x.size(); ++n)
-    s.v.x[n] += 3.0 + 8.0 * s.x.z[n], s.v.z[n] += 1.0 - 8.0 * s.x.x[n];
+  for (std::size_t n = 0; n < s.x.size(); ++n) s.v.x[n] += 3.0 + 8.0 * s.x.z[n], s.v.z[n] += 1.0 - 8.0 * s.x.x[n];
   return s;
 }
 
@@ -53,9 +52,7 @@ TEST(PlanarMotion, momentum_and_angular_momentum_stay_to_round_off_of_euler_and_
 
 TEST(PlanarMotion, energy_is_kept_without_viscosity_and_falls_with_it) {
   const PlanarMesh mesh = small_wheel();
-  const auto total = [](const PlanarMotion& m) {
-    return m.kinetic_energy() + m.elements().energy(m.state().x);
-  };
+  const auto total = [](const PlanarMotion& m) { return m.kinetic_energy() + m.elements().energy(m.state().x); };
   const auto largest_change = [&](PlanarIntegrator kind, double share) {
     PlanarMotion motion(wheel_elements(mesh), thrown(mesh), kind);
     const double limit = step_limit(motion.elements(), mesh.position), begin = total(motion);
@@ -78,8 +75,7 @@ TEST(PlanarMotion, energy_is_kept_without_viscosity_and_falls_with_it) {
   for (int k = 0; k < 50; ++k) {
     const double power = motion.elements().viscous_power(motion.state().x, motion.state().v);
     ASSERT_TRUE(motion.step(h));
-    const double now = total(motion),
-                 later = motion.elements().viscous_power(motion.state().x, motion.state().v);
+    const double now = total(motion), later = motion.elements().viscous_power(motion.state().x, motion.state().v);
     EXPECT_NEAR(before - now, 0.5 * h * (power + later), 0.05 * h * (power + later));
     before = now;
   }
@@ -89,19 +85,16 @@ TEST(PlanarMotion, energy_is_kept_without_viscosity_and_falls_with_it) {
 double fastest(const PlanarElements& elements, const PlanarField& x) {
   Eigen::MatrixXd k = assembled(elements, x);
   Eigen::VectorXd root(k.rows());
-  for (int n = 0; n < elements.nodes(); ++n)
-    root[2 * n] = root[2 * n + 1] = 1.0 / std::sqrt(elements.mass()[n]);
+  for (int n = 0; n < elements.nodes(); ++n) root[2 * n] = root[2 * n + 1] = 1.0 / std::sqrt(elements.mass()[n]);
   k = root.asDiagonal() * k * root.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly)
-      .eigenvalues()[k.rows() - 1];
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues()[k.rows() - 1];
 }
 
 TEST(PlanarMotion, the_step_limit_is_that_of_the_fastest_mode_or_a_little_less) {
   for (const bool averaged : {false, true}) {
     const PlanarMesh mesh = small_wheel(18, 3);
     const PlanarElements elements = wheel_elements(mesh, {.averaged = averaged});
-    const double limit = step_limit(elements, mesh.position),
-                 exact = 2.0 / std::sqrt(fastest(elements, mesh.position));
+    const double limit = step_limit(elements, mesh.position), exact = 2.0 / std::sqrt(fastest(elements, mesh.position));
     EXPECT_LE(limit, exact * (1 + 1e-12));
     EXPECT_GT(limit, (averaged ? 0.4 : 0.6) * exact);
     for (const double share : {0.99, 1.01}) {  // of the exact one
@@ -153,9 +146,7 @@ TEST(PlanarMotion, runge_kutta_is_of_fourth_order_and_euler_of_first) {
     return motion.state().x;
   };
   const PlanarField exact = state(kBoth[1], 2000);
-  const auto off = [&](PlanarIntegrator kind, int steps) {
-    return largest(along(state(kind, steps), exact, -1.0));
-  };
+  const auto off = [&](PlanarIntegrator kind, int steps) { return largest(along(state(kind, steps), exact, -1.0)); };
   EXPECT_NEAR(off(kBoth[0], 800) / off(kBoth[0], 1600), 2.0, 0.15);
   EXPECT_NEAR(off(kBoth[1], 50) / off(kBoth[1], 100), 16.0, 3.0);
 }
@@ -163,8 +154,7 @@ TEST(PlanarMotion, runge_kutta_is_of_fourth_order_and_euler_of_first) {
 TEST(PlanarMotion, held_nodes_move_as_told_and_added_mass_is_accelerated) {
   const PlanarMesh mesh = small_wheel(12, 2);
   for (const PlanarIntegrator kind : kBoth) {
-    PlanarMotion motion(wheel_elements(mesh, {}, 300.0), {mesh.position, PlanarField(mesh.position.size())},
-                        kind);
+    PlanarMotion motion(wheel_elements(mesh, {}, 300.0), {mesh.position, PlanarField(mesh.position.size())}, kind);
     motion.hold(mesh.centre, true, false);
     motion.set_velocity(mesh.centre, 0.5, 0.0);
     motion.add_mass(mesh.centre, 50.0);

@@ -69,8 +69,8 @@ TEST(PlanarSpec, wrong_files_are_refused_with_file_key_and_what_was_expected) {
     EXPECT_EQ(said.rfind("tire.json: key '" + key, 0), 0U) << pointer << " " << value << ": " << said;
     EXPECT_NE(said.find(words), std::string::npos) << said;
   }
-  for (const char* key : {"radius", "rim_radius", "width", "elements_circumference", "elements_radial",
-                          "disc", "tire", "step_share", "contact_stiffness", "contact"}) {
+  for (const char* key : {"radius", "rim_radius", "width", "elements_circumference", "elements_radial", "disc", "tire",
+                          "step_share", "contact_stiffness", "contact"}) {
     json file = file_text();
     file.erase(key);
     EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U) << complaint(file);
@@ -92,12 +92,10 @@ TEST(PlanarSpec, a_scenario_may_change_friction_and_the_mesh) {
   EXPECT_EQ(idle_keys(*spec), std::vector<std::string>());
   EXPECT_EQ(spec->shape().material.friction, 0.3);
   EXPECT_EQ(spec->describe().facets, 36);
-  EXPECT_NE(spec->describe().details.find("36 x 8 triangles"), std::string::npos)
-      << spec->describe().details;
+  EXPECT_NE(spec->describe().details.find("36 x 8 triangles"), std::string::npos) << spec->describe().details;
   EXPECT_GT(spec->describe().model.of("step_limit_s"), 1e-6);
   o.pressure.knots = {{0.0, 1e5}};
-  EXPECT_EQ(idle_keys(*read_tire(o)),
-            std::vector<std::string>{"pressure"});  // another pressure is another material
+  EXPECT_EQ(idle_keys(*read_tire(o)), std::vector<std::string>{"pressure"});  // another pressure is another material
   o.elements_circumference = 8;
   EXPECT_NE(complaint(file_text(), o).find("expected 12 to 2000"), std::string::npos);
 }

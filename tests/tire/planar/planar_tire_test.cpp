@@ -1,6 +1,6 @@
 // The planar tire under the interface of tires: momentum, energy, the static test as a peer, exact continuation.
-#include "tire/planar/planar_spec.hpp"
 #include "tire/planar/planar_tire.hpp"
+#include "tire/planar/planar_spec.hpp"
 
 #include <gtest/gtest.h>
 

@@ -25,8 +25,7 @@ PlanarParams stiff_wheel() {
 double inertia(const PlanarWheel& wheel) {
   double sum = 0.0;
   const PlanarField& p = wheel.mesh().position;
-  for (std::size_t n = 0; n < p.size(); ++n)
-    sum += wheel.motion().mass()[n] * (p.x[n] * p.x[n] + p.z[n] * p.z[n]);
+  for (std::size_t n = 0; n < p.size(); ++n) sum += wheel.motion().mass()[n] * (p.x[n] * p.x[n] + p.z[n] * p.z[n]);
   return sum;
 }
 
@@ -54,8 +53,7 @@ TEST(PlanarWheel, a_couple_on_the_rim_turns_it_and_nothing_else) {
 }
 
 TEST(PlanarWheel, impulses_of_ground_and_weight_are_what_its_momentum_gains) {
-  for (const PlanarIntegrator kind :
-       {PlanarIntegrator::semi_implicit_euler, PlanarIntegrator::runge_kutta_4}) {
+  for (const PlanarIntegrator kind : {PlanarIntegrator::semi_implicit_euler, PlanarIntegrator::runge_kutta_4}) {
     PlanarParams p = stiff_wheel();
     p.integrator = kind;
     PlanarWheel wheel(p, PlanarGround::plate(5.0), {0.0, 0.51}, {2.0, -1.0}, 0.0, 40.0, kGravity);
@@ -64,8 +62,7 @@ TEST(PlanarWheel, impulses_of_ground_and_weight_are_what_its_momentum_gains) {
     int steps = 0;
     for (; steps < 4000; ++steps) {
       ASSERT_TRUE(wheel.advance().ok);
-      ground_x += wheel.contact().force_x() * wheel.step(),
-          ground_z += wheel.contact().force_z() * wheel.step();
+      ground_x += wheel.contact().force_x() * wheel.step(), ground_z += wheel.contact().force_z() * wheel.step();
       highest = std::max(highest, wheel.contact().force_z());
       for (const PlanarTouch& t : wheel.contact().touches())
         EXPECT_LE(std::abs(t.friction), 0.6 * t.force * (1 + 1e-12));

@@ -19,7 +19,9 @@ namespace {
 
 using std::numbers::pi;
 
-RingMotion motion(double damping) { return {.rim_radius = 0.21, .mass = 20.0, .spin_inertia = 2.2, .damping = damping}; }
+RingMotion motion(double damping) {
+  return {.rim_radius = 0.21, .mass = 20.0, .spin_inertia = 2.2, .damping = damping};
+}
 
 /// Puts displacements and velocities into a ring on a rim at the angle 0 that spins.
 void set_state(RingCarcass& ring, const RingField& q, const PlanarField& w, double spin) {
@@ -98,7 +100,9 @@ struct Ride {
     p.gas = gas;
     RingCarcass ring(p, motion(2e-3));
     const auto angle = [](double t) { return 8.0 * t + 30.0 * t * t; };
-    const auto place = [](double t) { return PlanarPoint{2.0 * t + 0.01 * std::sin(60.0 * t), 5e-3 * std::cos(80.0 * t)}; };
+    const auto place = [](double t) {
+      return PlanarPoint{2.0 * t + 0.01 * std::sin(60.0 * t), 5e-3 * std::cos(80.0 * t)};
+    };
     const auto velocity = [&](double t) {
       const PlanarPoint a = place(t - 1e-6), b = place(t + 1e-6);
       return PlanarPoint{(b.x - a.x) / 2e-6, (b.z - a.z) / 2e-6};
@@ -138,7 +142,8 @@ struct Ride {
       }
       momentum = std::max(momentum, std::hypot(p1.x - p0.x - ix, p1.z - p0.z - iz));
       turn = std::max(turn, std::abs(ring.angular_momentum() - l0 - turning));
-      weight += 20.0 * h * (gravity.x * way.x + gravity.z * way.z) + gravity.x * (s1.x - s0.x) + gravity.z * (s1.z - s0.z);
+      weight +=
+          20.0 * h * (gravity.x * way.x + gravity.z * way.z) + gravity.x * (s1.x - s0.x) + gravity.z * (s1.z - s0.z);
       sums.rim_work += one.rim_work, sums.dissipation += one.dissipation, sums.numerical_loss += one.numerical_loss;
       sums.solver_loss += one.solver_loss;
     }
@@ -158,7 +163,8 @@ TEST(RingCarcass, momentum_and_angular_momentum_change_by_what_acts_to_round_off
 }
 
 TEST(RingCarcass, the_account_of_energy_is_left_over_in_second_order_and_the_rule_loses_in_first_order) {
-  for (const auto& [gas, tension] : {std::pair(RingGas::exact, 0.0), {RingGas::linearised, 0.0}, {RingGas::exact, 0.5}}) {
+  for (const auto& [gas, tension] :
+       {std::pair(RingGas::exact, 0.0), {RingGas::linearised, 0.0}, {RingGas::exact, 0.5}}) {
     const Ride coarse(4e-4, gas, tension), fine(2e-4, gas, tension), finest(1e-4, gas, tension);
     EXPECT_GT(fine.dissipation, 0.5);
     EXPECT_LT(std::abs(fine.residual), 1e-6 * fine.work);

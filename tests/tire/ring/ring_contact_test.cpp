@@ -107,8 +107,7 @@ TEST(RingContact, corner_gaps_have_their_derivatives) {
         const int j = (gaps[0].first + i / 2) % 120;
         const CornerGap up = moved(contact, q, j, i % 2 == 0, h), down = moved(contact, q, j, i % 2 == 0, -h);
         EXPECT_NEAR((up.gap - down.gap) / (2 * h), gaps[0].slope[i], 1e-8);
-        for (int o = 0; o < 6; ++o)
-          EXPECT_NEAR((up.slope[o] - down.slope[o]) / (2 * h), gaps[0].bend[6 * i + o], 1e-5);
+        for (int o = 0; o < 6; ++o) EXPECT_NEAR((up.slope[o] - down.slope[o]) / (2 * h), gaps[0].bend[6 * i + o], 1e-5);
       }
     }
   }
@@ -127,8 +126,7 @@ TEST(RingContact, a_corners_gap_is_smooth_where_the_belt_passes_from_one_segment
   };
   double low = at, high = at + ring.radius() * ring.angle();
   ASSERT_NE(gap_at(low).first, gap_at(high).first);
-  for (int i = 0; i < 60; ++i)
-    (gap_at(0.5 * (low + high)).first == gap_at(at).first ? low : high) = 0.5 * (low + high);
+  for (int i = 0; i < 60; ++i) (gap_at(0.5 * (low + high)).first == gap_at(at).first ? low : high) = 0.5 * (low + high);
   const CornerGap before = gap_at(low), after = gap_at(high);
   EXPECT_NE(before.first, after.first);
   EXPECT_NEAR(before.gap, after.gap, 1e-14);

@@ -191,8 +191,8 @@ TEST(RingMechanics, air_keeps_pressure_times_volume) {
   const double volume = ring.volume() - 2.0 * pi * ring.radius() * p.width * 0.01;
   EXPECT_NEAR((ring.pressure(q) + p.ambient) * volume, (p.pressure + p.ambient) * ring.volume(), 1e-9);
   EXPECT_GT(ring.pressure(q), linear.pressure(q));
-  EXPECT_NEAR(linear.pressure(q) - p.pressure,
-              (p.pressure + p.ambient) * (ring.volume() - volume) / ring.volume(), 1e-6);
+  EXPECT_NEAR(linear.pressure(q) - p.pressure, (p.pressure + p.ambient) * (ring.volume() - volume) / ring.volume(),
+              1e-6);
 }
 
 }  // namespace

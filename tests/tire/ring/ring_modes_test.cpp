@@ -1,4 +1,5 @@
-// Natural frequencies of the flexible ring against the continuous ring in closed form, and against the whole ring at once.
+// Natural frequencies of the flexible ring against the continuous ring in closed form, and against the whole ring at
+// once.
 #include "tire/ring/ring_modes.hpp"
 
 #include <gtest/gtest.h>
@@ -93,7 +94,8 @@ TEST(RingModes, shapes_are_those_of_the_belt_on_a_rim_that_does_not_move) {
     EXPECT_EQ(mode.shape[0], (std::array<std::complex<double>, 3>{}));
     EXPECT_NEAR(std::max(std::abs(mode.shape[1][0]), std::abs(mode.shape[1][2])), 1.0, 1e-12);
   }
-  // In order 1 a stiff belt shifts as it is. Upwards that is radial cos θ and tangential −sin θ, θ from the top forwards.
+  // In order 1 a stiff belt shifts as it is. Upwards that is radial cos θ and tangential −sin θ, θ from the top
+  // forwards.
   const auto& shift = r.modes[2].shape[1];
   EXPECT_NEAR(std::abs(shift[0]) / std::abs(shift[2]), 1.0, 0.01);
   EXPECT_NEAR(std::arg(shift[0] / shift[2]), 0.5 * pi, 1e-9);

@@ -22,8 +22,8 @@ using std::numbers::pi;
 double pressed(RingSolver& solver, double deflection, int steps, double x = 0.0) {
   for (int k = 1; k <= steps; ++k) {
     const RingReport report = solver.solve({x, solver.ring().radius() - deflection * k / steps});
-    EXPECT_TRUE(report.converged) << k << " of " << steps << ": residual " << report.residual
-                                  << ", penetration " << report.penetration << ", pull " << report.pull;
+    EXPECT_TRUE(report.converged) << k << " of " << steps << ": residual " << report.residual << ", penetration "
+                                  << report.penetration << ", pull " << report.pull;
   }
   return solver.spindle_force().z;
 }
@@ -40,8 +40,8 @@ TEST(RingSolver, without_contact_nothing_moves) {
   EXPECT_EQ(solver.spindle_force().z, 0.0);
 }
 
-/// u of one segment under a unit force on it, or v under one along it, from the Fourier series of the discrete ring; `exact`
-/// waves are those of the continuous one.
+/// u of one segment under a unit force on it, or v under one along it, from the Fourier series of the discrete ring;
+/// `exact` waves are those of the continuous one.
 double point_compliance(const RingParams& p, int terms, bool exact, bool along = false) {
   const double phi = 2.0 * pi / p.segments;
   const RingMechanics ring(p);
@@ -118,7 +118,8 @@ Eigen::Matrix2d stuck_densely(const RingSolver& solver) {
     }
   const int held = 2 * static_cast<int>(holds.size());
   const double scale = k(0, 0);  // N/m: rows of one size, which the pivots need
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(2 * n + held, 2 * n + held), right = Eigen::MatrixXd::Zero(2 * n + held, 2);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(2 * n + held, 2 * n + held),
+                  right = Eigen::MatrixXd::Zero(2 * n + held, 2);
   all.topLeftCorner(2 * n, 2 * n) = k;
   for (int h = 0; h < held / 2; ++h) {
     all.block(2 * n + 2 * h, 0, 2, 2 * n) = scale * holds[h];
@@ -156,7 +157,8 @@ TEST(RingSolver, the_moment_on_the_rim_is_what_turning_the_belt_costs) {
   RingField turn = ring.zero();  // about −y
   for (double& v : turn.v) v = ring.radius();
   const double step = 1e-5;  // rad
-  const double slope = (ring.energy(along(solver.state(), turn, step)) - ring.energy(along(solver.state(), turn, -step))) / (2.0 * step);
+  const double slope =
+      (ring.energy(along(solver.state(), turn, step)) - ring.energy(along(solver.state(), turn, -step))) / (2.0 * step);
   EXPECT_GT(std::abs(slope), 0.1);
   EXPECT_NEAR(ring.spindle_moment(solver.state()), -slope, 1e-6 * std::abs(slope));
 }
@@ -165,10 +167,8 @@ TEST(RingSolver, a_stiff_belt_moves_as_a_rigid_ring_that_can_grow) {
   RingParams p = linear_ring(120);
   p.bending = p.shear = 1e9;
   RingSolver solver(p, plate(p));
-  const double air =
-      p.ambient * std::pow(2.0 * pi * solver.ring().radius() * p.width, 2) / solver.ring().volume();
-  const double expected =
-      1e-5 / (1.0 / (pi * (p.sidewall_1 + p.tangential)) + 1.0 / (2.0 * pi * p.sidewall_1 + air));
+  const double air = p.ambient * std::pow(2.0 * pi * solver.ring().radius() * p.width, 2) / solver.ring().volume();
+  const double expected = 1e-5 / (1.0 / (pi * (p.sidewall_1 + p.tangential)) + 1.0 / (2.0 * pi * p.sidewall_1 + air));
   EXPECT_NEAR(pressed(solver, 1e-5, 1), expected, 1e-3 * expected);
 }
 
@@ -241,8 +241,7 @@ TEST(RingSolver, force_times_way_is_the_energy_with_exact_kinematics) {
     const double from = 0.05, way = 1e-4;
     pressed(solver, from, 5);
     const double before = solver.ring().energy(solver.state());
-    const double work =
-        way * gauss_mean([&](double share) { return pressed(solver, from + share * way, 1); });
+    const double work = way * gauss_mean([&](double share) { return pressed(solver, from + share * way, 1); });
     pressed(solver, from + way, 1);
     const double after = solver.ring().energy(solver.state());
     EXPECT_NEAR(after - before, work, 1e-5 * work) << width;

@@ -76,9 +76,8 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
     EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U)
         << key << " " << value << ": " << complaint(file);
   }
-  for (const char* key :
-       {"segments", "radius", "width", "rim_radius", "pressure", "air_share", "bending", "shear", "sidewall",
-        "tangential", "mass", "spin_inertia", "diametral_inertia", "contact"}) {
+  for (const char* key : {"segments", "radius", "width", "rim_radius", "pressure", "air_share", "bending", "shear",
+                          "sidewall", "tangential", "mass", "spin_inertia", "diametral_inertia", "contact"}) {
     json file = file_text();
     file.erase(key);
     EXPECT_EQ(complaint(file).rfind("tire.json: key '" + std::string(key), 0), 0U) << complaint(file);
@@ -198,13 +197,12 @@ TEST(PressProfile, is_read_from_csv_and_mistakes_name_their_line) {
   const auto points = read("# a kerb\nx_m,z_m\n-1,0\r\n0.5,1e-2\n\n0.75,0.2\n");
   ASSERT_EQ(points.size(), 3U);
   EXPECT_EQ(points[1][1], 0.01);
-  const std::pair<const char*, const char*> wrong[] = {
-      {"0,0\n1,0\n", "line 1: expected the header x_m,z_m"},
-      {"x_m,z_m\n0,0\n1;0\n", "line 3: expected two numbers"},
-      {"x_m,z_m\n0,0,1\n", "line 2: expected two numbers"},
-      {"x_m,z_m\n0,nan\n", "line 2: expected two numbers"},
-      {"x_m,z_m\n0,0\n0,1\n", "line 3: x is 0 m, expected more"},
-      {"x_m,z_m\n0,0\n", "has 1 points, expected two at least"}};
+  const std::pair<const char*, const char*> wrong[] = {{"0,0\n1,0\n", "line 1: expected the header x_m,z_m"},
+                                                       {"x_m,z_m\n0,0\n1;0\n", "line 3: expected two numbers"},
+                                                       {"x_m,z_m\n0,0,1\n", "line 2: expected two numbers"},
+                                                       {"x_m,z_m\n0,nan\n", "line 2: expected two numbers"},
+                                                       {"x_m,z_m\n0,0\n0,1\n", "line 3: x is 0 m, expected more"},
+                                                       {"x_m,z_m\n0,0\n", "has 1 points, expected two at least"}};
   for (const auto& [text, words] : wrong) {
     try {
       read(text);

@@ -41,8 +41,7 @@ TEST(RingTension, rigid_motions_of_any_size_cost_nothing) {
     for (const double turn : {0.0, 0.3, 2.0})
       for (const double way : {0.0, 0.1, 0.5}) {
         const RingField q = placed(n, [&](double angle) {
-          return std::pair(kRadius * std::sin(angle + turn) + way,
-                           -kRadius * std::cos(angle + turn) - 0.4 * way);
+          return std::pair(kRadius * std::sin(angle + turn) + way, -kRadius * std::cos(angle + turn) - 0.4 * way);
         });
         RingField force = zero(n);
         t.add_gradient(q, force);
@@ -59,8 +58,7 @@ TEST(RingTension, growth_changes_length_and_area_of_a_regular_polygon) {
     for (const double growth : {-0.1, 1e-3, 0.05}) {
       RingField q = zero(n);
       for (double& u : q.u) u = growth;
-      const double expected =
-          -0.5 * n * std::sin(2.0 * pi / n) * growth * growth;  // of first order is nothing
+      const double expected = -0.5 * n * std::sin(2.0 * pi / n) * growth * growth;  // of first order is nothing
       EXPECT_NEAR(t.energy(q), kStrength * expected, 1e-12 * kStrength * std::abs(expected));
     }
   }
@@ -73,8 +71,7 @@ TEST(RingTension, an_ellipse_has_its_length_and_area) {
   const double expected = kRadius * (length - 2.0 * pi * kRadius) - (area - pi * kRadius * kRadius);
   double before = 1.0;
   for (const int n : {60, 120, 240, 480}) {
-    const RingField q =
-        placed(n, [&](double angle) { return std::pair(a * std::sin(angle), -b * std::cos(angle)); });
+    const RingField q = placed(n, [&](double angle) { return std::pair(a * std::sin(angle), -b * std::cos(angle)); });
     const double error = std::abs(tension(n).energy(q) / kStrength / expected - 1.0);
     EXPECT_LT(error, 0.26 * before) << n;
     before = error;
@@ -113,8 +110,7 @@ TEST(RingTension, force_and_tangent_are_derivatives_to_round_off) {
     RingParams p = truck_ring(n);
     const RingMechanics ring(p);
     // About a ring that is bent strongly.
-    RingField q =
-        placed(n, [](double angle) { return std::pair(0.46 * std::sin(angle), -0.31 * std::cos(angle)); });
+    RingField q = placed(n, [](double angle) { return std::pair(0.46 * std::sin(angle), -0.31 * std::cos(angle)); });
     q = along(q, random_field(ring, 2e-3, seed), 1.0);
     const RingField change = random_field(ring, 1e-4, seed + 10), test = random_field(ring, 1.0, seed + 20);
     const double work = gauss_mean([&](double share) {
@@ -150,7 +146,8 @@ TEST(RingTension, without_a_share_nothing_is_added) {
   EXPECT_EQ(none.stiffest(), 0.0);
 }
 
-// σ = 1 and a sidewall without stiffness but for what holds the ring: the belt alone holds the pressure, and grows nowhere.
+// σ = 1 and a sidewall without stiffness but for what holds the ring: the belt alone holds the pressure, and grows
+// nowhere.
 TEST(RingTension, the_inflated_belt_is_in_balance_and_its_sidewall_holds_the_rest) {
   for (const double share : {0.0, 0.4, 1.0}) {
     RingParams p = truck_ring(48);

@@ -13,22 +13,20 @@
 namespace furrow::test {
 namespace {
 
-using verification::verify;
 using std::numbers::pi;
+using verification::verify;
 
 /// Inner nodes of a strip moved along it by ± share of an element, alternating across: trapezoids.
 PatchMesh trapezoids(PatchMesh mesh, int n, double length, double share) {
   for (int i = 1; i < n; ++i)
-    for (int j = 0; j < 2; ++j)
-      mesh.position[2 * i + j].x() += ((i + j) % 2 == 0 ? share : -share) * length / n;
+    for (int j = 0; j < 2; ++j) mesh.position[2 * i + j].x() += ((i + j) % 2 == 0 ? share : -share) * length / n;
   return mesh;
 }
 
 TEST(Beam, large_extension) {
   // S₁₁ = E E₁₁ with free sides: F/A = E λ (λ² − 1)/2.
   const double young = 1e7, stretch = 1.2, area = 0.1 * 0.01;
-  const ShellPatch strip(trapezoids(plate_mesh(4, 1, 1.0, 0.1), 4, 1.0, 0.25),
-                         {isotropic_layer(0.01, young, 0.45)});
+  const ShellPatch strip(trapezoids(plate_mesh(4, 1, 1.0, 0.1), 4, 1.0, 0.25), {isotropic_layer(0.01, young, 0.45)});
   Supports supports(strip.nodes());
   supports.fix({0, 1, 8, 9}, "xz").fix({0}, "y");
   StaticPath path(strip, supports, Vector::Zero(strip.coordinates()));
@@ -75,8 +73,7 @@ TEST(Beam, cantilever_under_an_end_moment) {
       clamp.push_back(j);
       load[6 * (tip + j) + 3] = -moment / m * (j == 0 || j == m ? 0.5 : 1.0);
     }
-    const Vector u =
-        linear_solution(strip, Supports(strip.nodes()).fix(clamp, "xa").fix({m / 2}, "yzb"), load);
+    const Vector u = linear_solution(strip, Supports(strip.nodes()).fix(clamp, "xa").fix({m / 2}, "yzb"), load);
     const std::string name = "cantilever, end moment, nu = 0.45, L/h = " + verification::brief(1 / height);
     verification::verify(name, "tip deflection, m, " + size(n, m), u[6 * (tip + m / 2) + 2], 0.5e-6, 1e-5,
                          "M L^2/(2 E I)");
@@ -142,15 +139,14 @@ std::pair<double, double> elastica(double alpha) {
 TEST(Beam, elastica) {
   // Sze, Liu & Lo (2004), § 3.1: L = 10, b = 1, h = 0.1, E = 1.2e6, ν = 0, P = 4 E I/L².
   const char* paper = "Sze, Liu & Lo 2004 doi:10.1016/j.finel.2003.11.001";
-  const double table[4][3] = {
-      {0.25, 0.563, 3.015}, {0.5, 1.604, 4.933}, {0.75, 2.541, 6.031}, {1.0, 3.286, 6.698}};
+  const double table[4][3] = {{0.25, 0.563, 3.015}, {0.5, 1.604, 4.933}, {0.75, 2.541, 6.031}, {1.0, 3.286, 6.698}};
   for (const int n : {8, 16, 32}) {
     const ShellPatch strip(plate_mesh(n, 1, 10.0, 1.0), {isotropic_layer(0.1, 1.2e6, 0.0)});
     Vector load = Vector::Zero(strip.coordinates());
     load[6 * 2 * n + 2] = load[6 * (2 * n + 1) + 2] = 2.0;
     StaticPath path(strip, Supports(strip.nodes()).fix({0, 1}, "xyzabc"), load);
-    verification::Worst tabulated("cantilever, large end force", "deflection or shortening, " + size(n, 1),
-                                  0.02, paper);
+    verification::Worst tabulated("cantilever, large end force", "deflection or shortening, " + size(n, 1), 0.02,
+                                  paper);
     verification::Worst exact("cantilever, large end force", "deflection or shortening, " + size(n, 1),
                               std::max(0.02 * (8.0 / n) * (8.0 / n), 2e-3),
                               "elastica, Bisshopp & Drucker 1945 doi:10.1090/qam/13360");
@@ -190,8 +186,7 @@ TEST(Beam, strip_rolled_up_into_a_full_circle) {
       ASSERT_TRUE(path.go_to(part / 24.0));
       const Vector r = path.reactions(), &q = path.q();
       double m = 0.0;  // about −y: d × Q
-      for (const int node : {tip, tip + 1})
-        m += q[6 * node + 3] * r[6 * node + 5] - q[6 * node + 5] * r[6 * node + 3];
+      for (const int node : {tip, tip + 1}) m += q[6 * node + 3] * r[6 * node + 5] - q[6 * node + 5] * r[6 * node + 3];
       const std::string where = verification::brief(part * 15) + " deg";
       moment.add(m, stiffness * angle / length, stiffness * 2 * pi / length, where);
       place.add(q[6 * tip], length * std::sin(angle) / angle, length, where);

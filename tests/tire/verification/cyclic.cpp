@@ -15,8 +15,7 @@ PatchMesh ring_patch_mesh(const tire::ShellMesh& ring, bool one_column) {
   for (int i = 0; i < (one_column ? 1 : columns); ++i)
     for (int j = 0; j + 1 < ring.rows; ++j) {
       const int next = (i + 1) % columns;
-      mesh.elements.push_back(
-          {ring.node(i, j), ring.node(next, j), ring.node(next, j + 1), ring.node(i, j + 1)});
+      mesh.elements.push_back({ring.node(i, j), ring.node(next, j), ring.node(next, j + 1), ring.node(i, j + 1)});
     }
   return mesh;
 }

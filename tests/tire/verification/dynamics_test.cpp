@@ -13,8 +13,8 @@
 namespace furrow::test {
 namespace {
 
-using verification::verify;
 using std::numbers::pi;
+using verification::verify;
 
 /// ω a² √(ρ h/D) of the lowest bending modes of a unit square plate. In-plane motion is held: it does not couple.
 Vector plate_frequencies(double height, Supports& supports, const PatchMesh& mesh, int count) {
@@ -41,10 +41,9 @@ TEST(Dynamics, frequencies_of_a_simply_supported_plate) {
       const Vector ours = plate_frequencies(height, supports, mesh, 5);
       for (int mode = 0; mode < 5; ++mode)
         if (mode != 2)
-          verification::verify(
-              "simply supported square plate, a/h = " + verification::brief(1 / height),
-              "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
-              ours[mode], pi * pi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
+          verification::verify("simply supported square plate, a/h = " + verification::brief(1 / height),
+                               "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
+                               ours[mode], pi * pi * theory[mode], 12.0 / (n * n) + 2e-3, "pi^2 (m^2 + n^2)");
     }
 }
 
@@ -57,10 +56,10 @@ TEST(Dynamics, frequencies_of_a_cantilever_plate) {
     supports.fix(mesh.select([](const Vec3& x) { return std::abs(x.x()) < 1e-9; }), "zab");
     const Vector ours = plate_frequencies(0.005, supports, mesh, 6);
     for (int mode = 0; mode < 6; ++mode)
-      verification::verify(
-          "cantilever square plate, a/h = 200",
-          "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n), ours[mode],
-          leissa[mode], 6.0 / (n * n) + 7e-3, "Leissa 1973 doi:10.1016/S0022-460X(73)80371-2 (Ritz)");
+      verification::verify("cantilever square plate, a/h = 200",
+                           "frequency " + std::to_string(mode + 1) + ", omega a^2 sqrt(rho h/D), " + size(n, n),
+                           ours[mode], leissa[mode], 6.0 / (n * n) + 7e-3,
+                           "Leissa 1973 doi:10.1016/S0022-460X(73)80371-2 (Ritz)");
   }
 }
 
@@ -136,9 +135,7 @@ class Stepper {
   Vector weight_;
 };
 
-ShellPatch rubber_strip() {
-  return ShellPatch(plate_mesh(4, 1, 1.0, 0.1), {isotropic_layer(0.02, 5e6, 0.3)});
-}
+ShellPatch rubber_strip() { return ShellPatch(plate_mesh(4, 1, 1.0, 0.1), {isotropic_layer(0.02, 5e6, 0.3)}); }
 
 TEST(Dynamics, flexible_pendulum_through_large_rotations) {
   // Hinged at one end, released horizontally; after 0.5 s it has passed the vertical.
@@ -166,12 +163,11 @@ TEST(Dynamics, flexible_pendulum_through_large_rotations) {
                              "sum of dv M dv/2 + dE D dE/2 over the steps");
     }
     const double order = std::log2((tip[0] - tip[1]).norm() / (tip[1] - tip[2]).norm());
-    verification::verify(names[ours], "order of the tip's position in the step, 4 x 1", order,
-                         ours ? 1.0 : 2.0, 0.15,
+    verification::verify(names[ours], "order of the tip's position in the step, 4 x 1", order, ours ? 1.0 : 2.0, 0.15,
                          ours ? "first order: backward Euler velocities" : "second order");
     if (ours)
-      verification::verify(names[1], "order of the energy lost in the step, 4 x 1",
-                           std::log2(lost[1] / lost[2]), 1.0, 0.15, "first order");
+      verification::verify(names[1], "order of the energy lost in the step, 4 x 1", std::log2(lost[1] / lost[2]), 1.0,
+                           0.15, "first order");
   }
 }
 
@@ -186,13 +182,12 @@ TEST(Dynamics, free_flight_of_a_strip) {
     }
     const Vec3 p = run.momentum(), l = run.angular_momentum();
     for (int n = 0; n < 300; ++n) run.step(1e-3);
-    const std::string name =
-        std::string("free flight with bending, ") + (ours ? "rule of the tire" : "mid-point rule");
-    verification::verify(name, "momentum change after 300 steps, 4 x 1", (run.momentum() - p).norm(), 0.0,
-                         1e-12, "conserved", p.norm());
+    const std::string name = std::string("free flight with bending, ") + (ours ? "rule of the tire" : "mid-point rule");
+    verification::verify(name, "momentum change after 300 steps, 4 x 1", (run.momentum() - p).norm(), 0.0, 1e-12,
+                         "conserved", p.norm());
     if (!ours)
-      verification::verify(name, "angular momentum change after 300 steps, 4 x 1",
-                           (run.angular_momentum() - l).norm(), 0.0, 1e-10, "conserved", l.norm());
+      verification::verify(name, "angular momentum change after 300 steps, 4 x 1", (run.angular_momentum() - l).norm(),
+                           0.0, 1e-10, "conserved", l.norm());
   }
 }
 

@@ -68,8 +68,7 @@ double difference(const Abd& ours, const Abd& reference) {
   double worst = 0.0;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
-      worst = std::max(worst,
-                       std::abs(ours(i, j) - reference(i, j)) / std::sqrt(reference(i, i) * reference(j, j)));
+      worst = std::max(worst, std::abs(ours(i, j) - reference(i, j)) / std::sqrt(reference(i, i) * reference(j, j)));
   return worst;
 }
 
@@ -107,8 +106,8 @@ TEST(Laminate, extension_twist_coupling) {
       const Abd abd = plane ? plane_stress_abd(layers) : linear_thickness_abd(layers);
       const double reference = abd.ldlt().solve(pull)[5], ours = twist_of_pulled_strip(layers, n, n);
       verification::verify("laminate [45/-45] pulled",
-                           "twist per pull, 1/N, " + std::to_string(n) + " x " + std::to_string(n), ours,
-                           reference, plane ? 0.01 : 1e-9, plane ? kClassical : kLinear);
+                           "twist per pull, 1/N, " + std::to_string(n) + " x " + std::to_string(n), ours, reference,
+                           plane ? 0.01 : 1e-9, plane ? kClassical : kLinear);
     }
 }
 
@@ -155,8 +154,7 @@ TEST(Laminate, simply_supported_cross_ply_plates) {
         if (n == 32) {
           verification::verify(name, quantity, ours, closed(plane_stress_abd(layers), 1.0), 0.02, source);
           verification::verify(name, quantity, ours, closed(plane_stress_abd(layers), 5.0 / 6.0),
-                               slenderness > 50 ? 0.02 : 0.15,
-                               "Navier solution, first-order theory, factor 5/6");
+                               slenderness > 50 ? 0.02 : 0.15, "Navier solution, first-order theory, factor 5/6");
         }
       }
     }

@@ -63,13 +63,11 @@ Abd linear_thickness_abd(const std::vector<tire::ShellLayer>& layers) {
 
 std::pair<double, double> shear_stiffness(const std::vector<tire::ShellLayer>& layers) {
   double s13 = 0.0, s23 = 0.0;
-  for_layers(layers,
-             [&](const Mat6& c, double i0, double, double) { s13 += i0 * c(4, 4), s23 += i0 * c(5, 5); });
+  for_layers(layers, [&](const Mat6& c, double i0, double, double) { s13 += i0 * c(4, 4), s23 += i0 * c(5, 5); });
   return {s13, s23};
 }
 
-double navier_deflection(const Abd& abd, std::pair<double, double> shear, double factor, double side,
-                         double q) {
+double navier_deflection(const Abd& abd, std::pair<double, double> shear, double factor, double side, double q) {
   const double k = std::numbers::pi / side, s13 = factor * shear.first, s23 = factor * shear.second;
   const auto entry = [&](int row, int column) { return abd(row, column) * k * k; };
   Eigen::Matrix<double, 5, 5> m;  // of u, v, w, ψ₁, ψ₂

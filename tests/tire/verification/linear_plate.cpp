@@ -13,8 +13,7 @@ constexpr int kMaxChanges = 200, kMaxLoadSteps = 60;
 
 double start_radius(const InflatedCarcass& ring) {
   double radius = 0.0;
-  for (int j = 0; j < ring.mesh.rows; ++j)
-    radius = std::max(radius, ring.shell.layout().get(ring.q, 0, j, 0).z());
+  for (int j = 0; j < ring.mesh.rows; ++j) radius = std::max(radius, ring.shell.layout().get(ring.q, 0, j, 0).z());
   return radius;
 }
 
@@ -23,9 +22,7 @@ double start_radius(const InflatedCarcass& ring) {
 LinearPlate::LinearPlate(const InflatedCarcass& ring, double reach) {
   const double bottom = -start_radius(ring);
   const tire::ShellMesh& mesh = ring.mesh;
-  const auto near = [&](int i, int j) {
-    return ring.shell.layout().get(ring.q, i, j, 0).z() - bottom < reach;
-  };
+  const auto near = [&](int i, int j) { return ring.shell.layout().get(ring.q, i, j, 0).z() - bottom < reach; };
   const int lowest = mesh.columns / 2;
   int aside = 0;
   while (near(lowest + aside + 1, mesh.rows / 2)) ++aside;
@@ -70,10 +67,10 @@ void LinearPlate::make_points(const InflatedCarcass& ring) {
                       radius,
                       stiffness * area};
           for (int n = 0; n < 4; ++n)
-            point.gap += point.weight[n] *
-                         ring.shell.layout()
-                             .get(ring.q, first_column_ + i + (n == 1 || n == 2), first_row_ + j + (n > 1), 0)
-                             .z();
+            point.gap +=
+                point.weight[n] * ring.shell.layout()
+                                      .get(ring.q, first_column_ + i + (n == 1 || n == 2), first_row_ + j + (n > 1), 0)
+                                      .z();
           points_.push_back(point);
         }
   }
@@ -97,16 +94,14 @@ LinearPlate::Answer LinearPlate::at_deflection(double deflection) const {
         for (int m = 0; m < 4; ++m) s_matrix(p.node[n], p.node[m]) += p.stiffness * p.weight[n] * p.weight[m];
       }
     }
-    const Eigen::MatrixXd u = (Eigen::MatrixXd::Identity(nodes, nodes) + compliance_ * s_matrix)
-                                  .partialPivLu()
-                                  .solve(compliance_ * right);
+    const Eigen::MatrixXd u =
+        (Eigen::MatrixXd::Identity(nodes, nodes) + compliance_ * s_matrix).partialPivLu().solve(compliance_ * right);
     answer.force = answer.tangent = 0.0;
     answer.found = true;
     for (std::size_t s = 0; s < points_.size(); ++s) {
       const Point& p = points_[s];
       double depth = deflection - p.gap, growth = 1.0;
-      for (int n = 0; n < 4; ++n)
-        depth -= p.weight[n] * u(p.node[n], 0), growth -= p.weight[n] * u(p.node[n], 1);
+      for (int n = 0; n < 4; ++n) depth -= p.weight[n] * u(p.node[n], 0), growth -= p.weight[n] * u(p.node[n], 1);
       if (active[s]) answer.force += p.stiffness * depth, answer.tangent += p.stiffness * growth;
       if (active[s] == (depth > 0.0)) continue;
       active[s] = depth > 0.0;
@@ -118,8 +113,7 @@ LinearPlate::Answer LinearPlate::at_deflection(double deflection) const {
 
 LinearPlate::Answer LinearPlate::at_load(double load) const {
   Answer answer = at_deflection(1e-3);
-  for (int step = 0; step < kMaxLoadSteps && answer.found && std::abs(answer.force - load) > 1e-6 * load;
-       ++step)
+  for (int step = 0; step < kMaxLoadSteps && answer.found && std::abs(answer.force - load) > 1e-6 * load; ++step)
     answer = at_deflection(answer.deflection + (load - answer.force) / answer.tangent);
   answer.found = answer.found && std::abs(answer.force - load) <= 1e-6 * load;
   return answer;

@@ -53,16 +53,14 @@ double linear_growth(const char* name, double pressure, int columns, int width) 
 TEST(LinearTangent, a_little_pressure_lifts_the_crown_as_the_tangent_says) {
   for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json"}) {
     const double pressure = 200.0;  // Pa
-    verification::verify(
-        "inflation beside the tangent at rest", "crown growth, m, " + said(name, pressure, 90, 24),
-        crown(InflatedCarcass(tire_at(name, pressure, 90, 24))), linear_growth(name, pressure, 90, 24), 0.02,
-        "linear: tangent of the undeformed ring");
+    verification::verify("inflation beside the tangent at rest", "crown growth, m, " + said(name, pressure, 90, 24),
+                         crown(InflatedCarcass(tire_at(name, pressure, 90, 24))), linear_growth(name, pressure, 90, 24),
+                         0.02, "linear: tangent of the undeformed ring");
   }
 }
 
 TEST(LinearTangent, a_plate_that_hardly_presses_is_borne_as_the_tangent_says) {
-  for (const auto& [name, pressure] :
-       {std::pair("hmmwv_lumped.json", 200e3), std::pair("hmmwv_layered.json", 20e3)}) {
+  for (const auto& [name, pressure] : {std::pair("hmmwv_lumped.json", 200e3), std::pair("hmmwv_layered.json", 20e3)}) {
     const InflatedCarcass ring(tire_at(name, pressure, 90, 24));
     const LinearPlate linear(ring, kReach);
     tire::PressSolver solver(ring.file, ring.mesh, ring.q, {});
@@ -75,9 +73,8 @@ TEST(LinearTangent, a_plate_that_hardly_presses_is_borne_as_the_tangent_says) {
     double force = 0.0, reference = 0.0;
     const double farther = off(4e-4, force, reference);
     EXPECT_LT(off(2e-4, force, reference), 0.5 * farther);  // it is the limit of small deflections
-    verification::verify("plate beside the tangent as inflated",
-                         "force at 0.2 mm, N, " + said(name, pressure, 90, 24), force, reference, 0.03,
-                         "linear: compliance of the inflated ring, unilateral contact");
+    verification::verify("plate beside the tangent as inflated", "force at 0.2 mm, N, " + said(name, pressure, 90, 24),
+                         force, reference, 0.03, "linear: compliance of the inflated ring, unilateral contact");
   }
 }
 
@@ -98,10 +95,9 @@ void record(const Case& c, const LinearPlate::Answer& answer) {
 }
 
 TEST(LinearTangent, under_the_load_the_pressed_tire_yields_more_than_its_tangent) {
-  for (const Case& c :
-       {Case{"hmmwv_lumped.json", 200e3, 60, 12}, Case{"hmmwv_lumped.json", 200e3, 90, 24},
-        Case{"hmmwv_layered.json", 70e3, 60, 12}, Case{"hmmwv_layered.json", 70e3, 90, 24},
-        Case{"hmmwv_layered.json", 200e3, 60, 12}, Case{"hmmwv_layered.json", 200e3, 90, 24}}) {
+  for (const Case& c : {Case{"hmmwv_lumped.json", 200e3, 60, 12}, Case{"hmmwv_lumped.json", 200e3, 90, 24},
+                        Case{"hmmwv_layered.json", 70e3, 60, 12}, Case{"hmmwv_layered.json", 70e3, 90, 24},
+                        Case{"hmmwv_layered.json", 200e3, 60, 12}, Case{"hmmwv_layered.json", 200e3, 90, 24}}) {
     const InflatedCarcass ring(tire_at(c.name, c.pressure, c.columns, c.width));
     const LinearPlate::Answer linear = LinearPlate(ring, kReach).at_load(kLoad);
     ASSERT_TRUE(linear.found) << said(c.name, c.pressure, c.columns, c.width);

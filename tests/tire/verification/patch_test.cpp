@@ -60,14 +60,13 @@ TEST(Patch, membrane_state) {
     const Vector q = solve(patch, Supports(8).fix(outside(), "xyz"), exact);
     verification::verify("membrane patch", "largest coordinate off, " + mesh_name(turn),
                          (q - exact).cwiseAbs().maxCoeff(), 0.0, 1e-11, kExact, 1.0);
-    verification::verify("membrane patch", "energy, J, " + mesh_name(turn), patch.energy(q),
-                         density * 2 * kThickness, 1e-9, "plane stress");
+    verification::verify("membrane patch", "energy, J, " + mesh_name(turn), patch.energy(q), density * 2 * kThickness,
+                         1e-9, "plane stress");
   }
 }
 
 TEST(Patch, thickness_state) {
-  const double e33 = 0.5 * (1.02 * 1.02 - 1),
-               c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
+  const double e33 = 0.5 * (1.02 * 1.02 - 1), c33 = kYoung * (1 - kPoisson) / ((1 + kPoisson) * (1 - 2 * kPoisson));
   for (const double turn : {0.0, 20.0, 40.0}) {
     const ShellPatch patch(twisted_mesh(turn), {isotropic_layer(kThickness, kYoung, kPoisson)});
     Vector exact = patch.reference();
@@ -83,8 +82,7 @@ TEST(Patch, thickness_state) {
 TEST(Patch, bending_state) {
   const double kxx = 1e-5, kyy = -0.6e-5, kxy = 0.4e-5;  // 1/m; w = ½ (kxx x² + kyy y²) + kxy x y
   const double d = kYoung * std::pow(kThickness, 3) / (12 * (1 - kPoisson * kPoisson));
-  const double theory =
-      d * (kxx * kxx + kyy * kyy + 2 * kPoisson * kxx * kyy + 2 * (1 - kPoisson) * kxy * kxy);
+  const double theory = d * (kxx * kxx + kyy * kyy + 2 * kPoisson * kxx * kyy + 2 * (1 - kPoisson) * kxy * kxy);
   for (const double turn : {0.0, 20.0, 40.0}) {
     const ShellPatch patch(twisted_mesh(turn), {isotropic_layer(kThickness, kYoung, kPoisson)});
     Vector exact = patch.reference();
@@ -139,12 +137,10 @@ Vector moved(const ShellPatch& patch, const Vector& q, const Mat3& turn, const V
 
 TEST(Patch, rigid_motion_through_many_turns) {
   const ShellPatch patch = dome();
-  verification::Worst strain("rigid motion, 100 turns in steps of 37 deg", "largest strain, 4 x 4", 1e-12,
-                             "zero");
-  verification::Worst force("rigid motion, 100 turns in steps of 37 deg", "largest force over E h L, 4 x 4",
-                            1e-12, "zero");
-  const Mat3 step =
-      Eigen::AngleAxisd(37 * std::numbers::pi / 180, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  verification::Worst strain("rigid motion, 100 turns in steps of 37 deg", "largest strain, 4 x 4", 1e-12, "zero");
+  verification::Worst force("rigid motion, 100 turns in steps of 37 deg", "largest force over E h L, 4 x 4", 1e-12,
+                            "zero");
+  const Mat3 step = Eigen::AngleAxisd(37 * std::numbers::pi / 180, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   Mat3 turn = Mat3::Identity();
   for (int n = 0; n < 973; ++n) {
     turn = Eigen::Quaterniond(step * turn).normalized().toRotationMatrix();
@@ -162,8 +158,8 @@ TEST(Patch, stretched_state_turns_with_the_body) {
   const Vector q = patch.reference() + 1e-2 * Vector::Random(patch.coordinates());
   const Mat3 turn = Eigen::AngleAxisd(2.5, Vec3(0.2, 1, 0.4).normalized()).toRotationMatrix();
   const Vector f = patch.forces(q), g = patch.forces(moved(patch, q, turn, Vec3(1, 2, 3)));
-  verification::verify("objectivity", "f(R q) - R f(q), 4 x 4",
-                       (g - moved(patch, f, turn, Vec3::Zero())).norm(), 0.0, 1e-12, "zero", f.norm());
+  verification::verify("objectivity", "f(R q) - R f(q), 4 x 4", (g - moved(patch, f, turn, Vec3::Zero())).norm(), 0.0,
+                       1e-12, "zero", f.norm());
 }
 
 TEST(Patch, forces_and_tangent_are_derivatives) {
@@ -172,10 +168,8 @@ TEST(Patch, forces_and_tangent_are_derivatives) {
   const Vector q = patch.reference() + 2e-3 * Vector::Random(patch.coordinates());
   const Vector f = patch.forces(q);
   const Eigen::MatrixXd k = patch.tangent(q);
-  verification::Worst gradient("finite differences", "force against energy, 4 x 4", 1e-6,
-                               "central differences, 1e-5");
-  verification::Worst tangent("finite differences", "tangent against force, 4 x 4", 1e-7,
-                              "central differences, 1e-5");
+  verification::Worst gradient("finite differences", "force against energy, 4 x 4", 1e-6, "central differences, 1e-5");
+  verification::Worst tangent("finite differences", "tangent against force, 4 x 4", 1e-7, "central differences, 1e-5");
   for (int sample = 0; sample < 40; ++sample) {
     const int c = (37 * sample) % patch.coordinates();
     Vector high = q, low = q;

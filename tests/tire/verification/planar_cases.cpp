@@ -24,8 +24,7 @@ tire::PlanarParams meshed(tire::PlanarParams params, int around) {
 
 double Compression::regression() const {
   double product = 0.0, square = 0.0;
-  for (const auto& [deflection, force] : curve)
-    product += deflection * force, square += deflection * deflection;
+  for (const auto& [deflection, force] : curve) product += deflection * force, square += deflection * deflection;
   return product / square;
 }
 

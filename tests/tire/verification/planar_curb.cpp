@@ -35,8 +35,8 @@ double standing(const tire::PlanarParams& tire, double load) {
 
 }  // namespace
 
-CurbRun drive_over_curb(const tire::PlanarParams& tire, const QuarterCar& car,
-                        const std::vector<double>& pictures, int every) {
+CurbRun drive_over_curb(const tire::PlanarParams& tire, const QuarterCar& car, const std::vector<double>& pictures,
+                        int every) {
   const double load = (car.axle + car.body) * kGravity, rest = standing(tire, load);
   tire::PlanarWheel wheel(tire, tire::PlanarGround::curb(car.curb, 10.0), {car.from, tire.size.radius},
                           {car.speed, 0.0}, car.speed / tire.size.radius, 0.0, kGravity);
@@ -60,24 +60,21 @@ CurbRun drive_over_curb(const tire::PlanarParams& tire, const QuarterCar& car,
     }
     body.push(force / car.body - kGravity, run.step);
     const double x = wheel.centre().x, w = x > 0.0 ? car.curb : 0.0;
-    const double simple_force =
-        load + car.tire_spring * (w - simple_axle.y) - car.tire_damper * simple_axle.v;
+    const double simple_force = load + car.tire_spring * (w - simple_axle.y) - car.tire_damper * simple_axle.v;
     const double between = suspension(car, simple_axle, simple_body);
     simple_axle.push((simple_force - between) / car.axle - kGravity, run.step);
     simple_body.push(between / car.body - kGravity, run.step);
     bool at_curb = false;
     for (const tire::PlanarTouch& t : wheel.contact().touches()) at_curb = at_curb || t.push_x < -0.1;
     if (at_curb && !felt) felt = true, run.first_touch = x;
-    if (std::abs(simple_force - load) > kFelt * load && !simple_felt)
-      simple_felt = true, run.simple_first = x;
+    if (std::abs(simple_force - load) > kFelt * load && !simple_felt) simple_felt = true, run.simple_first = x;
     if (wheel.contact().touches().empty()) run.airborne += x > -0.6 ? run.step : 0.0;
     if (next < pictures.size() && x >= pictures[next]) {
       run.pictures.push_back({x, wheel.motion().state().x});
       ++next;
     }
     if (k % every == 0)
-      run.lines.push_back(
-          {x, wheel.centre().z - rest, body.y, wheel.contact().force_z(), simple_axle.y, simple_force});
+      run.lines.push_back({x, wheel.centre().z - rest, body.y, wheel.contact().force_z(), simple_axle.y, simple_force});
   }
   return run;
 }

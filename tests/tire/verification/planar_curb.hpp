@@ -3,8 +3,8 @@
 //
 // Displacements y of axle and y' of body count from rest on the flat; down on the axle, up on the body acts
 //   F = m' g + k (y − y') + c (ẏ − ẏ').                                                                         (1)
-// The tire of the simple model pushes the axle up with (m + m') g + k_t (w − y) − c_t ẏ, w the ground's height: it pulls
-// as well as it pushes.
+// The tire of the simple model pushes the axle up with (m + m') g + k_t (w − y) − c_t ẏ, w the ground's height: it
+// pulls as well as it pushes.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@
 namespace furrow::test {
 
 struct QuarterCar {
-  double body = 1290.0, axle = 210.0;     // m', m with disc and tire, kg: 1.5 t
-  double spring = 115e3, damper = 7.5e3;  // N/m, N s/m: body at 1.5 Hz, 0.3 of its critical damping
+  double body = 1290.0, axle = 210.0;                // m', m with disc and tire, kg: 1.5 t
+  double spring = 115e3, damper = 7.5e3;             // N/m, N s/m: body at 1.5 Hz, 0.3 of its critical damping
   double tire_spring = 639782.0, tire_damper = 3e3;  // N/m, N s/m: 0.13 of the axle's critical damping
   double speed = 4.0, curb = 0.2;                    // m/s, m
   double from = -6.0, to = 3.0;                      // x of the wheel's centre, m
@@ -42,7 +42,7 @@ struct CurbRun {
 };
 
 /// @param pictures x of the wheel's centre at which its shape is kept. @param every so many steps a line is kept
-CurbRun drive_over_curb(const tire::PlanarParams& tire, const QuarterCar& car,
-                        const std::vector<double>& pictures, int every);
+CurbRun drive_over_curb(const tire::PlanarParams& tire, const QuarterCar& car, const std::vector<double>& pictures,
+                        int every);
 
 }  // namespace furrow::test

@@ -57,10 +57,8 @@ struct Line {
 Line fitted(const std::vector<double>& x, const std::vector<double>& y) {
   const double n = static_cast<double>(x.size());
   double sum_x = 0.0, sum_y = 0.0, xx = 0.0, xy = 0.0, residual = 0.0, total = 0.0;
-  for (std::size_t k = 0; k < x.size(); ++k)
-    sum_x += x[k], sum_y += y[k], xx += x[k] * x[k], xy += x[k] * y[k];
-  const double slope = (xy - sum_x * sum_y / n) / (xx - sum_x * sum_x / n),
-               intercept = (sum_y - slope * sum_x) / n;
+  for (std::size_t k = 0; k < x.size(); ++k) sum_x += x[k], sum_y += y[k], xx += x[k] * x[k], xy += x[k] * y[k];
+  const double slope = (xy - sum_x * sum_y / n) / (xx - sum_x * sum_x / n), intercept = (sum_y - slope * sum_x) / n;
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double off = y[k] - intercept - slope * x[k], from_mean = y[k] - sum_y / n;
     residual += off * off, total += from_mean * from_mean;
@@ -69,11 +67,9 @@ Line fitted(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 TEST(Planar, radial_stiffness_is_linear_in_the_modulus) {
-  std::ofstream out =
-      table("FURROW_PLANAR_MODULUS_CSV", "young_modulus_Pa,secant_N_per_m,regression_N_per_m");
+  std::ofstream out = table("FURROW_PLANAR_MODULUS_CSV", "young_modulus_Pa,secant_N_per_m,regression_N_per_m");
   verification::Worst line("planar tire: stiffness against modulus",
-                           "secant at 80 mm beside that at 1e5 Pa in proportion", 0.08,
-                           "linear [Stiavnicky 2010]");
+                           "secant at 80 mm beside that at 1e5 Pa in proportion", 0.08, "linear [Stiavnicky 2010]");
   double first = 0.0;
   std::vector<double> modulus, secant, regression;
   for (int k = 1; k <= 10; ++k) {
@@ -81,8 +77,7 @@ TEST(Planar, radial_stiffness_is_linear_in_the_modulus) {
     p.tire.young_modulus = 1e5 * k;
     const Compression c = compressed(p, kDeflection, 8);
     out << fmt::format("{:g},{:.8g},{:.8g}\n", p.tire.young_modulus, c.secant(), c.regression());
-    modulus.push_back(p.tire.young_modulus), secant.push_back(c.secant()),
-        regression.push_back(c.regression());
+    modulus.push_back(p.tire.young_modulus), secant.push_back(c.secant()), regression.push_back(c.regression());
     if (k == 1) first = c.secant();
     line.add(c.secant(), k * first);
     if (k == 10) {  // 2.2 to 2.5e6 N/m in the source
@@ -93,12 +88,11 @@ TEST(Planar, radial_stiffness_is_linear_in_the_modulus) {
   std::ofstream fit = table("FURROW_PLANAR_LINE_CSV", "stiffness_by,slope_m,intercept_N_per_m,r_squared");
   for (const bool by_regression : {false, true}) {
     const Line f = fitted(modulus, by_regression ? regression : secant);
-    fit << fmt::format("{},{:.6g},{:.6g},{:.6f}\n", by_regression ? "regression" : "ends", f.slope,
-                       f.intercept, f.r_squared);
-    verification::verify(
-        "planar tire: stiffness against modulus",
-        by_regression ? "R² of a straight line, by regression" : "R² of a straight line, by ends",
-        f.r_squared, 1.0, 1e-3, "linear [Stiavnicky 2010]");
+    fit << fmt::format("{},{:.6g},{:.6g},{:.6f}\n", by_regression ? "regression" : "ends", f.slope, f.intercept,
+                       f.r_squared);
+    verification::verify("planar tire: stiffness against modulus",
+                         by_regression ? "R² of a straight line, by regression" : "R² of a straight line, by ends",
+                         f.r_squared, 1.0, 1e-3, "linear [Stiavnicky 2010]");
   }
 }
 
@@ -112,9 +106,8 @@ Limit extrapolated(double coarse, double middle, double fine) {
 }
 
 TEST(Planar, finer_meshes_are_softer_and_averaged_volumes_show_that_it_is_locking) {
-  std::ofstream out =
-      table("FURROW_PLANAR_MESH_CSV",
-            "volume,around,radial,elements,secant_N_per_m,regression_N_per_m,limit_N_per_m,order");
+  std::ofstream out = table("FURROW_PLANAR_MESH_CSV",
+                            "volume,around,radial,elements,secant_N_per_m,regression_N_per_m,limit_N_per_m,order");
   std::array<Limit, 2> limit{};
   std::array<double, 2> change{};
   for (const bool averaged : {false, true}) {
@@ -126,8 +119,8 @@ TEST(Planar, finer_meshes_are_softer_and_averaged_volumes_show_that_it_is_lockin
       secant.push_back(c.secant());
       const std::size_t n = secant.size();
       if (n >= 3) limit[averaged] = extrapolated(secant[n - 3], secant[n - 2], secant[n - 1]);
-      out << fmt::format("{},{},{},{},{:.8g},{:.8g},", averaged ? "averaged" : "element", around,
-                         p.size.rings, c.elements, c.secant(), c.regression());
+      out << fmt::format("{},{},{},{},{:.8g},{:.8g},", averaged ? "averaged" : "element", around, p.size.rings,
+                         c.elements, c.secant(), c.regression());
       out << (n >= 3 ? fmt::format("{:.8g},{:.3g}\n", limit[averaged].value, limit[averaged].order) : ",\n");
       EXPECT_TRUE(n == 1 || averaged || secant[n - 1] < secant[n - 2]);
     }
@@ -137,15 +130,13 @@ TEST(Planar, finer_meshes_are_softer_and_averaged_volumes_show_that_it_is_lockin
   EXPECT_GT(change[0], 0.01);
   EXPECT_LT(change[0], 0.15);
   EXPECT_LT(std::abs(change[1]), 0.5 * change[0]);
-  verification::verify("planar tire: limit of fine meshes",
-                       "secant at 80 mm, N/m, elements beside averaged volumes", limit[0].value,
-                       limit[1].value, 0.02, "each other");
+  verification::verify("planar tire: limit of fine meshes", "secant at 80 mm, N/m, elements beside averaged volumes",
+                       limit[0].value, limit[1].value, 0.02, "each other");
 }
 
 TEST(Planar, modulus_for_the_measured_stiffness) {
-  std::ofstream out =
-      table("FURROW_PLANAR_FIT_CSV",
-            "law,volume,stiffness_by,young_modulus_Pa,stiffness_N_per_m,source_young_modulus_Pa");
+  std::ofstream out = table("FURROW_PLANAR_FIT_CSV",
+                            "law,volume,stiffness_by,young_modulus_Pa,stiffness_N_per_m,source_young_modulus_Pa");
   for (const auto law : {tire::PlanarLaw::consistent, tire::PlanarLaw::printed})
     for (const bool averaged : {false, true})
       for (const bool by_regression : {false, true}) {
@@ -157,8 +148,7 @@ TEST(Planar, modulus_for_the_measured_stiffness) {
           stiffness = by_regression ? c.regression() : c.secant();
           if (trial < 2) p.tire.young_modulus *= kMeasured / stiffness;
         }
-        out << fmt::format("{},{},{},{:.6g},{:.8g},{:g}\n",
-                           law == tire::PlanarLaw::printed ? "printed" : "consistent",
+        out << fmt::format("{},{},{},{:.6g},{:.8g},{:g}\n", law == tire::PlanarLaw::printed ? "printed" : "consistent",
                            averaged ? "averaged" : "element", by_regression ? "regression" : "ends",
                            p.tire.young_modulus, stiffness, kPapersModulus);
         EXPECT_NEAR(stiffness, kMeasured, 2e-3 * kMeasured);
@@ -170,15 +160,13 @@ TEST(Planar, modulus_for_the_measured_stiffness) {
 TEST(Planar, a_curb_is_climbed_before_the_centre_is_there_and_nearly_left_behind_it) {
   const QuarterCar car;
   const CurbRun run = drive_over_curb(aligator(), car, {-0.35, -0.15, 0.1}, 100);
-  std::ofstream out =
-      table("FURROW_PLANAR_CURB_CSV",
-            "time_s,centre_x_m,axle_m,body_m,ground_force_N,simple_axle_m,simple_ground_force_N");
-  double lightest = 1e9, highest = 0.0, before = 0.0, simple_before = 0.0, largest_way = 0.0,
-         simple_largest_way = 0.0;
+  std::ofstream out = table("FURROW_PLANAR_CURB_CSV",
+                            "time_s,centre_x_m,axle_m,body_m,ground_force_N,simple_axle_m,simple_ground_force_N");
+  double lightest = 1e9, highest = 0.0, before = 0.0, simple_before = 0.0, largest_way = 0.0, simple_largest_way = 0.0;
   for (std::size_t k = 0; k < run.lines.size(); ++k) {
     const CurbLine& l = run.lines[k];
-    out << fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", (l.x - car.from) / car.speed,
-                       l.x, l.axle, l.body, l.force, l.simple_axle, l.simple_force);
+    out << fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", (l.x - car.from) / car.speed, l.x, l.axle,
+                       l.body, l.force, l.simple_axle, l.simple_force);
     highest = std::max(highest, l.axle);
     if (l.x > -1.0) lightest = std::min(lightest, l.force);
     if (l.x < 0.0) before = l.axle, simple_before = l.simple_axle;

@@ -68,7 +68,8 @@ def load_deflection(cases):
                 ylabel="P / 3000")
     flat[4].legend(fontsize=8)
     for colour, (name, points) in zip(COLOURS, cases["strip rolled up"].items()):
-        flat[5].plot([0] + [p[0] for p in points], [0] + [p[1] for p in points], color=colour, label=name.split(", ")[1])
+        flat[5].plot([0] + [p[0] for p in points], [0] + [p[1] for p in points],
+                     color=colour, label=name.split(", ")[1])
     flat[5].plot([0, 1], [0, 1], "--", color=style.RED, label="M = E I κ")
     flat[5].set(title="Strip rolled up", xlabel="end rotation / 2π", ylabel="end moment / (2π E I/L)")
     flat[5].legend(fontsize=8)
@@ -80,8 +81,10 @@ def layered(cases):
     figure, axes = plt.subplots(1, 3, figsize=(12.5, 3.8))
     for axis, mesh in zip(axes, ["90 x 24", "180 x 48"]):
         lines = {n: p for n, p in cases["layered tire, lowest frequency by order, Hz"].items() if n.endswith(mesh)}
-        for colour, (name, points) in zip([style.GREY, style.SKY, style.ORANGE, style.RED][-len(lines):], lines.items()):
-            axis.plot([p[0] for p in points], [p[1] for p in points], ".-", ms=3, color=colour, label=name.split(", ")[0])
+        for colour, (name, points) in zip([style.GREY, style.SKY, style.ORANGE, style.RED][-len(lines):],
+                                          lines.items()):
+            axis.plot([p[0] for p in points], [p[1] for p in points], ".-",
+                      ms=3, color=colour, label=name.split(", ")[0])
         axis.axhline(0, color="black", lw=0.8)
         axis.set(title=f"Layered tire, {mesh}", xlabel="circumferential order", ylim=(-3500, 1500),
                  ylabel="lowest frequency, Hz; below 0: growth rate / 2π")

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Charts of planar_*.csv, beside them: planar.png (compression, modulus, meshes) and planar_curb.png (curb, deformed wheel)."""
+"""Charts of planar_*.csv, beside them: planar.png (compression, modulus, meshes) and planar_curb.png (curb, deformed
+wheel)."""
 import collections
 import pathlib
 import sys
@@ -39,14 +40,17 @@ def groups(table, key):
 def study():
     figure, (compression, modulus, meshes) = plt.subplots(1, 3, figsize=(14, 4.4), layout="constrained")
     for colour, (poisson, table) in zip(COLOURS, groups(rows("compression"), "poisson_ratio").items()):
-        compression.plot(1e3 * column(table, "deflection_m"), 1e-3 * column(table, "force_N"), color=colour, label=f"ν = {poisson}")
+        compression.plot(1e3 * column(table, "deflection_m"), 1e-3 * column(table, "force_N"),
+                         color=colour, label=f"ν = {poisson}")
     compression.set(xlabel="deflection, mm", ylabel="force, kN", title="compression, E = 295.74 kPa")
     table = rows("modulus")
     young = 1e-6 * column(table, "young_modulus_Pa")
-    modulus.plot(young, 1e-6 * column(table, "secant_N_per_m"), "o-", color=COLOURS[0], label="end force / end deflection")
+    modulus.plot(young, 1e-6 * column(table, "secant_N_per_m"), "o-", color=COLOURS[0],
+                 label="end force / end deflection")
     modulus.plot(young, 1e-6 * column(table, "regression_N_per_m"), "s--", color=COLOURS[1], label="regression")
     for colour, line in zip(COLOURS, rows("line")):
-        modulus.plot(young, 1e-6 * (float(line["intercept_N_per_m"]) + 1e6 * young * float(line["slope_m"])), ":", color=colour,
+        modulus.plot(young, 1e-6 * (float(line["intercept_N_per_m"]) + 1e6 * young * float(line["slope_m"])),
+                     ":", color=colour,
                      label=f"straight line, R² = {float(line['r_squared']):.4f}")
     modulus.plot([1e-6 * PAPER], [1e-6 * MEASURED], "*", color=COLOURS[2], ms=12, label="source: measured, its mesh")
     modulus.set(xlabel="Young's modulus, MPa", ylabel="radial stiffness, MN/m", title="stiffness at 80 mm, ν = 0.45")
@@ -69,12 +73,14 @@ def curb():
     here = centre > -0.8
     figure, axes = plt.subplots(1, 2, figsize=(14, 5.2), layout="constrained", width_ratios=(1, 1.15))
     axes[0].plot(time[here], 1e3 * column(table, "axle_m")[here], color=COLOURS[0], label="planar finite elements")
-    axes[0].plot(time[here], 1e3 * column(table, "simple_axle_m")[here], "--", color=COLOURS[1], label="spring and damper")
+    axes[0].plot(time[here], 1e3 * column(table, "simple_axle_m")[here],
+                 "--", color=COLOURS[1], label="spring and damper")
     axes[0].axvline(np.interp(0.0, centre, time), color="0.6", lw=0.8)
     lifted = (column(table, "ground_force_N") == 0.0) & here
     if lifted.any():
         axes[0].plot(time[lifted], 1e3 * column(table, "axle_m")[lifted], ".", color=COLOURS[2], label="off the ground")
-    axes[0].set(xlabel="time, s", ylabel="height of the centre over rest, mm", title="curb of 0.2 m; grey: centre over the edge")
+    axes[0].set(xlabel="time, s", ylabel="height of the centre over rest, mm",
+                title="curb of 0.2 m; grey: centre over the edge")
     axes[0].legend(fontsize=9)
     for colour, picture in zip(COLOURS, groups(rows("shapes"), "centre_x_m").values()):
         for ring in groups(picture, "ring").values():

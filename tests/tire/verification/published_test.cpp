@@ -41,9 +41,8 @@ struct Judge {
                  largest[2] = {table.back().first, table.back().second};
     for (int k = 0; k < 2; ++k) {
       verification::curve_point(name, std::string(names[k]) + ", " + mesh, ours.load, value[k], known[k]);
-      verification::verify(
-          name, std::string(names[k]) + " at P/Pmax = " + verification::brief(ours.load) + ", " + mesh,
-          value[k], known[k], tolerance, kSource, largest[k]);
+      verification::verify(name, std::string(names[k]) + " at P/Pmax = " + verification::brief(ours.load) + ", " + mesh,
+                           value[k], known[k], tolerance, kSource, largest[k]);
     }
   }
 };
@@ -81,11 +80,8 @@ TEST(Published, slit_annular_plate) {
 
 // --- § 3.4: a hemisphere with an 18° hole, pulled and pushed at four points; a quarter is modelled
 
-const std::vector<Row> kHemisphere = {{0.05, 0.855, 0.955},
-                                      {0.25, 2.596, 3.833},
-                                      {0.5, 3.406, 5.902},
-                                      {0.75, 3.816, 7.234},
-                                      {1.0, 4.067, 8.178}};
+const std::vector<Row> kHemisphere = {
+    {0.05, 0.855, 0.955}, {0.25, 2.596, 3.833}, {0.5, 3.406, 5.902}, {0.75, 3.816, 7.234}, {1.0, 4.067, 8.178}};
 
 void hemisphere(int n, double tolerance) {
   const PatchMesh mesh = grid_mesh(n, n, [](double s, double t) {
@@ -107,10 +103,10 @@ void hemisphere(int n, double tolerance) {
   const Judge judge{"pinched hemisphere", size(n, n), {"outward", "inward"}, tolerance};
   ASSERT_TRUE(path.go_to(0.01));  // where a quartic element has been published, independent of the table
   const char* quartic = "Elmer, Shell_OpenHemisphere_High_Order_Blending, p = 4";
-  verification::verify("pinched hemisphere, 1 % of the load", "outward, " + size(n, n), path.q()[6 * a] - 10,
-                       0.184936, tolerance, quartic);
-  verification::verify("pinched hemisphere, 1 % of the load", "inward, " + size(n, n),
-                       10 - path.q()[6 * b + 1], 0.189022, tolerance, quartic);
+  verification::verify("pinched hemisphere, 1 % of the load", "outward, " + size(n, n), path.q()[6 * a] - 10, 0.184936,
+                       tolerance, quartic);
+  verification::verify("pinched hemisphere, 1 % of the load", "inward, " + size(n, n), 10 - path.q()[6 * b + 1],
+                       0.189022, tolerance, quartic);
   for (const Row& row : kHemisphere) {
     ASSERT_TRUE(path.go_to(row.load));
     judge.compare(kHemisphere, {row.load, path.q()[6 * a] - 10, 10 - path.q()[6 * b + 1]}, row);
@@ -137,22 +133,17 @@ struct PullOut {
       return std::pair(Vec3(kRadius * d - Vec3(0, kHalf * t, 0)), d);
     });
   }
-  PullOut(int n, int m)
-      : patch(make(n, m), {isotropic_layer(0.094, 10.5e6, 0.3125)}), supports(patch.nodes()) {
+  PullOut(int n, int m) : patch(make(n, m), {isotropic_layer(0.094, 10.5e6, 0.3125)}), supports(patch.nodes()) {
     const PatchMesh& mesh = patch.mesh();
-    a = mesh.nearest({0, 0, kRadius}), b = mesh.nearest({kRadius, 0, 0}),
-    c = mesh.nearest({kRadius, -kHalf, 0});
+    a = mesh.nearest({0, 0, kRadius}), b = mesh.nearest({kRadius, 0, 0}), c = mesh.nearest({kRadius, -kHalf, 0});
     supports.fix(mesh.select([](const Vec3& x) { return near(x.z(), 0); }), "zc");
     supports.fix(mesh.select([](const Vec3& x) { return near(x.x(), 0); }), "xa");
     supports.fix(mesh.select([](const Vec3& x) { return near(x.y(), 0); }), "yb");
   }
 };
 
-const std::vector<Row> kPullOut = {{0.025, 0.819, 0.864},
-                                   {0.1, 1.707, 2.217},
-                                   {0.3, 2.257, 3.227},
-                                   {0.7, 2.672, 4.385},
-                                   {1.0, 2.768, 4.551}};
+const std::vector<Row> kPullOut = {
+    {0.025, 0.819, 0.864}, {0.1, 1.707, 2.217}, {0.3, 2.257, 3.227}, {0.7, 2.672, 4.385}, {1.0, 2.768, 4.551}};
 
 void pull_out(int n, int m, double tolerance) {
   PullOut shell(n, m);
@@ -166,15 +157,13 @@ void pull_out(int n, int m, double tolerance) {
       StaticPath around(shell.patch, held.fix({shell.a}, "z"), Vector::Zero(load.size()));
       around.start(path.q(), path.q()[6 * shell.a + 2]);
       around.prescribe([&](double z, Vector& q) { q[6 * shell.a + 2] = z; });
-      for (const double w : {2.4, 2.46, 2.49, 2.52, 2.57, 2.65})
-        ASSERT_TRUE(around.go_to(PullOut::kRadius + w));
+      for (const double w : {2.4, 2.46, 2.49, 2.52, 2.57, 2.65}) ASSERT_TRUE(around.go_to(PullOut::kRadius + w));
       path.start(around.q(), around.reactions()[6 * shell.a + 2] / 1e4);
     }
     ASSERT_TRUE(path.go_to(row.load));
-    judge.compare(
-        kPullOut,
-        {row.load, path.q()[6 * shell.a + 2] - PullOut::kRadius, PullOut::kRadius - path.q()[6 * shell.b]},
-        row);
+    judge.compare(kPullOut,
+                  {row.load, path.q()[6 * shell.a + 2] - PullOut::kRadius, PullOut::kRadius - path.q()[6 * shell.b]},
+                  row);
   }
 }
 
@@ -187,7 +176,7 @@ TEST(Published, pull_out_of_an_open_cylinder) {
 
 struct Roof {
   const char* name;
-  std::vector<tire::ShellLayer> layers;  // angles from the circumference; the paper's from the generator
+  std::vector<tire::ShellLayer> layers;          // angles from the circumference; the paper's from the generator
   std::vector<std::pair<double, double>> table;  // deflection, P/3000
 };
 
@@ -246,8 +235,7 @@ void press_roof(const Roof& roof, int n, double tolerance) {
   supports.fix(mesh.select([](const Vec3& x) { return near(x.x(), kRadius * std::sin(0.1)); }), "xyz");
   StaticPath path(patch, supports, Vector::Zero(patch.coordinates()));
   path.prescribe([](double w, Vector& q) { q[2] = kRadius - w; });
-  verification::Worst worst(roof.name, "load at a deflection, of the limit load, " + size(n, n), tolerance,
-                            kSource);
+  verification::Worst worst(roof.name, "load at a deflection, of the limit load, " + size(n, n), tolerance, kSource);
   double limit = 0.0;
   for (const auto& [w, p] : roof.table)
     if (w < 16) limit = std::max(limit, p);

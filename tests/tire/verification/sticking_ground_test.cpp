@@ -1,6 +1,6 @@
-// The stiffness of a hardly pressed tire against a ground that it sticks to, beside that of the inflated tire's tangent.
-// The tangent is inverted order by order (tire/ancf/shell_modes.hpp): neither the assembly nor the solution of PressSolver
-// is used, only the list of points that touch.
+// The stiffness of a hardly pressed tire against a ground that it sticks to, beside that of the inflated tire's
+// tangent. The tangent is inverted order by order (tire/ancf/shell_modes.hpp): neither the assembly nor the solution of
+// PressSolver is used, only the list of points that touch.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -40,8 +40,7 @@ Eigen::MatrixXd compliance(const InflatedCarcass& ring) {
 }
 
 /// Longitudinal, lateral, vertical, torsional, with the points that touch at their places on the inflated tire.
-Eigen::Vector4d linear_stiffness(const InflatedCarcass& ring,
-                                 const std::vector<tire::PressSample>& touching) {
+Eigen::Vector4d linear_stiffness(const InflatedCarcass& ring, const std::vector<tire::PressSample>& touching) {
   const Eigen::MatrixXd flexible = compliance(ring);
   const int rows = ring.mesh.rows - 2, first = ring.mesh.columns / 2 - kAside;
   Eigen::MatrixXd springs = Eigen::MatrixXd::Zero(flexible.rows(), flexible.rows()),
@@ -60,9 +59,7 @@ Eigen::Vector4d linear_stiffness(const InflatedCarcass& ring,
           node[n] = 3 * (column * rows + row);
           x += w[n] * ring.shell.layout().get(ring.q, first + column, row + 1, 0);
         }
-        const auto here = [&](const tire::PressSample& s) {
-          return std::hypot(s.x - x.x(), s.y - x.y()) < 1e-3;
-        };
+        const auto here = [&](const tire::PressSample& s) { return std::hypot(s.x - x.x(), s.y - x.y()) < 1e-3; };
         const auto sample = std::ranges::find_if(touching, here);
         if (sample == touching.end()) continue;
         ++found;
@@ -73,15 +70,13 @@ Eigen::Vector4d linear_stiffness(const InflatedCarcass& ring,
         direct += k * d.transpose() * d;
         for (int n = 0; n < 4; ++n) {
           pull.block<3, 4>(node[n], 0) += k * w[n] * d;
-          for (int m = 0; m < 4; ++m)
-            springs.block<3, 3>(node[n], node[m]) += k * w[n] * w[m] * Mat3::Identity();
+          for (int m = 0; m < 4; ++m) springs.block<3, 3>(node[n], node[m]) += k * w[n] * w[m] * Mat3::Identity();
         }
       }
   EXPECT_EQ(found, touching.size());
-  const Eigen::MatrixXd way =
-      (Eigen::MatrixXd::Identity(flexible.rows(), flexible.rows()) + flexible * springs)
-          .partialPivLu()
-          .solve(flexible * pull);
+  const Eigen::MatrixXd way = (Eigen::MatrixXd::Identity(flexible.rows(), flexible.rows()) + flexible * springs)
+                                  .partialPivLu()
+                                  .solve(flexible * pull);
   return (direct - pull.transpose() * way).diagonal();
 }
 
@@ -100,8 +95,8 @@ TEST(StickingGround, a_hardly_pressed_tire_resists_as_its_tangent_says) {
       before[k] = off;
       if (deflection < 3e-4)
         verification::verify("sticking ground beside the tangent as inflated",
-                             fmt::format("stiffness at 0.2 mm, {}, lumped, 200 kPa, 90 x 24", names[k]),
-                             pressed[k], reference[k], 5e-3, "linear: compliance of the inflated ring");
+                             fmt::format("stiffness at 0.2 mm, {}, lumped, 200 kPa, 90 x 24", names[k]), pressed[k],
+                             reference[k], 5e-3, "linear: compliance of the inflated ring");
     }
   }
 }

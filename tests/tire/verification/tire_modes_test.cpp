@@ -53,8 +53,8 @@ TEST(TireModes, frequencies_converge_with_the_mesh) {
         const double limit = f[2][mode] + (f[2][mode] - f[1][mode]) / 3;
         for (int k = 0; k < 3; ++k)
           verification::verify(std::string("inflated ") + name,
-                               "order " + std::to_string(order) + ", frequency " + std::to_string(mode + 1) +
-                                   ", Hz, " + size(columns[k], widths[k]),
+                               "order " + std::to_string(order) + ", frequency " + std::to_string(mode + 1) + ", Hz, " +
+                                   size(columns[k], widths[k]),
                                f[k][mode], limit, 25.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
       }
     }
@@ -70,8 +70,7 @@ std::vector<int> unstable_orders(int columns, int width, double pressure) {
     const double f = ring.frequencies(order, 1)[0];
     if (f < 0) list.push_back(order);
     verification::curve_point("layered tire, lowest frequency by order, Hz",
-                              verification::brief(pressure / 1e3) + " kPa, " + size(columns, width), order,
-                              f);
+                              verification::brief(pressure / 1e3) + " kPa, " + size(columns, width), order, f);
   }
   return list;
 }

@@ -56,8 +56,8 @@ TEST(Torus, membrane_forces) {
       const std::string mesh = size(2 * width, width),
                         name = "inflated torus, h/a = " + verification::brief(thickness / kTube);
       const double tolerance = 1.2 / (width * width) + 1e-3;
-      verification::Worst balance(name, "N meridian/(p a) + N around cos/(p r), |theta| < 30 deg, " + mesh,
-                                  tolerance, theory),
+      verification::Worst balance(name, "N meridian/(p a) + N around cos/(p r), |theta| < 30 deg, " + mesh, tolerance,
+                                  theory),
           around(name, "N around/(p a), |theta| < 30 deg, " + mesh, 0.04 + 6 * tolerance, theory),
           meridian(name, "N meridian/(p a), |theta| < 30 deg, " + mesh, 0.01 + tolerance, theory);
       for (const TorusPoint& point : inflated_torus(2 * width, width, thickness)) {
@@ -87,12 +87,11 @@ TEST(Inflated, whole_ring_is_in_axisymmetric_equilibrium) {
         residual = std::max(residual, layout.get(f, i, j, 0).norm());
         pressure = std::max(pressure, (layout.get(f, i, j, 0) - layout.get(elastic, i, j, 0)).norm());
         asymmetry =
-            std::max(asymmetry,
-                     (layout.get(ring.q, i, j, 0) - ring.mesh.turn(i) * layout.get(ring.q, 0, j, 0)).norm());
+            std::max(asymmetry, (layout.get(ring.q, i, j, 0) - ring.mesh.turn(i) * layout.get(ring.q, 0, j, 0)).norm());
       }
     const std::string tire = std::string("inflated ") + name;
-    verification::verify(tire, "largest nodal force left, of the largest pressure force, 90 x 24",
-                         residual / pressure, 0.0, 1e-6, "equilibrium", 1.0);
+    verification::verify(tire, "largest nodal force left, of the largest pressure force, 90 x 24", residual / pressure,
+                         0.0, 1e-6, "equilibrium", 1.0);
     verification::verify(tire, "runout, m, 90 x 24", asymmetry, 0.0, 1e-14, "axisymmetry", 1.0);
     double smallest = 1e300;
     for (int order = 0; order <= 45; ++order) smallest = std::min(smallest, ring.smallest_eigenvalue(order));
@@ -110,8 +109,8 @@ TEST(Inflated, growth_converges_with_the_mesh) {
     }
     const double limit = crown[2] + (crown[2] - crown[1]) / 3;
     for (int k = 0; k < 3; ++k)
-      verification::verify(std::string("inflated ") + name, "crown growth, mm, " + size(180, widths[k]),
-                           crown[k], limit, 20.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
+      verification::verify(std::string("inflated ") + name, "crown growth, mm, " + size(180, widths[k]), crown[k],
+                           limit, 20.0 / (widths[k] * widths[k]), "extrapolated in the mesh");
   }
 }
 
@@ -130,23 +129,18 @@ TEST(Inflated, crown_of_the_lumped_tire_carries_the_pressure_by_its_hoop_stiffne
     const Vec3 a = at(crown - 1), b = at(crown), c = at(crown + 1);
     const double h = 0.5 * (c - a).norm(), sag = b.z() - 0.5 * (a.z() + c.z());
     // Resultants are means over the two elements at the crown, and so are the radii.
-    const auto mean = [](double low, double middle, double high) {
-      return 0.25 * (low + 2.0 * middle + high);
-    };
+    const auto mean = [](double low, double middle, double high) { return 0.25 * (low + 2.0 * middle + high); };
     const auto& reference = ring.mesh.position;
     const double radius = mean(a.z(), b.z(), c.z()),
                  radius_0 = mean(reference[crown - 1].z(), reference[crown].z(), reference[crown + 1].z());
-    const double stretch = radius / radius_0,
-                 along = h / (0.5 * (reference[crown + 1] - reference[crown - 1]).norm());
+    const double stretch = radius / radius_0, along = h / (0.5 * (reference[crown + 1] - reference[crown - 1]).norm());
     const double hoop = 0.5 * (n[1][0] + n[2][0]), meridian = 0.5 * (n[1][1] + n[2][1]);
     const double shear = (n[0][4] - n[1][4] - n[2][4] + n[3][4]) / (2 * h * h);
     const std::string mesh = size(180, width), tire = "inflated hmmwv_lumped.json, crown";
     // Forces per current length from second Piola–Kirchhoff resultants.
-    const double carried =
-        hoop * stretch / along / radius + meridian * along / stretch * 2 * sag / (h * h) - shear;
-    verification::verify(tire, "N hoop/R + N meridian kappa - M'' over p, " + mesh,
-                         carried / ring.file.pressure, 1.0, 0.7 / width,
-                         "equilibrium (Flugge 1973, ch. 2, 5)");
+    const double carried = hoop * stretch / along / radius + meridian * along / stretch * 2 * sag / (h * h) - shear;
+    verification::verify(tire, "N hoop/R + N meridian kappa - M'' over p, " + mesh, carried / ring.file.pressure, 1.0,
+                         0.7 / width, "equilibrium (Flugge 1973, ch. 2, 5)");
     const double modulus = 7.522762e8, thickness = 8.1e-3, nu = 0.013982;
     const double strain = (hoop - nu * meridian) / (modulus * thickness);
     verification::verify(tire, "growth by Hooke's law from N hoop, mm, " + mesh, 1e3 * (radius - radius_0),
@@ -170,8 +164,7 @@ TEST(Inflated, growth_with_pressure) {
       double widest = 0.0;
       for (int j = 0; j < layout.rows; ++j)
         widest = std::max(widest, std::abs(layout.get(ring.q, 0, j, 0).y() - ring.mesh.position[j].y()));
-      verification::curve_point("inflation", std::string(name) + ", crown growth, mm", pressure / 1e3,
-                                1e3 * crown);
+      verification::curve_point("inflation", std::string(name) + ", crown growth, mm", pressure / 1e3, 1e3 * crown);
       verification::curve_point("inflation", std::string(name) + ", largest axial shift, mm", pressure / 1e3,
                                 1e3 * widest);
       EXPECT_GT(crown, before) << name << " at " << pressure;

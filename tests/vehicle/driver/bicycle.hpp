@@ -32,8 +32,7 @@ struct Bicycle {
   /// For a time dt along a circle of this curvature.
   void roll(double curvature, double dt) {
     const double half = 0.5 * curvature * speed * dt;
-    const double chord =
-        speed * dt * (std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
+    const double chord = speed * dt * (std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
     x += chord * std::cos(yaw + half);
     y += chord * std::sin(yaw + half);
     yaw += 2.0 * half;
@@ -48,8 +47,7 @@ inline double curvature_of(const vehicle::DriverInputs& inputs, const vehicle::D
 /// Asks the driver and moves, `steps` times; calls each(time, driver, bicycle) after every answer.
 /// @param response curvature that comes of the one that the steering asks for
 template <class Each>
-void follow(vehicle::Driver& driver, Bicycle& bicycle, int steps, double dt, const Each& each,
-            double response = 1.0) {
+void follow(vehicle::Driver& driver, Bicycle& bicycle, int steps, double dt, const Each& each, double response = 1.0) {
   for (int i = 0; i < steps; ++i) {
     const double time = i * dt;
     const vehicle::DriverInputs inputs = driver.drive(bicycle.view(time));

@@ -50,15 +50,14 @@ TEST(DriverCar, of_the_rover_and_of_a_trailer) {
 }
 
 TEST(DriverDocument, is_read_as_the_same_driver) {
-  for (
-      const char* text :
-      {R"({"format_version": 1, "inputs": {"throttle": [[0, 0], [1, 0.5]], "gear": [[0, -1], [2, "auto"]]}})",
-       R"({"format_version": 1, "inputs": {"steering": -0.3, "brake": 1}})",
-       R"({"format_version": 1, "speed": {"target": 5, "proportional": 0.2},
+  for (const char* text :
+       {R"({"format_version": 1, "inputs": {"throttle": [[0, 0], [1, 0.5]], "gear": [[0, -1], [2, "auto"]]}})",
+        R"({"format_version": 1, "inputs": {"steering": -0.3, "brake": 1}})",
+        R"({"format_version": 1, "speed": {"target": 5, "proportional": 0.2},
                "path": {"kind": "double_lane_change", "track": "iso_3888_2", "lead_in": 3, "y": -1}})",
-       R"({"format_version": 1, "speed": {"target": [[0, 0], [3, 4]]},
+        R"({"format_version": 1, "speed": {"target": [[0, 0], [3, 4]]},
                "path": {"kind": "waypoints", "points": [[0, 0], [5, 1], [9, 3]], "steering": {"law": "stanley"}}})",
-       R"({"format_version": 1, "path": {"kind": "circle", "radius": 9, "turn": "right",
+        R"({"format_version": 1, "path": {"kind": "circle", "radius": 9, "turn": "right",
                "steering": {"lookahead_distance": 2}}})"}) {
     const json document = driver_document(read_driver(json::parse(text), "test"));
     EXPECT_EQ(driver_document(read_driver(document, "test")), document) << text;

@@ -23,8 +23,7 @@ DriverSpec everything(const SteeringLaw& law) {
   DriverSpec spec;
   spec.inputs.gear = {{0.0, 1}, {2.0, gear_request::automatic}, {9.0, 2}};
   spec.speed.emplace();
-  spec.speed->target = {{0.0, 0.0}, {0.5, 0.0},  {1.0, 12.0}, {8.0, 12.0},
-                        {9.0, 0.0}, {18.0, 0.0}, {20.0, 6.0}};
+  spec.speed->target = {{0.0, 0.0}, {0.5, 0.0}, {1.0, 12.0}, {8.0, 12.0}, {9.0, 0.0}, {18.0, 0.0}, {20.0, 6.0}};
   spec.path.emplace();
   spec.path->shape = WaypointPath{{{0, 0}, {10, 0}, {18, 6}, {30, 4}, {45, 15}, {60, 15}}};
   spec.path->steering = {law, 0.4};
@@ -81,8 +80,7 @@ TEST(FileDriver, without_a_table_does_nothing_and_leaves_the_gear) {
 }
 
 TEST(FileDriver, goes_on_bit_for_bit_wherever_it_was_saved) {
-  for (const SteeringLaw& law :
-       {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}), SteeringLaw(Preview{})}) {
+  for (const SteeringLaw& law : {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}), SteeringLaw(Preview{})}) {
     const DriverSpec spec = everything(law);
     const auto driver = make_driver(spec, test_car());
     Bicycle bicycle;

@@ -38,9 +38,7 @@ TEST(PurePursuit, comes_back_to_a_straight_by_its_linear_equation) {
   Bicycle bicycle{0.0, start, 0.0, speed};
   follow(*driver, bicycle, 50000, dt, [&](double time) {
     const double s = speed * time / ahead;
-    ASSERT_NEAR(driver->record().cross_track, start * std::exp(-s) * (std::cos(s) + std::sin(s)),
-                1e-3 * start)
-        << s;
+    ASSERT_NEAR(driver->record().cross_track, start * std::exp(-s) * (std::cos(s) + std::sin(s)), 1e-3 * start) << s;
   });
 }
 
@@ -78,8 +76,8 @@ TEST(PurePursuit, error_in_a_lane_change_is_that_of_the_cut_corner) {
       if (bicycle.x < middle) in_middle = driver->record().cross_track;
     });
     const double third = -30.0 * height / std::pow(length, 3), fifth = 720.0 * height / std::pow(length, 5);
-    const double expected = std::pow(ahead, 3) / 6.0 * third / std::pow(1.0 + slope * slope, 2) +
-                            std::pow(ahead, 5) / 20.0 * fifth;
+    const double expected =
+        std::pow(ahead, 3) / 6.0 * third / std::pow(1.0 + slope * slope, 2) + std::pow(ahead, 5) / 20.0 * fifth;
     EXPECT_NEAR(in_middle / expected, 1.0, 0.02) << ahead;
     EXPECT_LT(largest, std::pow(ahead, 3) / 6.0 * 2.0 * std::abs(third)) << ahead;
     EXPECT_GT(driver->record().path_distance, 130.0);
@@ -116,8 +114,7 @@ TEST(Stanley, keeps_the_front_axle_on_a_circle) {
 // Critically damped in the distance d: e = e₀ (1 + s/d) e^(−s/d), from e₀ along the path.
 TEST(Preview, comes_back_to_a_straight_critically_damped) {
   const double d = 5.0, speed = 6.0, dt = 1e-4, start = 0.01;
-  const auto driver =
-      make_driver(along(StraightPath{100.0}, Preview{0.2, 0.0, d, 0.0, 0.0, 0.0}), test_car());
+  const auto driver = make_driver(along(StraightPath{100.0}, Preview{0.2, 0.0, d, 0.0, 0.0, 0.0}), test_car());
   Bicycle bicycle{0.0, start, 0.0, speed};
   follow(*driver, bicycle, 50000, dt, [&](double time) {
     const double s = speed * time / d;
@@ -130,15 +127,13 @@ TEST(Preview, keeps_an_understeering_vehicle_on_a_circle) {
   const double radius = 40.0, speed = 10.0, gradient = 0.01, d = 5.0;
   const DriverCar car = test_car();
   for (const bool known : {true, false}) {
-    const auto driver = make_driver(along(CirclePath{0.0, radius, 1080.0, "left"},
-                                          Preview{0.2, 0.0, d, known ? gradient : 0.0, 0.0, 0.0}),
-                                    car);
+    const auto driver = make_driver(
+        along(CirclePath{0.0, radius, 1080.0, "left"}, Preview{0.2, 0.0, d, known ? gradient : 0.0, 0.0, 0.0}), car);
     Bicycle bicycle{0.0, 0.0, 0.0, speed};
     double curvature = 0.0;
     for (int i = 0; i < 40000; ++i) {
       const double angle = driver->drive(bicycle.view(1e-3 * i)).steering * car.steering_lock;
-      for (int k = 0; k < 20; ++k)
-        curvature = std::tan(angle - gradient * speed * speed * curvature) / car.wheelbase;
+      for (int k = 0; k < 20; ++k) curvature = std::tan(angle - gradient * speed * speed * curvature) / car.wheelbase;
       bicycle.roll(curvature, 1e-3);
     }
     const double missing = known ? 0.0 : gradient * speed * speed / radius / car.wheelbase;
@@ -149,8 +144,7 @@ TEST(Preview, keeps_an_understeering_vehicle_on_a_circle) {
 // The curvature is that of the path at the axle for a driver who need not look ahead: nothing is cut.
 TEST(Preview, stays_on_a_lane_change) {
   const auto driver = make_driver(
-      along(LaneChangePath{"iso_3888_1", 10.0, 10.0}, Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0}, 1.0),
-      test_car());
+      along(LaneChangePath{"iso_3888_1", 10.0, 10.0}, Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0}, 1.0), test_car());
   Bicycle bicycle{0.0, 0.0, 0.0, 12.0};
   double largest = 0.0;
   follow(*driver, bicycle, 11500, 1e-3,
@@ -160,8 +154,8 @@ TEST(Preview, stays_on_a_lane_change) {
 }
 
 TEST(PathFollower, default_laws_stay_within_a_lane_change_at_36_km_h) {
-  for (const SteeringLaw& law : {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}),
-                                 SteeringLaw(Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0})}) {
+  for (const SteeringLaw& law :
+       {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}), SteeringLaw(Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0})}) {
     const auto driver = make_driver(along(LaneChangePath{"iso_3888_1", 20.0, 20.0}, law, 1.0), test_car());
     Bicycle bicycle{0.0, 0.0, 0.0, 10.0};
     double largest = 0.0;
@@ -173,8 +167,8 @@ TEST(PathFollower, default_laws_stay_within_a_lane_change_at_36_km_h) {
 }
 
 TEST(PathFollower, comes_back_from_far_beside_the_path_behind_its_start_and_beyond_its_end) {
-  for (const SteeringLaw& law : {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}),
-                                 SteeringLaw(Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0})}) {
+  for (const SteeringLaw& law :
+       {SteeringLaw(PurePursuit{}), SteeringLaw(Stanley{}), SteeringLaw(Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0})}) {
     for (const double side : {-15.0, 15.0}) {
       const auto driver = make_driver(along(StraightPath{30.0}, law, 1.0), test_car());
       Bicycle bicycle{-20.0, side, 0.0, 5.0};

@@ -60,8 +60,7 @@ TEST(Path, goes_through_waypoints_with_a_continuous_direction) {
 
 TEST(Path, through_waypoints_of_a_circle_is_that_circle) {
   WaypointPath shape;
-  for (int i = 0; i <= 20; ++i)
-    shape.points.emplace_back(10.0 * std::sin(0.2 * i), 10.0 - 10.0 * std::cos(0.2 * i));
+  for (int i = 0; i <= 20; ++i) shape.points.emplace_back(10.0 * std::sin(0.2 * i), 10.0 - 10.0 * std::cos(0.2 * i));
   const Path path = path_of(shape);
   for (int piece = 0; piece <= path.end().piece; ++piece)
     for (const double u : {0.25, 0.5, 0.8})

@@ -67,8 +67,7 @@ TEST_F(DriverFile, all_its_keys_are_read) {
     "speed": {"target": [[0, 0], [2, 5]], "proportional": 0.1, "integral": 0.02, "hysteresis": 0, "stop_speed": 0.2},
     "path": {"kind": "circle", "radius": 20, "lead_in": 5, "angle_deg": 720, "turn": "right", "x": 1, "y": 2,
              "heading_deg": 90, "steering": {"law": "stanley", "gain": 2, "soft_speed": 0.5, "rate": 0.7}})");
-  EXPECT_EQ(spec.inputs.gear,
-            (DriverPoints{{0, gear_request::automatic}, {3, 2}, {5, gear_request::reverse}}));
+  EXPECT_EQ(spec.inputs.gear, (DriverPoints{{0, gear_request::automatic}, {3, 2}, {5, gear_request::reverse}}));
   ASSERT_TRUE(spec.speed && spec.path);
   EXPECT_EQ(spec.speed->target, (DriverPoints{{0, 0}, {2, 5}}));
   EXPECT_EQ(spec.speed->proportional, 0.1);
@@ -90,8 +89,7 @@ TEST_F(DriverFile, says_the_same_in_json_and_csv) {
   const DriverSpec from_json = read(R"(, "inputs": {"throttle": [[0, 0], [0.5, 0], [0.6, 1]],
     "gear": [[0, 1], [0.5, 1], [0.6, "auto"]]})");
   const auto csv =
-      write("inputs.csv",
-            "\xEF\xBB\xBF# a start\r\ntime_s, throttle, gear\r\n0,0,1\r\n\r\n0.5,0,1\r\n0.6,1,auto\r\n");
+      write("inputs.csv", "\xEF\xBB\xBF# a start\r\ntime_s, throttle, gear\r\n0,0,1\r\n\r\n0.5,0,1\r\n0.6,1,auto\r\n");
   const DriverSpec direct = read_driver(csv), named = read(R"(, "inputs": "inputs.csv")");
   for (const DriverSpec* spec : {&direct, &named}) {
     EXPECT_EQ(spec->inputs.throttle, from_json.inputs.throttle);
@@ -113,16 +111,13 @@ TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
       {R"(, "inputs": {})", "gives the driver nothing to do"},
       {R"(, "sped": {"target": 4})", "key 'sped': is unknown, expected 'speed'?"},
       {R"(, "inputs": {"throttel": 1})", "key 'inputs.throttel': is unknown, expected 'throttle'?"},
-      {R"(, "inputs": {"throttle": 1.2})",
-       "key 'inputs.throttle': throttle is 1.2, expected a number from 0 to 1"},
+      {R"(, "inputs": {"throttle": 1.2})", "key 'inputs.throttle': throttle is 1.2, expected a number from 0 to 1"},
       {R"(, "inputs": {"brake": [[0, 0], [1, -0.1]]})",
        "key 'inputs.brake[1]': brake is -0.1, expected a number from 0"},
       {R"(, "inputs": {"steering": [[0, 0], [0, 1]]})",
        "key 'inputs.steering[1]': time_s is 0 after 0, expected times that"},
-      {R"(, "inputs": {"steering": [[0, 0], [1, "left"]]})",
-       "steering is 'left', expected a number from -1 to 1"},
-      {R"(, "inputs": {"steering": [[0, 0, 1]]})",
-       "key 'inputs.steering[0]': is [0,0,1], expected [time_s, steering]"},
+      {R"(, "inputs": {"steering": [[0, 0], [1, "left"]]})", "steering is 'left', expected a number from -1 to 1"},
+      {R"(, "inputs": {"steering": [[0, 0, 1]]})", "key 'inputs.steering[0]': is [0,0,1], expected [time_s, steering]"},
       {R"(, "inputs": {"steering": []})", "key 'inputs.steering': is [], expected at least one point"},
       {R"(, "inputs": {"steering": {}})",
        "key 'inputs.steering': is {}, expected a list of [time_s, steering], the name"},
@@ -132,57 +127,45 @@ TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
       {R"(, "inputs": {"gear": -2})", "gear is -2, expected 'auto'"},
       {R"(, "inputs": {"gear": [[0, "drive"]]})", "key 'inputs.gear[0]': gear is 'drive', expected 'auto'"},
       {R"(, "inputs": "none.csv")", "key 'inputs': 'none.csv' does not exist"},
-      {R"(, "inputs": {"throttle": 1}, "speed": {"target": 4})",
-       "key 'inputs': gives throttle beside 'speed'"},
+      {R"(, "inputs": {"throttle": 1}, "speed": {"target": 4})", "key 'inputs': gives throttle beside 'speed'"},
       {R"(, "inputs": {"brake": 1}, "speed": {"target": 4})", "key 'inputs': gives brake beside 'speed'"},
-      {R"(, "inputs": {"steering": 1}, "path": {"kind": "straight", "length": 4})",
-       "gives steering beside 'path'"},
+      {R"(, "inputs": {"steering": 1}, "path": {"kind": "straight", "length": 4})", "gives steering beside 'path'"},
       {R"(, "speed": {})", "key 'speed.target': is missing"},
       {R"(, "speed": {"target": -1})", "key 'speed.target': speed_m_s is -1, expected a speed from 0 to 100"},
       {R"(, "speed": {"target": 5, "integral": -1})",
        "key 'speed.integral': is -1, expected a number of zero or above"},
-      {R"(, "speed": {"target": 5, "hysteresis": 2})",
-       "key 'speed.hysteresis': is 2, expected a number from 0 to 1"},
-      {R"(, "speed": {"target": 5, "stop_speed": "slow"})",
-       "key 'speed.stop_speed': is 'slow', expected a number"},
+      {R"(, "speed": {"target": 5, "hysteresis": 2})", "key 'speed.hysteresis': is 2, expected a number from 0 to 1"},
+      {R"(, "speed": {"target": 5, "stop_speed": "slow"})", "key 'speed.stop_speed': is 'slow', expected a number"},
       {R"(, "path": {"length": 4})", "key 'path.kind': is missing, expected a text"},
       {R"(, "path": {"kind": "cirkle"})", "key 'path.kind': 'cirkle' is unknown, expected 'circle'?"},
       {R"(, "path": {"kind": "circle"})", "key 'path.radius': is missing, expected a number"},
-      {R"(, "path": {"kind": "circle", "radius": 0})",
-       "key 'path.radius': is 0, expected a number above zero"},
-      {R"(, "path": {"kind": "circle", "radius": 5, "turn": "up"})",
-       "key 'path.turn': 'up' is unknown, expected"},
-      {R"(, "path": {"kind": "circle", "radius": 5, "angle_deg": 40000})",
-       "key 'path.angle_deg': is 40e3, expected"},
+      {R"(, "path": {"kind": "circle", "radius": 0})", "key 'path.radius': is 0, expected a number above zero"},
+      {R"(, "path": {"kind": "circle", "radius": 5, "turn": "up"})", "key 'path.turn': 'up' is unknown, expected"},
+      {R"(, "path": {"kind": "circle", "radius": 5, "angle_deg": 40000})", "key 'path.angle_deg': is 40e3, expected"},
       {R"(, "path": {"kind": "straight", "length": 5, "radius": 4})", "key 'path.radius': is unknown"},
       {R"(, "path": {"kind": "straight", "length": 5, "heading_deg": 400})",
        "key 'path.heading_deg': is 400, expected"},
-      {R"(, "path": {"kind": "double_lane_change", "track": "iso_3888"})",
-       "key 'path.track': 'iso_3888' is unknown"},
+      {R"(, "path": {"kind": "double_lane_change", "track": "iso_3888"})", "key 'path.track': 'iso_3888' is unknown"},
       {R"(, "path": {"kind": "double_lane_change", "lead_in": -1})", "key 'path.lead_in': is -1, expected"},
       {R"(, "path": {"kind": "waypoints"})", "key 'path.points': is missing, expected a list of [x_m, y_m]"},
-      {R"(, "path": {"kind": "waypoints", "points": 3})",
-       "key 'path.points': is 3, expected a list of [x_m, y_m]"},
+      {R"(, "path": {"kind": "waypoints", "points": 3})", "key 'path.points': is 3, expected a list of [x_m, y_m]"},
       {R"(, "path": {"kind": "waypoints", "points": [[0, 0]]})",
        "key 'path.points': has one point, expected two or more"},
-      {R"(, "path": {"kind": "waypoints", "points": [[0, 0], [1, 0], [1, 0]]})",
-       "has points 2 and 3 at one place"},
+      {R"(, "path": {"kind": "waypoints", "points": [[0, 0], [1, 0], [1, 0]]})", "has points 2 and 3 at one place"},
       {R"(, "path": {"kind": "waypoints", "points": [[0, 0], [9, 0], [0, 1]]})",
        "turns by 174° at point 2, expected at most"},
       {R"(, "path": {"kind": "straight", "length": 5, "steering": {"law": "stan"}})",
        "key 'path.steering.law': 'stan'"},
       {R"(, "path": {"kind": "straight", "length": 5, "steering": {"gain": 2}})",
        "key 'path.steering.gain': is unknown"},
-      {R"(, "path": {"kind": "straight", "length": 5, "steering": {"rate": 0}})",
-       "key 'path.steering.rate': is 0"},
+      {R"(, "path": {"kind": "straight", "length": 5, "steering": {"rate": 0}})", "key 'path.steering.rate': is 0"},
       {R"(, "path": {"kind": "straight", "length": 5, "steering": {"lookahead_distance": 0}})",
        "lookahead_distance': is 0"},
   };
   for (const auto& [sections, message] : cases)
     expect_refused(write("driver.json", "{\"format_version\": 1" + sections + "}"), message);
   expect_refused(write("driver.json", "{}"), "key 'format_version': is missing");
-  expect_refused(write("driver.json", R"({"format_version": 2, "speed": {"target": 4}})"),
-                 "newer than this program");
+  expect_refused(write("driver.json", R"({"format_version": 2, "speed": {"target": 4}})"), "newer than this program");
   expect_refused(folder_.path() / "none.json", "does not exist, expected a driver in JSON or CSV");
 }
 

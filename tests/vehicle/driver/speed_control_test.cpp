@@ -26,8 +26,7 @@ struct Mass {
   void step(double dt, const Resistance& resistance) {
     const DriverCar car = test_car();
     control.press(steps++ * dt, speed, state, inputs);
-    const double force =
-        inputs.throttle * car.drive_force - inputs.brake * car.brake_force - resistance(speed);
+    const double force = inputs.throttle * car.drive_force - inputs.brake * car.brake_force - resistance(speed);
     speed += dt * force / car.mass;
   }
 };

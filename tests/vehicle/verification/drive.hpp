@@ -27,9 +27,7 @@ struct Drive {
     contacts.assign(car.wheel_count(), {});
     put_on_ground(car, contacts.front());
   }
-  void begin(double speed) {
-    car.begin_rolling(speed, std::vector<double>(car.wheel_count(), contacts[0].radius), 0);
-  }
+  void begin(double speed) { car.begin_rolling(speed, std::vector<double>(car.wheel_count(), contacts[0].radius), 0); }
   const vehicle::Body& chassis() const { return car.system().body(car.chassis()); }
   double speed() const { return chassis().state.velocity.dot(chassis().R * Vec3::UnitX()); }
   double roll() const { return std::atan2(chassis().R(2, 1), chassis().R(2, 2)); }
@@ -61,8 +59,7 @@ struct Drive {
   }
   void step(const vehicle::VehicleInputs& inputs) {
     car.set_inputs(inputs);
-    for (int k = 0; k < car.wheel_count(); ++k)
-      car.set_wrench(k, contacts[k].roll(car.rim(k), options.slip_width));
+    for (int k = 0; k < car.wheel_count(); ++k) car.set_wrench(k, contacts[k].roll(car.rim(k), options.slip_width));
     const Outcome outcome = car.step(options.step);
     if (!outcome.ok) throw physics_error(outcome, "HMMWV");
   }

@@ -1,5 +1,5 @@
-// What the HMMWV does on hard ground beside what its engine map, its gears and the ground's friction alone say: steady speeds
-// at full throttle on the level and uphill, stopping distance, turns.
+// What the HMMWV does on hard ground beside what its engine map, its gears and the ground's friction alone say: steady
+// speeds at full throttle on the level and uphill, stopping distance, turns.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr DriveOptions kGrip{.slip_width = 0.4, .step = 1e-3};
 
-/// Speed of the wheels at which full throttle balances a force F, m/s, radius r, in a gear. With the speeds u of the crank
-/// and R u of the turbine, and the ratio i of the wheels' over the turbine's:
+/// Speed of the wheels at which full throttle balances a force F, m/s, radius r, in a gear. With the speeds u of the
+/// crank and R u of the turbine, and the ratio i of the wheels' over the turbine's:
 ///   T_e(u) = (u/K(R))²,   T(R) (u/K(R))² = i F r,   v = R u i r
 /// Near R = 1 the converter's torque is the straight line of torque_converter.hpp.
 double balanced_speed(const vehicle::DrivelineSpec& line, int gear, double force, double radius) {
@@ -61,8 +61,7 @@ Ascent climbed(double grade, double duration) {
   for (long i = 0; i < d.steps(duration); ++i) {
     VehicleInputs inputs = full_throttle();
     const Vec3 forward = d.chassis().R * Vec3::UnitX();
-    inputs.steering =
-        std::clamp(-2.0 * std::atan2(forward.y(), forward.x()) - 0.05 * d.car.origin().y(), -1.0, 1.0);
+    inputs.steering = std::clamp(-2.0 * std::atan2(forward.y(), forward.x()) - 0.05 * d.car.origin().y(), -1.0, 1.0);
     const int before = d.car.drive().gearbox()->gear();
     d.step(inputs);
     done.changes += before != d.car.drive().gearbox()->gear();
@@ -108,14 +107,12 @@ TEST(Driving, steady_speeds_at_full_throttle_are_those_of_map_converter_and_gear
     const Ascent done = climbed(grade, 20.0);
     const Drive d("hmmwv.json", {.grade = grade});
     const double force = d.car.mass() * kStandardGravity * grade / std::sqrt(1.0 + grade * grade);
-    const double expected =
-        balanced_speed(d.car.spec().driveline, done.gear, force, d.car.rim(0).position.z());
+    const double expected = balanced_speed(d.car.spec().driveline, done.gear, force, d.car.rim(0).position.z());
     const std::string name = "HMMWV at full throttle, slope of " + verification::brief(100.0 * grade) +
                              " %, 20 s, in gear " + std::to_string(done.gear);
     verification::verify(name, "speed of the wheels at the end, m/s", done.wheels, expected, 0.02,
                          "engine map, converter and gears");
-    verification::verify(name, "speed made good, m/s", done.made_good, expected, 0.5,
-                         "the same, from the start");
+    verification::verify(name, "speed made good, m/s", done.made_good, expected, 0.5, "the same, from the start");
     EXPECT_GT(done.made_good, 1.0) << grade;
     EXPECT_EQ(done.changes, done.gear - 1) << grade;
     highest = std::max(highest, done.gear);
@@ -136,15 +133,15 @@ TEST(Driving, stops_within_the_distance_of_its_friction) {
                        speed * speed / (2.0 * friction * kStandardGravity), 0.1, "v^2/(2 mu g)");
 }
 
-// All tires push alike for their load, so that the slip angles of both axles are the same and the radius is that of the angles
-// at any speed, but for what the wheels' travel turns them.
+// All tires push alike for their load, so that the slip angles of both axles are the same and the radius is that of the
+// angles at any speed, but for what the wheels' travel turns them.
 TEST(Driving, turns_on_the_radius_of_its_wheels_angles) {
   Turn slow, fast;
   for (const double speed : {2.0, 5.0, 8.0}) {
     const Turn t = turn(speed, 0.3);
     (speed < 3.0 ? slow : fast) = t;
-    verification::verify("HMMWV turns at " + verification::brief(speed) + " m/s", "radius, m", t.radius,
-                         t.expected, 0.05, "wheelbase over tan of the steer angles");
+    verification::verify("HMMWV turns at " + verification::brief(speed) + " m/s", "radius, m", t.radius, t.expected,
+                         0.05, "wheelbase over tan of the steer angles");
   }
   const double gradient = ((fast.steer - fast.steer * fast.expected / fast.radius) -
                            (slow.steer - slow.steer * slow.expected / slow.radius)) /

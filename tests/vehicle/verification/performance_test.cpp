@@ -1,5 +1,5 @@
-// Limits of the whole HMMWV on hard ground: the steepest slope that it climbs, and when the one with the higher centre of mass
-// tips.
+// Limits of the whole HMMWV on hard ground: the steepest slope that it climbs, and when the one with the higher centre
+// of mass tips.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,15 +61,14 @@ Lift turn_in(const char* file) {
 TEST(Performance, tips_before_it_slides_only_with_the_higher_centre_of_mass) {
   const Lift low = turn_in("hmmwv.json"), high = turn_in("hmmwv_tr.json");
   const Drive d("hmmwv_tr.json");
-  const double threshold =
-      0.5 * (d.car.rim(0).position - d.car.rim(1).position).norm() / center_of_mass(d).z();
+  const double threshold = 0.5 * (d.car.rim(0).position - d.car.rim(1).position).norm() / center_of_mass(d).z();
   EXPECT_EQ(low.side, 0.0);
   verification::verify("HMMWV turns in at 15 m/s and keeps a wheel of the inner side on the ground",
                        "largest side force over weight", low.most, d.contacts[0].friction, 0.05, "it slides");
   EXPECT_LT(high.side, 0.9);
   verification::verify("HMMWV with the higher centre of mass turns in at 15 m/s",
-                       "side force over weight when the inner wheels leave the ground", high.side, threshold,
-                       0.25, "half track over height of a rigid vehicle");
+                       "side force over weight when the inner wheels leave the ground", high.side, threshold, 0.25,
+                       "half track over height of a rigid vehicle");
 }
 
 // Open differentials give each wheel the same
@@ -82,10 +81,9 @@ TEST(Performance, climbs_until_its_front_axle_slips) {
     (climbs(grade) > 0.05 ? goes : stays) = grade;
   }
   const Drive d("hmmwv.json");
-  const double base = d.car.rim(0).position.x() - d.car.rim(2).position.x(),
-               friction = d.contacts[0].friction;
+  const double base = d.car.rim(0).position.x() - d.car.rim(2).position.x(), friction = d.contacts[0].friction;
   const Vec3 c = center_of_mass(d);
   const double steepest = 2.0 * friction * c.x() / base / (1.0 + 2.0 * friction * c.z() / base);
-  verification::verify("HMMWV at full throttle on friction 0.9", "steepest slope that it climbs", goes,
-                       steepest, 0.12, "grip of the front axle");
+  verification::verify("HMMWV at full throttle on friction 0.9", "steepest slope that it climbs", goes, steepest, 0.12,
+                       "grip of the front axle");
 }

@@ -1,5 +1,5 @@
-// Simple laws of contact for whole vehicles on hard, even ground, which may be a slope: gravity is tilted, the ground stays
-// z = 0. Tires push by their stiffness and a damper.
+// Simple laws of contact for whole vehicles on hard, even ground, which may be a slope: gravity is tilted, the ground
+// stays z = 0. Tires push by their stiffness and a damper.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +49,8 @@ struct GroundContact {
   Wrench roll(const RimState& rim, double width) const {
     const double normal = load(rim);
     const Vec3 v = sliding(rim);
-    const Vec3 force(-friction * normal * std::tanh(v.x() / width),
-                     -friction * normal * std::tanh(v.y() / width), normal);
+    const Vec3 force(-friction * normal * std::tanh(v.x() / width), -friction * normal * std::tanh(v.y() / width),
+                     normal);
     return at_ground(rim, force);
   }
 };

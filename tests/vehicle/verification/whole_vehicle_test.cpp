@@ -1,5 +1,5 @@
-// The whole HMMWV over many steps on hard ground: drift of its constraints, brakes that hold it on a slope, a gearbox that
-// does not hunt.
+// The whole HMMWV over many steps on hard ground: drift of its constraints, brakes that hold it on a slope, a gearbox
+// that does not hunt.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,8 +59,8 @@ TEST(WholeVehicle, constraints_do_not_drift_over_a_million_steps) {
     if (const int now = car.drive().gearbox()->gear(); now != gear) gear = now, ++shifts;
   }
   EXPECT_GT(shifts, 50);
-  verification::verify("HMMWV, 1,000,000 steps of 1 ms", "largest violation of a constraint, m and rad",
-                       worst, 0.0, 1e-10, "constraints", 1.0);
+  verification::verify("HMMWV, 1,000,000 steps of 1 ms", "largest violation of a constraint, m and rad", worst, 0.0,
+                       1e-10, "constraints", 1.0);
 }
 
 TEST(WholeVehicle, brakes_hold_it_on_a_slope_of_20_percent) {
@@ -85,8 +85,7 @@ TEST(WholeVehicle, brakes_hold_it_on_a_slope_of_20_percent) {
     stand(5.0);  // it sways as it is let go
     const Vec3 before = car.origin();
     std::vector<double> angle;
-    for (int k = 0; k < car.wheel_count(); ++k)
-      angle.push_back(car.system().coordinate(car.wheel(k).bearing).value);
+    for (int k = 0; k < car.wheel_count(); ++k) angle.push_back(car.system().coordinate(car.wheel(k).bearing).value);
     stand(10.0);
     const std::string step = verification::brief(h);
     verification::verify("HMMWV braked on a slope of 20 %, step " + step + " s", "creep within 10 s, m",
@@ -131,31 +130,25 @@ Climbed climb(const Climb& c) {
     EXPECT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i;
     if (!outcome.ok) break;
     const bool settled = i >= minute;
-    if (const int now = car.drive().gearbox()->gear(); now != gear)
-      gear = now, ++(settled ? done.late : done.early);
-    if (settled)
-      done.slowest = std::min(done.slowest, speed(car)), done.fastest = std::max(done.fastest, speed(car));
+    if (const int now = car.drive().gearbox()->gear(); now != gear) gear = now, ++(settled ? done.late : done.early);
+    if (settled) done.slowest = std::min(done.slowest, speed(car)), done.fastest = std::max(done.fastest, speed(car));
   }
   done.gear = gear + 1;
-  const auto shaft = [&](const std::string& name) {
-    return car.system().shaft(car.drive().shaft(name)).state.speed;
-  };
+  const auto shaft = [&](const std::string& name) { return car.system().shaft(car.drive().shaft(name)).state.speed; };
   done.engine_rpm = rpm * shaft(car.spec().driveline.engine->shaft);
   done.input_rpm = rpm * shaft(car.spec().driveline.gearbox->in);
   return done;
 }
 
-// Ten minutes uphill at constant throttle. In balance the speed stays, and so does the gear. At a fifth of the throttle the
-// engine balances the slope in first gear, and the gearbox's input turns below the mark at which it shifts up.
+// Ten minutes uphill at constant throttle. In balance the speed stays, and so does the gear. At a fifth of the throttle
+// the engine balances the slope in first gear, and the gearbox's input turns below the mark at which it shifts up.
 TEST(WholeVehicle, gearbox_does_not_hunt_on_a_slope_of_10_percent_at_a_fifth_of_the_throttle) {
   const Climbed done = climb({0.2, 0.1, 10});
   const std::string name = "HMMWV up a slope of 10 % at 20 % throttle, ten minutes";
-  verification::verify(name, "changes of gear after the first minute", done.late, 0.0, 0.5, "no hunting",
-                       1.0);
+  verification::verify(name, "changes of gear after the first minute", done.late, 0.0, 0.5, "no hunting", 1.0);
   verification::verify(name, "changes of gear in the first minute", done.early, done.gear - 1, 0.5,
                        "one for each gear passed", 1.0);
-  verification::verify(name, "fastest after the first minute, m/s", done.fastest, done.slowest, 0.01,
-                       "slowest");
+  verification::verify(name, "fastest after the first minute, m/s", done.fastest, done.slowest, 0.01, "slowest");
   EXPECT_GT(done.slowest, 1.0);
   EXPECT_EQ(done.gear, 1);
   EXPECT_NEAR(done.engine_rpm, 2364.0, 10.0);
@@ -163,8 +156,9 @@ TEST(WholeVehicle, gearbox_does_not_hunt_on_a_slope_of_10_percent_at_a_fifth_of_
   EXPECT_LT(done.input_rpm, shipped("hmmwv.json").driveline.gearbox->up_rpm);
 }
 
-// On the level it comes to third gear at a fifth of the throttle, on 10 % to second from 32 % of it on; wherever it shifts, it
-// stays, on 10 % for ten minutes. Everywhere the engine's governor balances what is left, between 2,360 and 2,580 rpm.
+// On the level it comes to third gear at a fifth of the throttle, on 10 % to second from 32 % of it on; wherever it
+// shifts, it stays, on 10 % for ten minutes. Everywhere the engine's governor balances what is left, between 2,360 and
+// 2,580 rpm.
 TEST(WholeVehicle, gearbox_does_not_hunt_where_it_shifts) {
   for (const auto& [c, gear] : {std::pair{Climb{0.2, 0.0, 2}, 3},
                                 {Climb{0.2, 0.05, 2}, 1},
@@ -174,15 +168,15 @@ TEST(WholeVehicle, gearbox_does_not_hunt_where_it_shifts) {
     const Climbed done = climb(c);
     const std::string name = "HMMWV up a slope of " + verification::brief(100.0 * c.grade) + " % at " +
                              verification::brief(100.0 * c.throttle) + " % throttle";
-    verification::verify(name, "changes of gear per minute after the first", done.late / (c.minutes - 1.0),
-                         0.0, 0.5, "no hunting", 1.0);
+    verification::verify(name, "changes of gear per minute after the first", done.late / (c.minutes - 1.0), 0.0, 0.5,
+                         "no hunting", 1.0);
     EXPECT_EQ(done.gear, gear) << name;
     EXPECT_EQ(done.early, gear - 1) << name;
   }
 }
 
-// The check can fail: a gear up halves the speed of the gearbox's input, 2,500 rpm, and a mark at 2,000 rpm sends it back. It
-// is the latency, 1 s, and the time to gain speed again that pass between two changes.
+// The check can fail: a gear up halves the speed of the gearbox's input, 2,500 rpm, and a mark at 2,000 rpm sends it
+// back. It is the latency, 1 s, and the time to gain speed again that pass between two changes.
 TEST(WholeVehicle, gearbox_hunts_whose_marks_are_too_near) {
   const Climbed done = climb({0.32, 0.1, 2, 2000.0});
   EXPECT_GT(done.late, 6);

@@ -345,7 +345,7 @@ void DrawbarRig::book(const Stand& from, double turned, const Wrench& wrench, do
   const double torque = free_rolling() ? 0.0 : options_.travel_sign * system_->motor_force(spindle_motor_);
   RigAccounts& a = accounts_;
   a.drive_work += torque * turned;
-  a.pull_work += drive.dot(to.chassis - from.chassis);
+  a.tow_work += drive.dot(to.chassis - from.chassis);
   a.guide_work += rail.dot(to.chassis - from.chassis) + rail_moment.dot(mean_turn(from.chassis_turn, to.chassis_turn));
   if (steered()) a.guide_work += system_->motor_force(steering_) * (to.toe - from.toe);
   a.tire_work += wrench.force.dot(to.rim - from.rim) + wrench.moment.dot(mean_turn(from.rim_turn, to.rim_turn));

@@ -260,7 +260,7 @@ void HalfCar::book(const Stand& from, std::span<const Wrench> wrenches, double s
   const Vec3 held = axes * reaction.force, drive = system_->motor_force(drive_) * Vec3::UnitX();
   const Vec3 way = state(trolley_).position - from.trolley.position;
   RigAccounts& a = accounts_;
-  a.pull_work += drive.dot(way);
+  a.tow_work += drive.dot(way);
   a.guide_work +=
       held.dot(way) + (axes * reaction.moment).dot(mean_turn(from.trolley.orientation, state(trolley_).orientation));
   double mass = kTrolleyMass;

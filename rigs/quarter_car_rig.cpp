@@ -177,7 +177,7 @@ void QuarterCar::book(const vehicle::BodyState& trolley, const vehicle::BodyStat
   const Vec3 held = axes * reaction.force, drive = system_->motor_force(drive_) * Vec3::UnitX();
   const Vec3 way = state(trolley_).position - trolley.position;
   RigAccounts& a = accounts_;
-  a.pull_work += drive.dot(way);
+  a.tow_work += drive.dot(way);
   a.guide_work +=
       held.dot(way) + (axes * reaction.moment).dot(mean_turn(trolley.orientation, state(trolley_).orientation));
   a.tire_work += wrench.force.dot(state(rim_).position - rim.position) +

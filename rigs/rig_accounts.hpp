@@ -12,7 +12,7 @@ namespace furrow::rigs {
 /// Account of all bodies of a rig, the tires' added masses among them, each entry from its own formula; cumulative
 /// since the rig was placed unless "now" is said. A rig must set every member: what it forgets is not a number, and the
 /// rig's rank refuses that by name. What they leave over,
-///   energy:    drive_work + pull_work + guide_work + tire_work − Δ(kinetic + potential) − damper_loss,
+///   energy:    drive_work + tow_work + guide_work + tire_work − Δ(kinetic + potential) − damper_loss,
 ///   momentum:  Δmomentum − gravity_impulse − guide_impulse − tire_impulse,
 /// is the error of the rig's step, and round-off.
 struct RigAccounts {
@@ -20,7 +20,7 @@ struct RigAccounts {
   double kinetic_energy = kMissing;                 // J, now
   double potential_energy = kMissing;               // of gravity and of the rig's springs, J, now
   double drive_work = kMissing;                     // by what turns the wheels, of a vehicle by its engine, J
-  double pull_work = kMissing;                      // by what moves the rig along against the tires' pull, J
+  double tow_work = kMissing;                      // by what moves the rig along against the tires' pull, J
   double guide_work = kMissing;                     // by rails, steering and whatever else is imposed, J
   double tire_work = kMissing;                      // by the tires' wrenches as the rig received them, J
   double damper_loss = kMissing;                    // by dampers and brakes, and in the driveline, J
@@ -38,7 +38,7 @@ void visit_fields(Visit&& visit, FieldsOf<RigAccounts> auto& s) {
   visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
   visit(Field{"potential_energy", "J"}, s.potential_energy);
   visit(Field{"drive_work", "J"}, s.drive_work);
-  visit(Field{"pull_work", "J"}, s.pull_work);
+  visit(Field{"tow_work", "J"}, s.tow_work);
   visit(Field{"guide_work", "J"}, s.guide_work);
   visit(Field{"tire_work", "J"}, s.tire_work);
   visit(Field{"damper_loss", "J"}, s.damper_loss);
@@ -66,7 +66,7 @@ inline RigAccounts operator+(const RigAccounts& a, const RigAccounts& b) {
   sum.kinetic_energy = a.kinetic_energy + b.kinetic_energy;
   sum.potential_energy = a.potential_energy + b.potential_energy;
   sum.drive_work = a.drive_work + b.drive_work;
-  sum.pull_work = a.pull_work + b.pull_work;
+  sum.tow_work = a.tow_work + b.tow_work;
   sum.guide_work = a.guide_work + b.guide_work;
   sum.tire_work = a.tire_work + b.tire_work;
   sum.damper_loss = a.damper_loss + b.damper_loss;

@@ -91,13 +91,13 @@ void add_tire(const TireAccount& start, const TireAccount& now, EnergyAccount& a
 
 void add_rig(const rigs::RigAccounts& start, const rigs::RigAccounts& now, EnergyAccount& a) {
   a.work.drive = now.drive_work - start.drive_work;
-  a.work.pull = now.pull_work - start.pull_work;
+  a.work.tow = now.tow_work - start.tow_work;
   a.work.guide = now.guide_work - start.guide_work;
   a.lost.damper = now.damper_loss - start.damper_loss;
   const double received = now.tire_work - start.tire_work, stored = now.stored() - start.stored();
   a.lost.rim_lag -= received;
   a.stored.rig_kinetic_and_potential += stored;
-  a.rig_residual = a.work.drive + a.work.pull + a.work.guide + received - stored - a.lost.damper;
+  a.rig_residual = a.work.drive + a.work.tow + a.work.guide + received - stored - a.lost.damper;
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void visit_fields(Visit&& visit, FieldsOf<Books> auto& s) {
 /// Work done from outside, J.
 struct WorkAccount {
   double drive = 0.0;  // by what turns the wheels
-  double pull = 0.0;   // by what moves the rig along: negative while the tires pull
+  double tow = 0.0;    // by what moves the rig along: negative while the tires pull
   double guide = 0.0;  // by rails and steering
   double walls = 0.0;  // by walls and floor on the terrain
 };
@@ -74,7 +74,7 @@ template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<WorkAccount> auto& s) {
   using column::cumulative;
   visit(cumulative("drive_work_J", "J"), s.drive);
-  visit(cumulative("pull_work_J", "J"), s.pull);
+  visit(cumulative("tow_work_J", "J"), s.tow);
   visit(cumulative("guide_work_J", "J"), s.guide);
   visit(cumulative("wall_work_J", "J"), s.walls);
 }

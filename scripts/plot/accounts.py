@@ -7,7 +7,7 @@ from .run_data import Damaged, Missing, check_types
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window
 
 # Entries of accounts.energy, in J.
-WORK = {"drive_work": "drive of the wheels", "pull_work": "what moves the rig along",
+WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along",
         "guide_work": "rails and steering",
         "wall_work": "walls"}
 STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation",

@@ -40,7 +40,7 @@ SUMMARY = {
     "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1,
     "rut_depth_m": 0.01, "rut_width_m": 0.2, "tread_width_m": 0.2,
     "sinkage_m": 0.01, "grains": 100, "drawbar_coefficient": 0.02,
-    "accounts": {"energy": {"work": {"drive_work": 100.0, "pull_work": -50.0}, "stored": {"tire_elastic": 5.0},
+    "accounts": {"energy": {"work": {"drive_work": 100.0, "tow_work": -50.0}, "stored": {"tire_elastic": 5.0},
                             "lost": {"sliding_loss": 44.0}, "residual": 1.0,
                             "residual_share": 0.01, "turnover": 99.0, "closes": True},
                  "momentum": {"grains": [0.0, 0.0, 1.0], "gravity": [0.0, 0.0, -5.0], "walls": [0.0, 0.0, 6.0],

@@ -263,8 +263,8 @@ TEST(HalfCar, accounts_of_energy_and_momentum_close) {
     ASSERT_TRUE(rig->advance(wrenches, 1e-4, 1).ok);
   }
   const RigAccounts end = rig->accounts();
-  const double work = std::abs(end.pull_work) + std::abs(end.tire_work) + end.damper_loss;
-  EXPECT_LT(std::abs(end.drive_work + end.pull_work + end.guide_work + end.tire_work - end.damper_loss -
+  const double work = std::abs(end.tow_work) + std::abs(end.tire_work) + end.damper_loss;
+  EXPECT_LT(std::abs(end.drive_work + end.tow_work + end.guide_work + end.tire_work - end.damper_loss -
                      (end.stored() - start.stored())),
             1e-4 * work);
   const Vec3 left = end.momentum - start.momentum - end.gravity_impulse - end.guide_impulse - end.tire_impulse;

@@ -13,7 +13,7 @@ using namespace furrow::testing;
 namespace {
 
 double energy_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
-  return end.drive_work + end.pull_work + end.guide_work + end.tire_work - (end.stored() - start.stored()) -
+  return end.drive_work + end.tow_work + end.guide_work + end.tire_work - (end.stored() - start.stored()) -
          end.damper_loss;
 }
 
@@ -79,7 +79,7 @@ TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire
                   .z(),
               0.0, 1e-8 * end.gravity_impulse.norm());
   EXPECT_LT(momentum_residual(start, end).norm(), 1e-8 * end.tire_impulse.norm());
-  EXPECT_NEAR(energy_residual(start, end), 0.0, 1e-4 * (std::abs(end.pull_work) + std::abs(end.tire_work)));
+  EXPECT_NEAR(energy_residual(start, end), 0.0, 1e-4 * (std::abs(end.tow_work) + std::abs(end.tire_work)));
 }
 
 TEST(RigAccounts, a_wheel_let_down_by_its_damper_loses_its_height_and_the_ground_carries_nothing) {
@@ -111,7 +111,7 @@ TEST(RigAccounts, momentum_closes_to_round_off) {
 TEST(RigAccounts, energy_closes_to_second_order_of_the_step) {
   for (const char* mode : {"fixed_angular_speed", "free_rolling"}) {
     const Ride coarse(4e-4, mode), fine(2e-4, mode);
-    const double scale = std::abs(fine.end.tire_work) + std::abs(fine.end.pull_work) + fine.end.damper_loss;
+    const double scale = std::abs(fine.end.tire_work) + std::abs(fine.end.tow_work) + fine.end.damper_loss;
     const double a = energy_residual(coarse.start, coarse.end), b = energy_residual(fine.start, fine.end);
     EXPECT_GT(fine.end.damper_loss, 10.0);
     EXPECT_LT(std::abs(b), 1e-4 * scale) << mode;

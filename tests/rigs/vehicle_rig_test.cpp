@@ -233,7 +233,7 @@ TEST(VehicleRig, accounts_of_energy_and_momentum_close) {
     EXPECT_LT(momentum.norm(), 1e-9 * b.gravity_impulse.norm());
     EXPECT_GT(of_vehicle(*rig, "shift_heat_J"), 10.0);
     EXPECT_GT(b.drive_work, 1e5);
-    return (b.drive_work + b.pull_work + b.guide_work + b.tire_work - (b.stored() - a.stored()) - b.damper_loss) /
+    return (b.drive_work + b.tow_work + b.guide_work + b.tire_work - (b.stored() - a.stored()) - b.damper_loss) /
            b.drive_work;
   };
   const double coarse = residuals(2e-3), fine = residuals(1e-3);

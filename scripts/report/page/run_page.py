@@ -28,7 +28,7 @@ PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_ve
               "contacts_mean", "active_share_mean", "substeps_added",
               "substeps_refined_share", "substeps_most_parts")
 ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", "tire_residual_J", "rig_residual_J")),
-            ("Work", ("drive_work_J", "pull_work_J", "guide_work_J", "wall_work_J")),
+            ("Work", ("drive_work_J", "tow_work_J", "guide_work_J", "wall_work_J")),
             ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J",
                         "rolling_loss_J", "opening_loss_J",
                         "tire_viscous_loss_J", "damper_loss_J")),

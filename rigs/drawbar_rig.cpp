@@ -62,7 +62,6 @@ struct DrawbarRow {
   double pull_raw = 0.0;      // reaction of the longitudinal drive, N
   double damper_force = 0.0;  // touch-down damper on the slider, N
   double pull_work = 0.0;     // ∫ raw pull · v dt, J
-  double damper_dissipation = 0.0;   // touch-down damper, J
   double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
   double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
 };
@@ -73,7 +72,6 @@ void visit_fields(Visit&& visit, FieldsOf<DrawbarRow> auto& r) {
   visit(mean("drawbar_pull_raw_N", "N").following("energy_error_J"), r.pull_raw);
   visit(mean("damper_force_N", "N").following("tire_momentum_travel_kg_m_per_s"), r.damper_force);
   visit(cumulative("pull_work_J", "J").following("spindle_work_J"), r.pull_work);
-  visit(cumulative("damper_dissipation_J", "J").following("tire_dissipation_J"), r.damper_dissipation);
   visit(derived("tractive_efficiency"), r.tractive_efficiency);
   visit(derived("motion_resistance_coefficient"), r.motion_resistance);
 }
@@ -323,8 +321,6 @@ Outcome DrawbarRig::advance(std::span<const Wrench> wrenches, double duration, i
   measure_end();
   // Fused whatever else the compiler does here: the same bits in every build.
   row_.pull_work = std::fma(duration * row_.pull_raw, report_.speed, row_.pull_work);
-  row_.damper_dissipation =
-      std::fma(duration, std::abs(row_.damper_force * report_.vertical_speed), row_.damper_dissipation);
   return {};
 }
 

@@ -57,17 +57,16 @@ class Archive {
   /// @pre the folder ends in a slash
   class Scope {
    public:
-    Scope(Archive& archive, const std::string& folder) : archive_(archive), before_(archive.prefix_) {
+    Scope(const Archive& archive, const std::string& folder) : archive_(archive), before_(archive.prefix_) {
       FURROW_ASSERT(!folder.empty() && folder.back() == '/', folder);
       archive_.prefix_ += folder;
     }
-    Scope(const Archive& archive, const std::string& folder) : Scope(const_cast<Archive&>(archive), folder) {}
     ~Scope() { archive_.prefix_ = before_; }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
    private:
-    Archive& archive_;
+    const Archive& archive_;
     std::string before_;
   };
 
@@ -76,7 +75,7 @@ class Archive {
 
  private:
   std::map<std::string, Array> arrays_;
-  std::string prefix_;
+  mutable std::string prefix_;  // a view of the names, not of what is held
 };
 
 }  // namespace furrow

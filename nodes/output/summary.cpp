@@ -22,6 +22,12 @@
 namespace furrow::output {
 namespace {
 
+#ifdef __clang__
+constexpr const char* kCompiler = __VERSION__;  // names clang itself
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
 using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLate = 0.05;      // of load × speed: energy error of the interface of a run that can be trusted
@@ -304,7 +310,7 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   json["substeps_added"] = in.end.terrain.substeps_added;
   json["substeps_refined_share"] = json_number(in.end.terrain.refined_time / time);
   json["substeps_most_parts"] = in.end.terrain.most_parts;
-  json["compiler"] = "g++ " __VERSION__;
+  json["compiler"] = kCompiler;
   json["cpu"] = checkpoint::cpu_model();
 }
 

@@ -47,6 +47,6 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(furrow::scenario::out_of_memory(), as_rank);
   } catch (const std::exception& error) {
-    return fail(furrow::physics_error(std::string("unexpected: ") + error.what()), as_rank);
+    return fail(furrow::fault_error(error.what()), as_rank);
   }
 }

@@ -63,7 +63,7 @@ std::string closing_words(std::string_view command) {
   const std::string examples = examples_of(command);
   return (examples.empty() ? "" : "Examples:\n" + examples + "\n") +
          "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
-         "6 memory or another limit ran out, 75 stopped by a signal.";
+         "6 memory or another limit ran out, 70 a fault of the program itself, 75 stopped by a signal.";
 }
 
 }  // namespace furrow::commands

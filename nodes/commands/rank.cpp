@@ -185,8 +185,8 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     reporter.error(error);
     return error.code();
   } catch (const std::exception& error) {
-    reporter.error(physics_error(std::string("unexpected: ") + error.what()));
-    return ExitCode::physics;
+    reporter.error(fault_error(error.what()));
+    return ExitCode::fault;
   }
 }
 

@@ -161,10 +161,11 @@ ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, cons
     const Error error = scenario::out_of_memory(scenario.memory.all);
     transport.announce_failure(error.code(), error.what());
     throw error;
-  } catch (const std::exception& error) {
-    transport.announce_failure(ExitCode::physics, error.what());
-    loop.fail(ExitCode::physics, error.what());
-    throw;
+  } catch (const std::exception& unexpected) {
+    const Error error = fault_error(unexpected.what());
+    transport.announce_failure(error.code(), error.what());
+    loop.fail(error.code(), error.what());
+    throw error;
   }
 }
 

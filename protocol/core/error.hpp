@@ -14,6 +14,7 @@ enum class ExitCode : int {
   rank_lost = 4,  // a rank died or stopped answering
   io = 5,         // a file could not be read or written
   limit = 6,      // memory or another limit of the system ran out
+  fault = 70,     // of the program itself
   stopped = 75,   // stopped by a signal
 };
 
@@ -34,6 +35,11 @@ inline Error input_error(const std::string& file, const std::string& key, const 
 
 inline Error physics_error(const std::string& what) { return Error(ExitCode::physics, what); }
 inline Error limit_error(const std::string& what) { return Error(ExitCode::limit, what); }
+/// For an exception that no code expects.
+inline Error fault_error(const std::string& what) {
+  return Error(ExitCode::fault, "fault of the program: " + what +
+                                    "; please report it as an issue, with this message and run.log if there is one");
+}
 inline Error io_error(const std::string& file, const std::string& what) {
   return Error(ExitCode::io, file + ": " + what);
 }

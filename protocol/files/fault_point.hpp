@@ -7,7 +7,7 @@
 namespace furrow {
 
 /// Names so far: "step", "frame", "checkpoint.write", "checkpoint.written", "checkpoint.manifest", "checkpoint.rename",
-/// "checkpoint.done", "results", "done".
+/// "checkpoint.done", "results", "done". @throws what a test asks for
 void fault_point(const char* name);
 
 /// What a test wants said at this point to a library that the program uses; empty: nothing. Names so far: "liggghts".

@@ -97,7 +97,7 @@ class Reference(SystemTest):
             self.assertIn(f"\n### furrow {command}\n", page)
         self.assertIn("\n#### furrow bench grains\n", page)
         self.assertEqual(re.findall(r"^\| (\d+) \|", self.page("exit_codes"), re.MULTILINE),
-                         ["0", "2", "3", "4", "5", "6", "75"])
+                         ["0", "2", "3", "4", "5", "6", "70", "75"])
 
     def test_every_definition_of_files(self):
         for name, schema in (("tire_files", "tire/data/tire.schema.json"),

@@ -1,7 +1,8 @@
 // Makes a rank of furrow_faults fail at a named point:
 //   FURROW_FAULT=point:rank:count:action   the count-th time that this rank comes to the point
 //   FURROW_FAULT_FIRED=file                made when it happens
-// Actions: kill (SIGKILL), stop (SIGSTOP), wait (until the file is removed, a minute at most), say TEXT (fault_text).
+// Actions: kill (SIGKILL), stop (SIGSTOP), wait (until the file is removed, a minute at most), throw (an exception that
+// no code expects), say TEXT (fault_text).
 // The rank * is every rank.
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "protocol/files/fault_point.hpp"
@@ -44,6 +46,7 @@ void fire(const std::string& action) {
   if (file >= 0) close(file);
   if (action == "kill") raise(SIGKILL);
   if (action == "stop") raise(SIGSTOP);
+  if (action == "throw") throw std::logic_error("thrown by a test");
   for (int i = 0; action == "wait" && i < 6000 && access(mark, F_OK) == 0; ++i) usleep(10000);
 }
 

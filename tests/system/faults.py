@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Faults at named points (fault_injection.cpp) and damaged files: what the user sees, the exit code, no process left,
-and
-the run goes on from the last good checkpoint to the very same result."""
+and the run goes on from the last good checkpoint to the very same result."""
 import contextlib
 import json
 import os
@@ -59,6 +58,16 @@ class Killed(CheckpointTest):
 
 for row in KILLS:
     setattr(Killed, f"test_{row[0].replace('.', '_')}_{row[1]}", lambda self, row=row: self.check(*row))
+
+
+class ProgramFault(CheckpointTest):
+    def test_an_exception_that_no_code_expects(self):
+        done = self.run_with_fault("step", RANKS["tire"], 250, "throw", code=70)
+        self.assertIn("furrow: error: fault of the program: thrown by a test; please report it", done.stderr)
+        failed = json.loads((self.run_folder / "summary_failed.json").read_text())["failed"]
+        self.assertEqual(failed["exit_code"], 70)
+        self.resume()
+        self.same_as_whole()
 
 
 class KilledAtTheStart(CheckpointTest):

@@ -15,7 +15,7 @@ from types import ModuleType
 from . import _needs  # noqa: F401  first: it names the packages that are missing
 from ._scripts import Damaged, Missing
 from .commands import calibrate, kc, modes, press, resume, run, soil, sweep
-from .errors import BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, RankLost, Stopped
+from .errors import BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, ProgramFault, RankLost, Stopped
 from .frames import Frame, Frames, GrainFrame, TireFrame
 from .opening import Opened, open
 from .runs import Run
@@ -25,7 +25,7 @@ from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 __all__ = [
     "BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError",
     "GrainFrame", "InputOutputError", "Kinematics",
-    "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press",
+    "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "ProgramFault",
     "RankLost", "Run", "Soil", "Stopped", "Study",
     "TireFrame", "calibrate", "kc", "modes", "open", "plots", "press", "resume", "run", "soil", "sweep"]
 

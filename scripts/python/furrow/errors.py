@@ -37,12 +37,17 @@ class LimitReached(FurrowError, MemoryError):
     """Exit code 6: memory or another limit of the machine ran out."""
 
 
+class ProgramFault(FurrowError):
+    """Exit code 70: a fault of the program itself, which its message asks to report."""
+
+
 class Stopped(FurrowError):
     """Exit code 75: the program was stopped by a signal. `furrow resume` continues the run."""
 
 
 BY_EXIT_CODE: dict[int, type[FurrowError]] = {
-    2: BadInput, 3: PhysicsFailed, 4: RankLost, 5: InputOutputError, 6: LimitReached, 75: Stopped}
+    2: BadInput, 3: PhysicsFailed, 4: RankLost, 5: InputOutputError, 6: LimitReached, 70: ProgramFault,
+    75: Stopped}
 
 
 def error_of(message: str, exit_code: int, directory: pathlib.Path | None) -> FurrowError:

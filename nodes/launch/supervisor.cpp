@@ -88,6 +88,7 @@ std::vector<std::string> launcher_command(const Launch& launch) {
     command.insert(command.end(), {"--mpi=pmix", "-K1", "--cpu-bind=none", "--overcommit"});
   } else {
     command.insert(command.end(), {"--oversubscribe", "--bind-to", "none"});
+    if (geteuid() == 0) command.push_back("--allow-run-as-root");  // supervise() reports it
     // Ranks on other machines of an allocation do not inherit the environment.
     for (const char* variable : {kSupervisedVariable, "OMP_WAIT_POLICY", "OPENBLAS_NUM_THREADS"})
       command.insert(command.end(), {"-x", variable});
@@ -112,8 +113,6 @@ std::optional<std::filesystem::path> on_path(const std::string& program) {
 void set_environment(const std::string& supervisor, bool yield) {
   forget_launcher();
   setenv(kSupervisedVariable, supervisor.c_str(), 1);
-  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   setenv("OMPI_MCA_orte_forward_job_control", "1", 0);        // mpirun hands stops and continuations on
   if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // otherwise protocol/mpi_yield.hpp
   // Open MPI will not begin without a way to other machines, even where it needs none.
@@ -393,6 +392,7 @@ std::filesystem::path find_mpirun() {
 LaunchResult supervise(const Launch& launch, ProgressDisplay& display) {
   FURROW_ASSERT(catches_stop_signals());
   catch_pause();
+  if (geteuid() == 0) display.say("furrow: runs as root: mpirun is given Open MPI's option --allow-run-as-root");
   return Supervisor(launch, display).run();
 }
 

@@ -89,6 +89,7 @@ class Run(SystemTest):
         (self.folder / "out" / "frames" / "terrain_009999.h5").write_text("of an older, longer run")
         done = furrow("run", path, "--out", "out", "--overwrite", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("Open MPI's option --allow-run-as-root"), os.geteuid() == 0, done.stderr)
         self.assertEqual((self.folder / "out" / "notes.txt").read_text(), "mine")
         self.assertFalse((self.folder / "out" / "frames" / "terrain_009999.h5").exists())
 

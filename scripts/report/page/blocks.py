@@ -43,9 +43,13 @@ def charts(items, note=""):
     return {"type": "charts", "charts": items, "note": note}
 
 
-def half_95(sem, count):
-    """Half the 95 % interval of a mean with this standard error from as many independent values; None without."""
-    if not (is_number(sem) and is_number(count)) or count < 2:
+LEAST_SAMPLES = 10  # fewer independent values do not tell how large an error is (nodes/output/steadiness.hpp)
+
+
+def half_95(sem, count, least=2):
+    """Half the 95 % interval of a mean with this standard error from as many independent values.
+    @returns None where they are fewer than `least`"""
+    if not (is_number(sem) and is_number(count)) or count < least:
         return None
     return student(max(int(count) - 1, 1)) * sem
 

@@ -26,7 +26,7 @@ def mean_and_half(summary, key):
     if isinstance(value, dict):
         return value.get("mean"), blocks.half_95(value.get("sem"), value.get("n_eff"))
     stem = key.removesuffix("_m")
-    return value, blocks.half_95(summary.get(f"{stem}_sem_m"), summary.get(f"{stem}_n_eff"))
+    return value, blocks.half_95(summary.get(f"{stem}_sem_m"), summary.get(f"{stem}_n_eff"), blocks.LEAST_SAMPLES)
 
 
 def results(runs, arrays):

@@ -19,7 +19,7 @@ CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
          ("tractive_efficiency", None, None, "tractive efficiency"))
 EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"),
             ("rut_depth", "rut_depth_m", "rut depth"))
-OF_WHEELS = ("slip", "vertical_load_N", "tractive_effort_N", "terrain_resistance_N",
+OF_WHEELS = ("slip", "vertical_force_N", "tractive_effort_N", "terrain_resistance_N",
              "drive_torque_Nm", "sinkage_m", "rut_depth_m",
              "lateral_force_N", "tire_deflection_m", "tractive_efficiency")
 PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version",
@@ -115,9 +115,11 @@ def answer_cards(run):
     for key, sem, count, name in CARDS:
         if not is_number(summary.get(key)) or (hard and key == "sinkage_m") or (rigid and key == "tire_deflection_m"):
             continue
-        half = blocks.half_95(summary.get(sem), summary.get(count)) if sem else None
+        half = blocks.half_95(summary.get(sem), summary.get(count), blocks.LEAST_SAMPLES) if sem else None
         value, unit = blocks.quantity(key, summary[key], half)
-        items.append(blocks.card(name, value, unit, "95 %" if half is not None else ""))
+        few = "" if half is not None or not sem else f"its error cannot be told from fewer than {blocks.LEAST_SAMPLES} " \
+                                                     f"independent values"
+        items.append(blocks.card(name, value, unit, "95 %" if half is not None else "", explanation=few))
     return items
 
 
@@ -147,8 +149,15 @@ def vehicle_answer(run):
     return made
 
 
+def vertical_force(wheel):
+    """Mean over the window, N; None where the summary lacks it."""
+    force = wheel.get("net_terrain_force_N")
+    return force[2] if isinstance(force, list) and len(force) == 3 else None
+
+
 def wheels_table(run):
-    wheels = [wheel for wheel in run.summary.get("wheels") or [] if isinstance(wheel, dict)]
+    wheels = [{**wheel, "vertical_force_N": vertical_force(wheel)}
+              for wheel in run.summary.get("wheels") or [] if isinstance(wheel, dict)]
     names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)
              and not (name == "tire_deflection_m" and all_rigid(run))]
     if len(wheels) < 2 or not names:

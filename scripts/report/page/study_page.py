@@ -119,8 +119,8 @@ def beds(sweep, arrays):
                                   [line(arrays, "a bed, its own standard error", at, values, errors, 1.0)],
                                   levels=[{"y": mean, "half": half if math.isfinite(half) else None,
                                            "label": "mean over beds, 95 %"}]))
-    words = blocks.text("The interval covers the scatter between beds: another set of beds would give a mean within it "
-                        "in 95 of 100 cases.", "note")
+    words = blocks.text("The interval is the 95 % confidence interval of the mean over beds [Student's t]: of the "
+                        "intervals that such sets of beds give, 95 % hold the true mean.", "note")
     made = [blocks.cards(cards), words, blocks.charts(items)]
     if unsteady := sum(map(studies.unsteady, sweep.rows)):
         made.insert(0,

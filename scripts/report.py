@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions, of a study
-or of a calibration: PNG files in the run
-directory, and report.html, a page with all of it; their names, without the folder, as a JSON list on stdout.
+or of a calibration: PNG files in the run directory, and report.html, a page with all of it; their names, without the
+folder, as a JSON list on stdout.
 
 usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet] [--progress]
        report.py DIR DIR... --out FOLDER    one report.html that compares the runs

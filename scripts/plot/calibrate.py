@@ -29,8 +29,7 @@ class Calibration:
 
     def targets(self):
         """What calibration.json says of each target, with x_name and y_name, and its points: x, data, sigma, model
-        (NaN: no answer),
-        labels."""
+        (NaN: no answer), labels."""
         points = {}
         with open(self.directory / "fit.csv", newline="", encoding="utf-8") as file:
             for row in csv.DictReader(file):

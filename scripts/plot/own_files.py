@@ -46,8 +46,7 @@ def add_name(path, name):
 
 def may_write(folder, name):
     """Whether `name` may be written in a folder: it is free, or furrow wrote it. A free one is put on the folder's
-    list,
-    before its file is made. If it may not, a message says why."""
+    list, before its file is made. If it may not, a message says why."""
     why = None
     if os.path.islink(folder / name):
         why = "the file of that name in this folder is a link, which furrow does not follow"

@@ -138,8 +138,7 @@ class Buffers:
 
     def _covered(self, x, y, side):
         """(triangle, column, row) of the pixels of triangles within squares of `side` pixels or, of larger ones, within
-        all
-        that is seen of them; barycentric weights, and per triangle the weights' change per pixel. None: there are
+        all that is seen of them; barycentric weights, and per triangle the weights' change per pixel. None: there are
         none."""
         camera = self.camera
         left, above = (np.maximum(np.floor(v.min(1)), 0.0).astype(int) for v in (x, y))

@@ -72,8 +72,7 @@ def unsteady(row):
 
 def points(rows, x, y, error, over):
     """Rows x, y, half bar, sorted by x: each run, or the mean over the runs with the same x with its 95 % interval; and
-    1
-    where a run of the point is not steady."""
+    1 where a run of the point is not steady."""
     if not over:
         return np.array(sorted((number(row.get(x)), number(row.get(y)), number(row.get(error)), unsteady(row))
                                for row in rows)).T

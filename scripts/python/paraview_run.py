@@ -1,6 +1,5 @@
 """Shows the frames that furrow.open(folder).write_vtk(FOLDER) has written, in ParaView: tires coloured by the force of
-the
-terrain, arrows of these forces, grains as spheres of their own size coloured by speed.
+the terrain, arrows of these forces, grains as spheres of their own size coloured by speed.
 
 In ParaView's window: View, Python Shell, Run Script, with the folder in the variable FURROW_VTK. From a shell, and on a
 machine without a screen (without -noreset the X server restarts between two looks that ParaView takes at it):

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """What the same rig costs on grains and on empirical soil: processor time for a simulated second, of the terrain's rank
-and of
-all ranks, in runs that take turns. Writes soil_cost.csv beside this script. Nothing else may run meanwhile.
+and of all ranks, in runs that take turns. Writes soil_cost.csv beside this script. Nothing else may run meanwhile.
 
 usage: soil_cost.py [--rigs small full] [--tires rigid ring lumped layered] [--rounds 1]
 

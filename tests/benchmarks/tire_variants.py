@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Cost of a tire's step by `furrow bench tire`: by layers and by branches of relaxation, in turn, and by step and
-threads.
-Writes the tables beside this script. Nothing else may run meanwhile.
+threads. Writes the tables beside this script. Nothing else may run meanwhile.
 
 usage: tire_variants.py layers|prony|step [--rounds 3]
 

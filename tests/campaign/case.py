@@ -139,8 +139,7 @@ class Case:
 
     def until_done(self, expected=frozenset({0}), repeats=False, **options):
         """Continues as the program says until it ends with 0; a folder that is still taken is waited for, a run without
-        a
-        checkpoint starts again.
+        a checkpoint starts again.
         @param repeats work after a saved step may be done again"""
         begin = time.monotonic()
         while True:

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The whole command line with random arguments: an exit code that the program documents, and either a result or an
-error
-message; never a crash, never silence.
+error message; never a crash, never silence.
 
 usage: command_line.py [--cases N] [--seed S] [--state FILE] [--only CASE] [--patience S]
 

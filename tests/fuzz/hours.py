@@ -1,6 +1,5 @@
 """What every target has done so far: a table of processor time, executions, coverage and findings, a row for each
-target and
-commit. Several processes may add to it at a time."""
+target and commit. Several processes may add to it at a time."""
 import csv
 import fcntl
 import os

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Results of any content before the plots: summaries, scenarios, series, frames and height fields whose values are of
-other
-types and shapes than a run's. Each ends in plots or in words, never in a traceback.
+other types and shapes than a run's. Each ends in plots or in words, never in a traceback.
 
 usage: report.py [--cases N] [--seed S] [--seconds T] [--only CASE]
 

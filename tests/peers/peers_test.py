@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The engine and LIGGGHTS move the same: falling grains, and a plate of triangles pressed on them; seconds. Exits 77
-(skip)
-where LIGGGHTS is not installed.
+(skip) where LIGGGHTS is not installed.
 
 With LIGGGHTS's tangential law in the place of the engine's, everything else must agree to round-off: geometry, Hertz
 force and damper, contact arms, integration, pair lists, the springs' bookkeeping, periodic sides, cohesion, triangles.

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Grains calibrated to the strength of a soil: runs `furrow calibrate rigs/calibrate_SOIL.json` in results/studies, or
-continues
-it, and writes the evaluations as calibrated_SOIL.csv beside this script and the fitted soil file into terrain/data.
+continues it, and writes the evaluations as calibrated_SOIL.csv beside this script and the fitted soil file into
+terrain/data.
 
 usage: calibrated_soils.py [lete_sand] [sandy_loam]
 """

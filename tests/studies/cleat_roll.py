@@ -1,9 +1,8 @@
 #!/usr/bin/python3
 """A tire rolls over a cleat with its axle at a fixed height, as on a cleat test stand (rigs/cleat_roll.json): the
-lumped shell and
-beside it a planar tire of the same size and mass, whose modulus gives it the shell's static stiffness. Writes
-cleat_roll.csv (forces on the axle against the way), cleat_roll_figures.csv (what is derived) and cleat_roll.png beside
-this script.
+lumped shell and beside it a planar tire of the same size and mass, whose modulus gives it the shell's static stiffness.
+Writes cleat_roll.csv (forces on the axle against the way), cleat_roll_figures.csv (what is derived) and cleat_roll.png
+beside this script.
 
 usage: cleat_roll.py [--finished]
 
@@ -178,9 +177,8 @@ class Passage:
 
     def impulse(self, axis):
         """(of the axle's force beyond its mean over the passage; what the ground gave the tire and the axle took from
-        it, less
-        the weight's and what the tire's momentum changed), N s. Of the vertical momentum both ends are taken as
-        alike."""
+        it, less the weight's and what the tire's momentum changed), N s. Of the vertical momentum both ends are taken
+        as alike."""
         part = np.flatnonzero(self.way > -REACH)
         step = float(np.median(np.diff(self.time)))
         axle = self.x if axis == "x" else self.z

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Length of the contact patch of the tires of a study's runs on rigid ground, from their frames: where the middle of
-the
-tread crosses the plane z = 0. Adds the column contact_length_m to the study's CSV file."""
+the tread crosses the plane z = 0. Adds the column contact_length_m to the study's CSV file."""
 import argparse
 import json
 import pathlib

@@ -77,8 +77,7 @@ def exponential(x, y):
 
 def steady(series, name, begin):
     """Where a series is heading: least squares of end − B exp(−x/σ), x from the distance at `begin`; its last mean
-    where
-    it has no more than 2 % of the range to go."""
+    where it has no more than 2 % of the range to go."""
     window = series["time_s"] > begin
     x, y = series["position_m"][window], series[name][window]
     x = x - x[0]
@@ -134,8 +133,8 @@ def column(rows, name):
 
 def relaxation(series, toe_time, toe_ramp, reach):
     """σ of F = F_end − B exp(−s/σ), s the distance travelled since the middle of the step, fitted from CONTACT to
-    `reach`.
-    Until the wheel has rolled one contact length off, what the turn of the wheel twisted is still in contact."""
+    `reach`. Until the wheel has rolled one contact length off, what the turn of the wheel twisted is still in
+    contact."""
     middle = toe_time + 0.5 * toe_ramp
     time, position, force = series["time_s"], series["position_m"], series["iso_force_y_N"]
     s = position - np.interp(middle, time, position)

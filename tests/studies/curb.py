@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """A planar tire over the curb of rigs/curb.json, as the wheel of a quarter car and with all the mass on its axle,
-beside a
-spring and a damper in its place, which know of the road only how high it is under the wheel's centre. Writes curb.csv
-(both over time), curb_figures.csv (what is derived) and curb.png beside this script.
+beside a spring and a damper in its place, which know of the road only how high it is under the wheel's centre. Writes
+curb.csv (both over time), curb_figures.csv (what is derived) and curb.png beside this script.
 
 The linear model has the masses and the suspension of the run; its tire spring is the measured radial stiffness of the
 tire's source, its damper 0.13 of the critical damping of the quarter car's wheel. Heights count from rest on the flat

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Runs the shipped files and keeps what the gallery shows of each: pictures (scripts/docs/pictures/) and gallery.csv,
-with the
-figures that the program found, the processor time of all ranks and the wall time.
+with the figures that the program found, the processor time of all ranks and the wall time.
 
 usage: gallery.py [NAME...]     (needs Debian's python3-pil; FURROW names another program than build/furrow)
 

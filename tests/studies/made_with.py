@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Runs a program that writes tables to the files that environment variables name, and puts the lines of provenance.py
-above
-them: the records of the verification programs, and whatever else a test program writes.
+above them: the records of the verification programs, and whatever else a test program writes.
 
 usage: made_with.py VARIABLE=TABLE.csv [VARIABLE=TABLE.csv …] [VARIABLE=VALUE …] -- PROGRAM [ARGUMENT …]
 

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """What the tables of the small rig say together: all beds of one case pooled, whatever else was changed in a run.
-Writes
-pooled.csv beside this script and prints it.
+Writes pooled.csv beside this script and prints it.
 
 usage: pooled.py [--out FILE]
 
@@ -74,8 +73,7 @@ def summary(what, unit, runs, key, factor=1.0):
 
 def ratio(what, a, b):
     """a over b, less one, in per cent, with the standard error of the two means as if they were independent, and the 95
-    %
-    interval with as many degrees of freedom as the smaller one has."""
+    % interval with as many degrees of freedom as the smaller one has."""
     mean = 100.0 * (a["mean"] / b["mean"] - 1.0)
     error = 100.0 * a["mean"] / b["mean"] * math.hypot(a["standard_error"] / a["mean"], b["standard_error"] / b["mean"])
     return {"what": what, "unit": "%", "runs": a["runs"] + b["runs"], "mean": mean, "standard_error": error,

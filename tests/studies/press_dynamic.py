@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The static press beside the tire in motion: both shell tires are lowered slowly onto hard ground by a damper and
-stand there
-until they rest; nothing of `furrow press` takes part. Writes press_dynamic.csv beside this script.
+stand there until they rest; nothing of `furrow press` takes part. Writes press_dynamic.csv beside this script.
 
 usage: press_dynamic.py [--meshes 60x12 …] [--only TIRE …] [--finished]
 

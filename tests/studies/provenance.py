@@ -1,6 +1,5 @@
 """Where the numbers of a table come from: a committed CSV file begins with comment lines that name the program, its
-compiler,
-the processor and the command that makes the table anew. Readers of these tables skip them: read_table().
+compiler, the processor and the command that makes the table anew. Readers of these tables skip them: read_table().
 
     # commit: 1a2b3c4d
     # compiler: g++ 12.2.0
@@ -88,8 +87,8 @@ def read_json(path):
 
 def record_run(folder, made_at=None):
     """Notes in the folder of a run which program has made it, just now. `made_at`: the commit, of the present files if
-    None; a
-    script that writes its table between runs names the one at its start, for its table makes the checkout dirty."""
+    None; a script that writes its table between runs names the one at its start, for its table makes the checkout
+    dirty."""
     record = {"build": build_of(program()), "commit": made_at or commit()}
     if "compiler" not in read_json(folder / "summary.json"):  # of `furrow press`
         record |= {"compiler": compiler_of(program()), "cpu": processor()}

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Quarter car and half car on a road of random heights beside the closed forms of vehicle/analysis/quarter_car.hpp and
-half_car.hpp on
-the very same heights. Writes ride_transfer.csv (transfer functions), ride_transfer_figures.csv (errors) and
-ride_transfer.png beside this script.
+half_car.hpp on the very same heights. Writes ride_transfer.csv (transfer functions), ride_transfer_figures.csv (errors)
+and ride_transfer.png beside this script.
 
 usage: ride_transfer.py [--finished]
 

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """The flexible ring calibrated to a shell tire on a plate and a 51 mm cleat, and what it predicts of the curves that
-were held
-out: ring_protocol.csv (targets), ring_protocol_parameters.csv, ring_protocol_pressure.csv (along the centre line, ring
-and shell) and ring_protocol.png beside this script. The shell's curves are those of ring_targets.py.
+were held out: ring_protocol.csv (targets), ring_protocol_parameters.csv, ring_protocol_pressure.csv (along the centre
+line, ring and shell) and ring_protocol.png beside this script. The shell's curves are those of ring_targets.py.
 
 usage: ring_protocol.py [--runs]
 

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Load–deflection curves of a shell tire on a plate and on cleats, to which rigs/calibrate_ring.json fits the flexible
-ring and
-which it predicts: tire/data/press_<tire>_<case>.csv, and the contact pressure along the shell's centre line,
+ring and which it predicts: tire/data/press_<tire>_<case>.csv, and the contact pressure along the shell's centre line,
 ring_targets_pressure.csv beside this script.
 
 usage: ring_targets.py [--run] [--tire lumped] [--mesh 90x24] [--only CASE …]

@@ -125,8 +125,7 @@ def watch(command, mark, out, every):
 
 def early_and_late(series):
     """Of the second and the last quarter: least memory, fewest open files. They are what stays: what is there only
-    while a
-    checkpoint or a frame is written does not count."""
+    while a checkpoint or a frame is written does not count."""
     later = series[len(series) // 4:]
     parts = later[: max(1, len(later) // 3)], later[-max(1, len(later) // 3):]
     return [tuple(min(s[k] for s in part) for k in (1, 2)) for part in parts]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Soil theory beside the small rig: what `furrow report --soil` expects of a rigid wheel of the rig's size, load and
-slip on
-soil with the strength that soil_speed.csv holds (0.1 m/s), and what the simulated tire does. Writes soil_theory.csv.
+slip on soil with the strength that soil_speed.csv holds (0.1 m/s), and what the simulated tire does. Writes
+soil_theory.csv.
 
 The equations at the head of terrain/soil/bekker_wong.hpp are integrated here a second time, by other means; the script
 stops where the program differs by more than 1e-3. Figures of the simulation: means of five beds in budget.csv with half

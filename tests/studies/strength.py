@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Strength of the soils of budget.json: direct shear (`furrow soil --only shear`, three seeds) on the small rig's
-grains in other
-sizes and with stiffer contacts; writes strength.csv beside this script. Fifteen minutes on two cores.
+grains in other sizes and with stiffer contacts; writes strength.csv beside this script. Fifteen minutes on two cores.
 """
 import argparse
 import json

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Tiled beds (terrain.tile) beside beds settled as a whole: are seams seen, and what does it save? Writes
-tiled_beds.csv,
-tiled_beds_wheel.csv and tiled_beds_cost.csv beside this script.
+tiled_beds.csv, tiled_beds_wheel.csv and tiled_beds_cost.csv beside this script.
 
 usage: tiled_beds.py [--parts beds wheel cost] [--seeds N] [--soils cohesive loose_sand]
 

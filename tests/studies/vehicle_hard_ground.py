@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """What the HMMWV does on hard ground, from the runs of vehicle_hard_ground.json, beside what its engine map, its gears
-and
-the ground's friction alone say. Writes vehicle_hard_ground_figures.csv.
+and the ground's friction alone say. Writes vehicle_hard_ground_figures.csv.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_hard_ground.json
     /usr/bin/python3 tests/studies/vehicle_hard_ground.py

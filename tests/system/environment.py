@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """What surrounds the program: variables of launchers, launchers that hang, limits of the system, signals in long work,
-odd
-names, the user's Python."""
+odd names, the user's Python."""
 import json
 import os
 import pathlib

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Every file of a run that was continued is that of the run that was not interrupted, also where a frame falls on the
-step
-of the checkpoint, for every kind of tire. tests/campaign/compare_runs.py compares them."""
+step of the checkpoint, for every kind of tire. tests/campaign/compare_runs.py compares them."""
 import csv
 import shutil
 import sys

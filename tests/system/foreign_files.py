@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """HDF5 files and results of strangers: no memory beyond the file's size, no other file, one message; and summaries,
-frames
-and height fields of any content before `furrow report`."""
+frames and height fields of any content before `furrow report`."""
 import json
 import os
 import pathlib

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """scripts/python/furrow as users import it, and results in xarray without it. Exit code 77: its Debian packages are
-missing
-(scripts/setup.sh --python)."""
+missing (scripts/setup.sh --python)."""
 import doctest
 import importlib.util
 import json

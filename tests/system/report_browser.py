@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """report.html in a headless Chromium, opened as a file: nothing is logged, all frames play, plots answer the pointer,
-the
-themes change, and long runs stay small and responsive. Skipped (77) without chromium, chromium-driver and
+the themes change, and long runs stay small and responsive. Skipped (77) without chromium, chromium-driver and
 python3-selenium.
 
 usage: report_browser.py [TEST]...

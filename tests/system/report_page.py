@@ -62,8 +62,7 @@ def wheel(turned, shift, dent):
 
 def known_run(folder, count=FRAMES, grains=GRAINS, shake=0.0):
     """A run of known contents; the positions of its grains by frame. `shake`: how far every grain moves at random
-    between
-    frames, m, which no packing makes small."""
+    between frames, m, which no packing makes small."""
     (folder / "frames").mkdir(parents=True)
     (folder / "scenario.json").write_text(json.dumps({
         "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2},

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The flexible ring in runs: it stands as `furrow press` has it, rolls on every kind of ground with accounts that
-close, under
-a vehicle, through a study and a report."""
+close, under a vehicle, through a study and a report."""
 import json
 
 from program import ROOT, SystemTest, furrow, main, write_scenario

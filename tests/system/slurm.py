@@ -1,6 +1,5 @@
 """A Slurm cluster of one node for tests, in a folder of its own: its own keys, sockets and ports. Nothing of the
-system's
-configuration is read or changed, and nothing but these processes uses it."""
+system's configuration is read or changed, and nothing but these processes uses it."""
 import os
 import pathlib
 import shutil

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Tires at the edges of their range, as a user meets them: changing pressure, drops, heavy loads, the rim, steps too
-large.
-Either a run ends well or one message says what happened, when and what to try; no number in the results is not
+large. Either a run ends well or one message says what happened, when and what to try; no number in the results is not
 finite."""
 import csv
 import json

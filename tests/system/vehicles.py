@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Whole vehicles as users run them: the shipped scenarios begin, the tables say what vehicle, driver and wheels do, and
-what
-is wrong is told in one line."""
+what is wrong is told in one line."""
 import csv
 import json
 

@@ -1,6 +1,5 @@
 """The frames of a run, packed for the playback: tires as rigid motions with small deviations, the surface of the bed
-from
-all grains, and as many grains as fit. source/unpack.js reads what is written here.
+from all grains, and as many grains as fit. source/unpack.js reads what is written here.
 
 Grains: 16-bit positions in the box of the bed, as differences from frame to frame. A grain that moved less than STILL
 of its radius since it was last written has not moved, so that a bed at rest costs next to nothing. A grain that can be
@@ -217,8 +216,7 @@ def strided(indices, stride):
 
 def pack(run, budget):
     """The Packing that fits into `budget` bytes. First every frame with MOST_GRAINS is tried; while that is too much,
-    frames
-    are left out down to sixty, then grains down to 8,000, then frames again."""
+    frames are left out down to sixty, then grains down to 8,000, then frames again."""
     frames = Frames(run)
     bed = Bed(frames, MOST_GRAINS) if frames.terrain else None
     stride = -(-len(frames.indices) // MOST_FRAMES)

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """The Magic Formula of a tire property file (.tir), evaluated a second time: written from the equations of Pacejka,
-Tire and
-Vehicle Dynamics (2012), section 4.3.2, as MF-Tyre 5.2 has them, with numpy and without the program. It shares no line
-with tire/handling; formula_peer_test.py compares the two.
+Tire and Vehicle Dynamics (2012), section 4.3.2, as MF-Tyre 5.2 has them, with numpy and without the program. It shares
+no line with tire/handling; formula_peer_test.py compares the two.
 
 usage: evaluate_tir.py FILE.tir STATES.csv
 

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The two evaluators of tire property files agree: tire/handling (by the program formula_states) and evaluate_tir.py,
-on a tire
-that uses every coefficient and on the fitted one of tire/data.
+on a tire that uses every coefficient and on the fitted one of tire/data.
 
 usage: formula_peer_test.py FORMULA_STATES
 """

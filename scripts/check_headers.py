@@ -27,15 +27,18 @@ ALGORITHMS = ("adjacent_find all_of any_of binary_search clamp copy copy_if copy
 NAMES = {
     "algorithm": rf"std::(ranges::)?({'|'.join(ALGORITHMS)})\b(?=[(<])",
     "filesystem": r"std::filesystem\b",
-    "functional": r"std::(function|reference_wrapper|hash|less|greater|plus|multiplies|bit_or|ref|cref|invoke|bind_front|mem_fn)\b(?=[(<])",
-    "memory": r"std::(unique_ptr|shared_ptr|weak_ptr|make_unique|make_shared|enable_shared_from_this|allocator|addressof)\b",
+    "functional": r"std::(function|reference_wrapper|hash|less|greater|plus|multiplies|bit_or|ref|cref|"
+                  r"invoke|bind_front|mem_fn)\b(?=[(<])",
+    "memory": r"std::(unique_ptr|shared_ptr|weak_ptr|make_unique|make_shared|enable_shared_from_this|allocator|"
+              r"addressof)\b",
     "span": r"std::(span|as_bytes|as_writable_bytes)\b",
     "string": r"std::(string|to_string|stoi|stol|stoul|stoull|stod|getline|char_traits)\b",
     "vector": r"std::vector\b",
     "fmt/format.h": r"\bfmt::\w",
     "nlohmann/json.hpp": r"\bnlohmann::\w",
     "Eigen/Core": r"\bEigen::\w",
-    "Eigen/Geometry": r"\bEigen::(Quaternion\w*|AngleAxis\w*|AlignedBox\w*|Isometry\w*|Transform|Translation\w*|Hyperplane|ParametrizedLine)\b",
+    "Eigen/Geometry": r"\bEigen::(Quaternion\w*|AngleAxis\w*|AlignedBox\w*|Isometry\w*|Transform|Translation\w*|"
+                      r"Hyperplane|ParametrizedLine)\b",
     "gtest/gtest.h": r"\b(TEST|TEST_F|TEST_P|EXPECT_\w+|ASSERT_\w+)\b",
 }
 # What a header brings by its own documentation, or where a declaration is enough.
@@ -70,7 +73,8 @@ def precompiled(root):
 def problems(root):
     headers = precompiled(root)
     if unknown := headers - NAMES.keys():
-        yield f"scripts/cmake/FurrowCompiler.cmake: precompiles <{min(unknown)}>, of which scripts/check_headers.py knows no names"
+        yield (f"scripts/cmake/FurrowCompiler.cmake: precompiles <{min(unknown)}>, of which scripts/check_headers.py "
+               f"knows no names")
     patterns = {header: re.compile(pattern) for header, pattern in NAMES.items() if header in headers}
 
     @functools.cache

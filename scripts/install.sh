@@ -6,7 +6,8 @@ root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd -
 usage() { cat <<'HELP'
 usage: scripts/install.sh --prefix DIR [LEVEL ...]
        scripts/install.sh --deb DIR [LEVEL ...]
-Builds furrow once for each LEVEL (into build-LEVEL/) and installs all of them into DIR, or makes a Debian package of them there.
+Builds furrow once for each LEVEL (into build-LEVEL/) and installs all of them into DIR, or makes a Debian package
+of them there.
 bin/furrow starts the build for the richest instruction set of the processor that it runs on.
   LEVEL  any -march= of the compiler, for example x86-64-v3, or "any" for its plainest processor
          (default: x86-64-v2 x86-64-v3 x86-64-v4; on other architectures: any)
@@ -47,7 +48,8 @@ done
 [[ -z $prefix ]] || say "$prefix/bin/furrow"
 [[ -n $deb ]] || exit 0
 
-cpack --config "$build/CPackConfig.cmake" -G DEB -B "$deb" -D "CPACK_INSTALL_CMAKE_PROJECTS=${projects%;}" >"$build.log" 2>&1 ||
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$deb" \
+    -D "CPACK_INSTALL_CMAKE_PROJECTS=${projects%;}" >"$build.log" 2>&1 ||
   { cat "$build.log" >&2; die 'cannot be packed'; }
 rm -rf -- "$build.log" "$deb/_CPack_Packages"
 say "$(echo "$deb"/furrow_*.deb)"

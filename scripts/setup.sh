@@ -125,7 +125,9 @@ fi
 
 as_root=()
 if ((EUID != 0)); then
-  command -v sudo >/dev/null || die "not root, and there is no sudo. As root: apt-get update && apt-get install --no-install-recommends ${missing[*]}"
+  command -v sudo >/dev/null ||
+    die "not root, and there is no sudo. As root: apt-get update &&" \
+      "apt-get install --no-install-recommends ${missing[*]}"
   as_root=(sudo)
   say 'not root: apt-get is run through sudo'
 fi
@@ -149,7 +151,8 @@ installed_kib=$(apt-cache show "${to_install[@]}" | awk '
   $1 == "Package:" {package = $2} $1 == "Installed-Size:" {size[package] = $2}
   END {for (p in size) sum += size[p]; printf "%.0f", sum}')
 say "missing: ${missing[*]}"
-say "with what they depend on: ${#to_install[@]} packages, $((download_bytes / 1000000)) MB to download, $((installed_kib * 1024 / 1000000)) MB on disk"
+say "with what they depend on: ${#to_install[@]} packages, $((download_bytes / 1000000)) MB to download," \
+  "$((installed_kib * 1024 / 1000000)) MB on disk"
 
 if ! $assume_yes && [[ -z ${CI:-} ]]; then
   if [[ -t 0 ]]; then

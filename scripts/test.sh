@@ -5,11 +5,13 @@ root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd -
 
 usage() { cat <<'HELP'
 usage: scripts/test.sh [--label LABEL]... [--preset NAME] [-- CTEST-OPTION ...]
-Builds everything and runs the tests with the labels unit, mpi and system; or builds what the labels given need, and runs those.
+Builds everything and runs the tests with the labels unit, mpi and system; or builds what the labels given need, and
+runs those.
   --label LABEL  unit, audit (those of protocol, terrain and tire), mpi, system, verify (longer comparisons),
                  campaign (hours), fresh (bare Debian machine; needs root),
                  cluster (Slurm and an image; skipped where they are not installed), browser (report.html in Chromium),
-                 docs (the documentation site and the commands of its tutorial), network (what needs package registries),
+                 docs (the documentation site and the commands of its tutorial),
+                 network (what needs package registries),
                  package (the CMake package with its example project, the Debian package)
   --preset NAME  a preset of CMakePresets.json, for example asan
   --             what follows goes to ctest, for example -- -R terrain

@@ -34,8 +34,9 @@ endif()
 
 # libFuzzer's targets need instrumented libraries, and their coverage can be measured afterwards (tests/fuzz).
 if(FURROW_FUZZ)
-  target_compile_options(furrow_options INTERFACE -gline-tables-only -O1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined
-    -fno-sanitize-recover=undefined -fprofile-instr-generate -fcoverage-mapping)
+  target_compile_options(furrow_options INTERFACE -gline-tables-only -O1 -fno-omit-frame-pointer
+    -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fprofile-instr-generate
+    -fcoverage-mapping)
   target_link_options(furrow_options INTERFACE -fsanitize=address,undefined -fprofile-instr-generate)
 endif()
 
@@ -58,7 +59,8 @@ endfunction()
 if(FURROW_PCH)
   set(_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <filesystem> <functional> <memory> <span> <string> <vector>
     <fmt/format.h> <nlohmann/json.hpp>)
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "// Only there to compile the precompiled headers.\n")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp
+    CONTENT "// Only there to compile the precompiled headers.\n")
   add_library(furrow_pch OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
   target_link_libraries(furrow_pch PRIVATE furrow_options)
   target_precompile_headers(furrow_pch PRIVATE ${_headers})

@@ -15,8 +15,9 @@ endif()
 install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/cluster/furrow DESTINATION bin)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md DESTINATION share/furrow)
 # The pages that messages and README.md name, under their paths in the checkout.
-file(GLOB_RECURSE _pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/nodes/*.md ${CMAKE_SOURCE_DIR}/rigs/*.md
-  ${CMAKE_SOURCE_DIR}/vehicle/*.md ${CMAKE_SOURCE_DIR}/tire/*.md ${CMAKE_SOURCE_DIR}/terrain/*.md ${CMAKE_SOURCE_DIR}/protocol/*.md
+file(GLOB_RECURSE _pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS
+  ${CMAKE_SOURCE_DIR}/nodes/*.md ${CMAKE_SOURCE_DIR}/rigs/*.md ${CMAKE_SOURCE_DIR}/vehicle/*.md
+  ${CMAKE_SOURCE_DIR}/tire/*.md ${CMAKE_SOURCE_DIR}/terrain/*.md ${CMAKE_SOURCE_DIR}/protocol/*.md
   ${CMAKE_SOURCE_DIR}/tests/*.md ${CMAKE_SOURCE_DIR}/scripts/*.md)
 foreach(_page GLOSSARY.md CONTRIBUTING.md CHANGELOG.md ${_pages})
   get_filename_component(_folder ${_page} DIRECTORY)
@@ -46,7 +47,8 @@ find_program(FURROW_PYTHON NAMES python3 HINTS /usr/bin DOC "makes completion sc
 mark_as_advanced(FURROW_PYTHON)
 function(furrow_install_made script argument target)
   install(CODE "
-    execute_process(COMMAND \"${FURROW_PYTHON}\" -B \"${CMAKE_SOURCE_DIR}/scripts/docs/${script}\" ${argument} --program \"$<TARGET_FILE:furrow>\"
+    execute_process(COMMAND \"${FURROW_PYTHON}\" -B \"${CMAKE_SOURCE_DIR}/scripts/docs/${script}\" ${argument}
+      --program \"$<TARGET_FILE:furrow>\"
       OUTPUT_VARIABLE made RESULT_VARIABLE failed ERROR_QUIET)
     if(failed)
       message(STATUS \"Not made: ${target}\")

@@ -71,7 +71,10 @@ _furrow_options() {
 @OPTIONS@
   esac
 }
-_furrow_list() { local kind; for kind; do "${COMP_WORDS[0]}" list "$kind"; done 2>/dev/null | awk '/^  [^ ]/ {print $1}'; }
+_furrow_list() {
+  local kind
+  for kind; do "${COMP_WORDS[0]}" list "$kind"; done 2>/dev/null | awk '/^  [^ ]/ {print $1}'
+}
 _furrow_keys() { "${COMP_WORDS[0]}" explain 2>/dev/null | awk '/^[^ ]/ {print $1}'; }
 _furrow() {
   local word=$2 previous=$3 command=${COMP_WORDS[1]} kind IFS=$' \t\n'
@@ -91,7 +94,8 @@ _furrow() {
   [[ -n $kind ]] || kind=$(_furrow_kind "$command #")
   case $kind in
     words:*) COMPREPLY=($(compgen -W "${kind#words:}" -- "$word")) ;;
-    list:*) compopt -o filenames; COMPREPLY=($(compgen -W "$(_furrow_list ${kind#list:})" -- "$word") $(compgen -f -- "$word")) ;;
+    list:*) compopt -o filenames
+            COMPREPLY=($(compgen -W "$(_furrow_list ${kind#list:})" -- "$word") $(compgen -f -- "$word")) ;;
     folder) compopt -o filenames; COMPREPLY=($(compgen -d -- "$word")) ;;
     file) compopt -o filenames; COMPREPLY=($(compgen -f -- "$word")) ;;
     key) COMPREPLY=($(compgen -W "$(_furrow_keys)" -- "$word")) ;;

@@ -36,8 +36,7 @@ class Driveline:
     def converter_torque(self, crank, turbine):
         """(impeller, turbine)."""
         ratio = turbine / crank
-        capacity, gain = pairs(self.converter["capacity"], "capacity"), pairs(self.converter["torque_ratio"],
-                                                                              "torque_ratio")
+        capacity, gain = (pairs(self.converter[name], name) for name in ("capacity", "torque_ratio"))
         low = min(ratio, 1.0 - BLEND)
         if ratio <= 1.0 - BLEND:
             taken = (crank / np.interp(ratio, *capacity)) ** 2

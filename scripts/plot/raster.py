@@ -154,7 +154,7 @@ class Buffers:
         weight = [((py + 0.5 - y1[:, k, None]) * dx[:, k, None] - (px + 0.5 - x1[:, k, None]) * dy[:, k, None])
                   / area[:, None]
                   for k in range(3)]
-        inside = ((weight[0] >= 0.0) & (weight[1] >= 0.0) & (weight[2] >= 0.0) & (px < camera.width) & (py < camera.height))
+        inside = (np.min(weight, axis=0) >= 0.0) & (px < camera.width) & (py < camera.height)
         which, _ = np.nonzero(inside)
         if not len(which):
             return None

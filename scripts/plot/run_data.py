@@ -281,8 +281,8 @@ class Run:
         if "terrain_engine" in self.summary:
             engine = self.summary["terrain_engine"]
             law = self.summary.get("law")  # of grains
-            what.append({"rigid": "rigid ground", "scm": "empirical soil"}.get(engine,
-                                                                               f"{engine}, {law}" if law else engine))
+            grains = f"{engine}, {law}" if law else engine
+            what.append({"rigid": "rigid ground", "scm": "empirical soil"}.get(engine, grains))
         if self.number("slip") is not None:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None and not self.has_vehicle:

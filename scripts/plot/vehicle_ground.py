@@ -25,8 +25,8 @@ def rut(v):
     depth = 1e3 * (before.z - after.z)  # mm
     if not np.isfinite(depth).any() or not np.nanmax(np.abs(depth)) > 0.0:
         raise Missing("the ground has not changed its shape")
-    reach = max(np.ptp(np.concatenate(track)) for track in v.tracks()) + max(abs(place)
-                                                                             for both in v.places for place in both)
+    reach = max(np.ptp(np.concatenate(track)) for track in v.tracks())
+    reach += max(abs(place) for both in v.places for place in both)
     if not reach < LARGEST * after.cell:
         raise Damaged("the vehicle's way is beyond what its ground could be")
     depth = median3(depth)

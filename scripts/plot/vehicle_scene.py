@@ -95,8 +95,8 @@ def prism(outline, half):
     sharp."""
     n = len(outline)
     right, left = (np.array([(x, side * half, z) for x, z in outline]) for side in (-1.0, 1.0))
-    vertex, triangle = [*right, *left], [(0, k, k + 1) for k in range(1, n - 1)] + [(n, n + k + 1, n + k)
-                                                                                    for k in range(1, n - 1)]
+    vertex = [*right, *left]
+    triangle = [(0, k, k + 1) for k in range(1, n - 1)] + [(n, n + k + 1, n + k) for k in range(1, n - 1)]
     for k in range(n):
         at, j = len(vertex), (k + 1) % n
         vertex += [right[k], left[k], left[j], right[j]]
@@ -166,8 +166,8 @@ class Stage:
         self.tires = [(self.scale * (vertex - foot) @ turn.T, triangle) for vertex, triangle in tires]
         half_tire = 0.5 * float(np.median([np.ptp(vertex @ spin_axis(vertex)) for vertex, _ in self.tires]))
         self.solids = [(vertex @ (turn @ rotation).T + [0.0, 0.0, self.scale * origin[2]], triangle, colour)
-                       for vertex, triangle, colour in sketch(v, self.scale, half_tire)] + beams(v,
-                                                                                                 self.tires, self.scale)
+                       for vertex, triangle, colour in sketch(v, self.scale, half_tire)]
+        self.solids += beams(v, self.tires, self.scale)
         corners = np.concatenate([vertex for vertex, _ in self.tires])
         self.front, self.back = corners[:, 0].max(), corners[:, 0].min()
         self.size = self.front - self.back

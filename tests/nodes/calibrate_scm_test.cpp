@@ -95,7 +95,8 @@ TEST_F(CalibrateScm, parameters_of_exact_curves_are_found_from_far) {
 TEST_F(CalibrateScm, the_fitted_soil_says_nothing_of_the_start_s_grains) {
   write(
       "soil.json",
-      R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8, "bekker_n": 0.5},
+      R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8,
+           "bekker_n": 0.5},
                          "measured": {"grain_radius_m": 0.01}})");
   const Calibration c = load(good());
   const json fitted =

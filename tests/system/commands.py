@@ -74,8 +74,8 @@ class Commands(SystemTest):
                 report = json.loads(self.output("validate", ROOT / "rigs" / name, "--json"))
                 self.assertEqual(report["scenario"], name[:-5])
                 self.assertGreater(report["steps"], 0)
-                tires = 6 if name.startswith("rover") else 4 if name.startswith(("hmmwv",
-                                                                                 "four_wheels")) else 2 if name == "half_car.json" else 1
+                counts = {"rover": 6, "hmmwv": 4, "four_wheels": 4, "half_car": 2}
+                tires = next((count for car, count in counts.items() if name.startswith(car)), 1)
                 self.assertEqual([rank["node"] for rank in report["ranks"]],
                                  ["rig", *(f"tire {k}" for k in range(tires)), "terrain"])
                 if not name.endswith("_tr.json"):
@@ -305,8 +305,8 @@ class Commands(SystemTest):
 class BatchScripts(SystemTest):
     def test_times_and_cores_that_slurm_cannot_give_are_refused(self):
         scenario = ROOT / "rigs" / "first_look.json"
-        for options, told in ((["--time", "4"],
-                               "'--time': is '4', expected 8 minutes or more: the run saves its state 6 minutes before"),
+        for options, told in ((["--time", "4"], "'--time': is '4', expected 8 minutes or more: the run saves its state "
+                                                "6 minutes before"),
                               (["--time", "25:61:99"],
                                "'--time': is '25:61:99', expected minutes, hh:mm:ss or days-hh:mm:ss"),
                               (["--nodes", "2", "--cores-per-node", "5"],

@@ -87,7 +87,10 @@ readme_command() {
   awk -v mark="<!-- command: $1 -->" '$0 == mark {found = 1; next} found && /^```/ {if (inside) exit; inside = 1; next}
     inside {print}' "$system$checkout/README.md"
 }
-installed() { chroot "$system" dpkg-query -W -f '${Installed-Size}\n' | awk '{n++; kib += $1} END {printf "%d %d\n", n, kib * 1.024e-3}'; }
+installed() {
+  chroot "$system" dpkg-query -W -f '${Installed-Size}\n' |
+    awk '{n++; kib += $1} END {printf "%d %d\n", n, kib * 1.024e-3}'
+}
 now() { echo "${EPOCHREALTIME/,/.}"; }
 elapsed() { awk -v a="$1" -v b="$2" 'BEGIN {printf "%.1f", b - a}'; }
 
@@ -117,7 +120,8 @@ run() {
              http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" \
              bash -c 'cd -- "$1" && eval "$2"; echo "status: $?"' bash "$checkout" "$command" 2>&1 </dev/null)
   build_done=${build_done:-$setup_done}
-  setup_s=$(elapsed "$began" "$setup_done") build_s=$(elapsed "$setup_done" "$build_done") run_s=$(elapsed "$build_done" "$(now)")
+  setup_s=$(elapsed "$began" "$setup_done") build_s=$(elapsed "$setup_done" "$build_done")
+  run_s=$(elapsed "$build_done" "$(now)")
   ((status == 0)) || { say "'$name' ended with status $status"; exit 1; }
 }
 
@@ -140,11 +144,13 @@ pull=$(grep -hA1 '"drawbar_pull_N"' "$system$checkout"/results/drawbar_pull_smal
 pull_mean=$(sed -n 's/.*"mean": *\([-0-9.e+]*\).*/\1/p' <<<"$pull")
 
 within() { awk -v s="$1" -v budget="$2" 'BEGIN {exit !(s <= budget)}' && echo true || echo false; }
-compiler=$(sed -n 's/.*"compiler": *"\([^"]*\)".*/\1/p' "$system$checkout"/results/drawbar_pull_small*/summary.json | head -n 1)
+compiler=$(sed -n 's/.*"compiler": *"\([^"]*\)".*/\1/p' \
+  "$system$checkout"/results/drawbar_pull_small*/summary.json | head -n 1)
 processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 cat <<JSON
 {
-  "made": {"commit": "$commit", "compiler": "$compiler", "processor": "$processor", "command": "tests/system/fresh_debian.sh$($short && echo ' --short')"},
+  "made": {"commit": "$commit", "compiler": "$compiler", "processor": "$processor",
+           "command": "tests/system/fresh_debian.sh$($short && echo ' --short')"},
   "cores": $(nproc),
   "packages": {"before": $packages_before, "added": $((packages - packages_before))},
   "installed_MB": {"before": $mb_before, "added": $((mb - mb_before))},
@@ -157,8 +163,10 @@ cat <<JSON
   "tutorial_s": $tutorial_s,
   "drawbar_pull_small_s": $run_s,
   "drawbar_pull_small_N": ${pull_mean:-null},
-  "within_budget": {"setup": $(within "${first[0]}" $setup_budget_s), "build": $(within "${first[1]}" $build_budget_s), "drawbar_pull_small": $(within "$run_s" $small_budget_s)}
+  "within_budget": {"setup": $(within "${first[0]}" $setup_budget_s), "build": $(within "${first[1]}" $build_budget_s),
+                    "drawbar_pull_small": $(within "$run_s" $small_budget_s)}
 }
 JSON
-[[ $(within "${first[0]}" $setup_budget_s)$(within "${first[1]}" $build_budget_s)$(within "$run_s" $small_budget_s) == truetruetrue ]] ||
+[[ $(within "${first[0]}" $setup_budget_s)$(within "${first[1]}" $build_budget_s)$(
+   within "$run_s" $small_budget_s) == truetruetrue ]] ||
   { say 'a budget was exceeded'; exit 1; }

@@ -6,6 +6,7 @@ set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../.." && pwd -P)
 build=$(dirname -- "${FURROW:-$root/build/furrow}")
 say() { printf 'image: %s\n' "$*" >&2; }
+failed() { tail -20 "$work/log" >&2; exit 1; }
 
 ((EUID == 0)) || { say 'skipped: needs root'; exit 77; }
 for program in debootstrap buildah ch-run setpriv cmake; do
@@ -18,13 +19,13 @@ store=(--storage-driver vfs --root "$work/store" --runroot "$work/run")
 
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -1)
 say "Debian 12 from $mirror"
-debootstrap --variant=minbase bookworm "$work/debian" "$mirror" >"$work/log" 2>&1 || { tail -20 "$work/log" >&2; exit 1; }
+debootstrap --variant=minbase bookworm "$work/debian" "$mirror" >"$work/log" 2>&1 || failed
 cp /etc/apt/apt.conf.d/* "$work/debian/etc/apt/apt.conf.d/" 2>/dev/null || true  # a proxy, where there is one
 tar -C "$work/debian" --exclude=./dev --exclude=./proc --exclude=./sys -cf "$work/debian.tar" .
 mkdir "$work/base" "$work/image"
 mv "$work/debian.tar" "$work/base/"
 printf 'FROM scratch\nADD debian.tar /\n' >"$work/base/Containerfile"
-buildah bud --isolation chroot "${store[@]}" -t debian12 "$work/base" >"$work/log" 2>&1 || { tail -20 "$work/log" >&2; exit 1; }
+buildah bud --isolation chroot "${store[@]}" -t debian12 "$work/base" >"$work/log" 2>&1 || failed
 
 say 'the image'
 cmake --install "$build" --component program --prefix "$work/image/opt/furrow" >"$work/log"
@@ -45,8 +46,9 @@ cat >"$work/home/scenario.json" <<'JSON'
 JSON
 chown -R nobody "$work/home"
 cd "$work/home"
-setpriv --reuid=nobody --regid=nogroup --clear-groups env -i USER=nobody HOME="$work/home" PATH=/opt/furrow/bin:/usr/bin:/bin \
-  ch-run --no-home --bind="$work/home:/mnt" --cd=/mnt "$work/unpacked" -- furrow run scenario.json --out out >&2
+setpriv --reuid=nobody --regid=nogroup --clear-groups env -i USER=nobody HOME="$work/home" \
+  PATH=/opt/furrow/bin:/usr/bin:/bin ch-run --no-home --bind="$work/home:/mnt" --cd=/mnt "$work/unpacked" -- \
+  furrow run scenario.json --out out >&2
 test -s out/summary.json
 ls out/*.png >/dev/null
 say 'done'

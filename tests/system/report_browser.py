@@ -206,7 +206,8 @@ class InBrowser(SystemTest):
         self.assertNotEqual(self.ask(colour), before)
 
     def rows_can_be_hidden(self):
-        rows = "return [...document.querySelectorAll('#scenario tbody tr')].filter((row) => row.offsetHeight > 0).length"
+        rows = ("return [...document.querySelectorAll('#scenario tbody tr')]"
+                ".filter((row) => row.offsetHeight > 0).length")
         every = self.ask(rows)
         self.ask("document.querySelector('#scenario .box input').click()")
         self.assertLess(self.ask(rows), every)

@@ -174,9 +174,8 @@ class Page(SystemTest):
         self.assertEqual(at, len(data))
         tire, data = block["tires"][0], part("tires")
         count = tire["vertices"]
-        reference, poses = array(about, numbers, tire["reference"]).reshape(-1,
-                                                                            3), array(about,
-                                                                                      numbers, block["poses"]).reshape(FRAMES, 14)
+        reference = array(about, numbers, tire["reference"]).reshape(-1, 3)
+        poses = array(about, numbers, block["poses"]).reshape(FRAMES, 14)
         for k in range(FRAMES):
             at = 8 * count * k
             deviation = np.column_stack([planes(data[at + 2 * count * a:at + 2 * count * (a + 1)],
@@ -196,9 +195,8 @@ class Page(SystemTest):
 
     def test_a_failed_run_and_one_without_frames(self):
         (self.run_folder / "summary.json").unlink()
-        (self.run_folder / "summary_failed.json").write_text(json.dumps({"scenario": "known",
-                                                                         "failed": {"error": "too hard",
-                                                                                    "time_s": 0.2}}))
+        failed = {"scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}}
+        (self.run_folder / "summary_failed.json").write_text(json.dumps(failed))
         for path in (self.run_folder / "frames").iterdir():
             path.unlink()
         done = furrow("report", self.run_folder, cwd=self.folder)
@@ -264,7 +262,8 @@ class Page(SystemTest):
             study.mkdir(parents=True)
             (study / "sweep.json").write_text(json.dumps({"study": "slips",
                                                           "plot": {}, "results": ["sinkage_m", "wall_s"]}))
-            (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\nruns/1,done,0,0.2,0.021,{wall}\n")
+            (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\n"
+                                             f"runs/1,done,0,0.2,0.021,{wall}\n")
             self.assertEqual(page.write(study, [Sweep(study)], lambda *_: True), ["report.html"])
             pages.append((study / "report.html").read_bytes())
         self.assertEqual(*pages)
@@ -281,8 +280,10 @@ class Page(SystemTest):
             "results": ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"],
             "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem",
                      "lines": "terrain.cohesion"}}))
-        (study / "sweep.csv").write_text("folder,state,exit_code,rig.slip,terrain.cohesion,drawbar_pull_N.mean,drawbar_pull_N.sem,drawbar_pull_N.steady\n"
-                                         "runs/1,done,0,0.2,40000.0,120,4,true\nruns/2,done,0,0.3,40000.0,130,5,false\n")
+        (study / "sweep.csv").write_text("folder,state,exit_code,rig.slip,terrain.cohesion,drawbar_pull_N.mean,"
+                                         "drawbar_pull_N.sem,drawbar_pull_N.steady\n"
+                                         "runs/1,done,0,0.2,40000.0,120,4,true\n"
+                                         "runs/2,done,0,0.3,40000.0,130,5,false\n")
         page.write(study, [Sweep(study)], lambda *_: True)
         about, _ = document(study / "report.html")
         self.assertEqual([block["text"] for block in blocks_of(about, "text")],
@@ -300,12 +301,12 @@ class Page(SystemTest):
     def test_all_values_of_a_pressed_tire_have_units(self):
         folder = self.folder / "press"
         folder.mkdir()
-        (folder / "summary.json").write_text(json.dumps({"obstacle": "plate",
-                                                         "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
-                                                         "statically_stable": True,
-                                                         "sticking_stiffness": {"lateral_N_per_m": 1.5e5,
-                                                                                "torsional_Nm_per_rad": 2500.0}}))
-        (folder / "press.csv").write_text("deflection_m,force_N,unloading\n0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
+        (folder / "summary.json").write_text(json.dumps({
+            "obstacle": "plate", "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
+            "statically_stable": True,
+            "sticking_stiffness": {"lateral_N_per_m": 1.5e5, "torsional_Nm_per_rad": 2500.0}}))
+        (folder / "press.csv").write_text("deflection_m,force_N,unloading\n"
+                                         "0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
         page.write(folder, [Press(folder)], lambda *_: True)
         about, part = document(folder / "report.html")
         rows = blocks_of(about, "table")[-1]["rows"]

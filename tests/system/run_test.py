@@ -7,7 +7,8 @@ import shutil
 import signal
 import subprocess
 
-from program import PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, start, survivors, wait_for, write_scenario
+from program import (PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, start, survivors, wait_for,
+                     write_scenario)
 
 FIRST_LOOK = ROOT / "rigs" / "first_look.json"
 SHORT = ["--set", "run.end=0.05", "--set", "run.average_from=0.02"]

@@ -15,7 +15,8 @@ from types import ModuleType
 from . import _needs  # noqa: F401  first: it names the packages that are missing
 from ._scripts import Damaged, Missing
 from .commands import calibrate, kc, modes, press, resume, run, soil, sweep
-from .errors import BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, ProgramFault, RankLost, Stopped
+from .errors import (BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, ProgramFault, RankLost,
+                     Stopped)
 from .frames import Frame, Frames, GrainFrame, TireFrame
 from .opening import Opened, open
 from .runs import Run

@@ -60,7 +60,7 @@ def read_tire(path):
                    if name in file else np.zeros(len(position))
                    for name in ("force", "velocity")]
         time = float(np.asarray(file.attrs.get("time_s", np.nan), float).ravel()[0])
-    if not len(position) or not len(triangle) or triangle.min() < 0 or triangle.max() >= len(position) or len(position) > 65000:
+    if not (0 < len(position) <= 65000 and len(triangle)) or triangle.min() < 0 or triangle.max() >= len(position):
         raise Damaged(f"{path.name} holds no surface that could be drawn")
     if any(len(vector) != len(position) for vector in vectors) or np.abs(position).max() > 1e6:
         raise Damaged(f"{path.name} holds a damaged surface")

@@ -117,8 +117,7 @@ def answer_cards(run):
             continue
         half = blocks.half_95(summary.get(sem), summary.get(count), blocks.LEAST_SAMPLES) if sem else None
         value, unit = blocks.quantity(key, summary[key], half)
-        few = "" if half is not None or not sem else f"its error cannot be told from fewer than {blocks.LEAST_SAMPLES} " \
-                                                     f"independent values"
+        few = f"no error: fewer than {blocks.LEAST_SAMPLES} independent values" if sem and half is None else ""
         items.append(blocks.card(name, value, unit, "95 %" if half is not None else "", explanation=few))
     return items
 

@@ -53,9 +53,9 @@ def shown(value):
 
 
 def is_default(value, schema):
-    return "default" in schema and value == schema["default"] and isinstance(value,
-                                                                             bool) == isinstance(schema["default"],
-                                                                                                 bool)
+    if "default" not in schema or value != schema["default"]:
+        return False
+    return isinstance(value, bool) == isinstance(schema["default"], bool)  # true is not 1
 
 
 def section(scenario):

@@ -53,7 +53,8 @@ def soil_curves(soil, arrays):
         (x_words, x_unit, x_factor), (words, unit, factor) = naming(x), naming(y)
         lines = []
         for mark, which in runs(table, *keys):
-            label = (", ".join(f"{naming(key)[0].replace('nominal ', '')} {naming(key)[2] * value:g} {naming(key)[1]}".strip() for key, value in zip(keys, mark)))
+            label = ", ".join(f"{name.replace('nominal ', '')} {scale * value:g} {of}".strip()
+                              for (name, of, scale), value in zip(map(naming, keys), mark))
             lines.append(line(arrays, label, x_factor * table[x][which], factor * table[y][which]))
         items.append({**blocks.chart(f"{title}: {words}", x_words, x_unit, unit, lines[:40]), "wide": True})
     if not items:

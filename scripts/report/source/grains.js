@@ -39,9 +39,17 @@ export class Grains {
     geometry.setAttribute("position", this.position);
     geometry.setAttribute("shade", this.shade);
     geometry.setAttribute("size", new BufferAttribute(radius, 1));
-    this.material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: {
-      low: { value: new Vector3(...bed.low) }, scale: { value: new Vector3(...bed.scale) }, pixels: { value: 500 },
-      stops: { value: Array.from({ length: 9 }, () => new Vector3()) }, count: { value: 9 } } });
+    this.material = new ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: {
+        low: { value: new Vector3(...bed.low) },
+        scale: { value: new Vector3(...bed.scale) },
+        pixels: { value: 500 },
+        stops: { value: Array.from({ length: 9 }, () => new Vector3()) },
+        count: { value: 9 },
+      },
+    });
     this.points = new Points(geometry, this.material);
     this.points.frustumCulled = false;
   }
@@ -52,7 +60,8 @@ export class Grains {
   }
 
   show(frame, shade) {
-    const [x, y, z] = frame.position, out = this.position.array;
+    const [x, y, z] = frame.position,
+      out = this.position.array;
     for (let i = 0; i < x.length; i++) {
       out[3 * i] = x[i];
       out[3 * i + 1] = y[i];

@@ -1,6 +1,17 @@
 // Tires, the surface of the bed, hard ground, and the schematic body of a vehicle.
-import { BufferAttribute, BufferGeometry, BoxGeometry, DoubleSide, EdgesGeometry, Euler, Group, LineBasicMaterial, LineSegments, Mesh,
-  MeshLambertMaterial } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  BoxGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  Euler,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+} from "three";
 import { colour } from "./colours.js";
 import { tirePositions } from "./unpack.js";
 
@@ -55,7 +66,8 @@ function areas(position, triangles) {
   const edge = (a, b, c) => position[3 * a + c] - position[3 * b + c];
   for (let t = 0; t < triangles.length; t += 3) {
     const [a, b, c] = triangles.subarray(t, t + 3);
-    const u = [0, 1, 2].map((k) => edge(b, a, k)), v = [0, 1, 2].map((k) => edge(c, a, k));
+    const u = [0, 1, 2].map((k) => edge(b, a, k)),
+      v = [0, 1, 2].map((k) => edge(c, a, k));
     const size = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 6;
     for (const k of [a, b, c]) area[k] += size;
   }
@@ -64,9 +76,11 @@ function areas(position, triangles) {
 
 /** Which vertices belong to the rim: the inner half of the radius. */
 function rimOf(position) {
-  const x = everyThird(position, 0), z = everyThird(position, 2);
+  const x = everyThird(position, 0),
+    z = everyThird(position, 2);
   const mid = (values) => (Math.max(...values) + Math.min(...values)) / 2;
-  const cx = mid(x), cz = mid(z);
+  const cx = mid(x),
+    cz = mid(z);
   const distance = x.map((v, i) => Math.hypot(v - cx, z[i] - cz));
   const most = Math.max(...distance);
   return distance.map((d) => (d < 0.56 * most ? 1 : 0));
@@ -74,11 +88,16 @@ function rimOf(position) {
 
 /** Twelfths of the tread by turns, so that one sees the wheel roll. */
 function sectorOf(position) {
-  const x = everyThird(position, 0), z = everyThird(position, 2);
+  const x = everyThird(position, 0),
+    z = everyThird(position, 2);
   const mid = (values) => (Math.max(...values) + Math.min(...values)) / 2;
-  const cx = mid(x), cz = mid(z);
-  const distance = x.map((v, i) => Math.hypot(v - cx, z[i] - cz)), most = Math.max(...distance);
-  return x.map((v, i) => (distance[i] > 0.9 * most && Math.floor((Math.atan2(z[i] - cz, v - cx) / Math.PI) * 6 + 6) % 2 ? 1 : 0));
+  const cx = mid(x),
+    cz = mid(z);
+  const distance = x.map((v, i) => Math.hypot(v - cx, z[i] - cz)),
+    most = Math.max(...distance);
+  return x.map((v, i) =>
+    distance[i] > 0.9 * most && Math.floor((Math.atan2(z[i] - cz, v - cx) / Math.PI) * 6 + 6) % 2 ? 1 : 0,
+  );
 }
 
 /** The surface of the bed over its grid. */
@@ -101,10 +120,13 @@ export class Surface {
   }
 
   show(frame, drop) {
-    const { nx, ny, low, cell } = this.bed, out = this.position.array, index = [];
+    const { nx, ny, low, cell } = this.bed,
+      out = this.position.array,
+      index = [];
     for (let i = 0; i < nx; i++)
       for (let j = 0; j < ny; j++) {
-        const k = i * ny + j, z = this.height(frame[k]);
+        const k = i * ny + j,
+          z = this.height(frame[k]);
         out[3 * k] = low[0] + (i + 0.5) * cell;
         out[3 * k + 1] = low[1] + (j + 0.5) * cell;
         out[3 * k + 2] = Number.isNaN(z) ? low[2] : z - drop;
@@ -121,7 +143,8 @@ export class Surface {
 
 const MOST_LINES = 120; // of a grid, in each direction
 
-/** Height of a profile [[x, z], …] at x: straight between the entries, level outside; at an upright face the upper end. */
+/** Height of a profile [[x, z], …] at x: straight between the entries, level outside; at an upright face the upper
+ * end. */
 function heightAt(profile, x) {
   const next = profile.findIndex(([at]) => at > x);
   if (next < 0) return profile.at(-1)[1];
@@ -130,9 +153,12 @@ function heightAt(profile, x) {
   return low + ((high - low) * (x - a)) / (b - a);
 }
 
-/** Hard ground as a grid around the path of the wheels, with the upright faces of its profile; without a profile at one height. */
+/** Hard ground as a grid around the path of the wheels, with the upright faces of its profile; without a profile at
+ * one height. */
 export function hardGround(level, profile, from, to, radius) {
-  const reach = 3 * radius, [x0, x1] = [from[0] - reach, to[0] + reach], [y0, y1] = [from[1] - reach, to[1] + reach];
+  const reach = 3 * radius,
+    [x0, x1] = [from[0] - reach, to[0] + reach],
+    [y0, y1] = [from[1] - reach, to[1] + reach];
   let step = 10 ** Math.round(Math.log10(radius / 4));
   while (Math.max(x1 - x0, y1 - y0) / step > MOST_LINES) step *= 2;
   const height = (x) => (profile.length ? heightAt(profile, x) : level);
@@ -143,7 +169,8 @@ export function hardGround(level, profile, from, to, radius) {
   const points = [];
   for (const { x, z } of along) points.push(x, y0, z, x, y1, z);
   for (let y = y0; y <= y1 + 1e-9; y += step)
-    for (let k = 0; k + 1 < along.length; k++) points.push(along[k].x, y, along[k].z, along[k + 1].x, y, along[k + 1].z);
+    for (let k = 0; k + 1 < along.length; k++)
+      points.push(along[k].x, y, along[k].z, along[k + 1].x, y, along[k + 1].z);
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
   return new LineSegments(geometry, new LineBasicMaterial({ color: 0x8a8f96 }));
@@ -155,7 +182,9 @@ export function body(wheels, radius, pose) {
   const inverse = (point) => local(point, pose);
   const places = wheels.map(inverse);
   const range = (k) => [Math.min(...places.map((p) => p[k])), Math.max(...places.map((p) => p[k]))];
-  const [x0, x1] = range(0), [y0, y1] = range(1), z = places.reduce((sum, p) => sum + p[2], 0) / places.length;
+  const [x0, x1] = range(0),
+    [y0, y1] = range(1),
+    z = places.reduce((sum, p) => sum + p[2], 0) / places.length;
   const material = new MeshLambertMaterial({ color: 0x6d8299, transparent: true, opacity: 0.55 });
   const lines = new LineBasicMaterial({ color: 0x2b3a4a });
   const width = Math.max(y1 - y0 - 1.1 * radius, 0.4 * (y1 - y0), 0.5 * radius);
@@ -170,8 +199,22 @@ export function body(wheels, radius, pose) {
   add(length, width, 0.7 * radius, (x0 + x1) / 2, z + 0.55 * radius);
   add(0.45 * length, 0.9 * width, 0.7 * radius, (x0 + x1) / 2 - 0.05 * length, z + 1.25 * radius);
   const axles = new BufferGeometry();
-  axles.setAttribute("position", new BufferAttribute(Float32Array.from(places.flatMap(([x, y, h]) => [x, y, h, x, (y0 + y1) / 2 + Math.sign(y - (y0 + y1) / 2) * width * 0.3,
-    z + 0.25 * radius])), 3));
+  axles.setAttribute(
+    "position",
+    new BufferAttribute(
+      Float32Array.from(
+        places.flatMap(([x, y, h]) => [
+          x,
+          y,
+          h,
+          x,
+          (y0 + y1) / 2 + Math.sign(y - (y0 + y1) / 2) * width * 0.3,
+          z + 0.25 * radius,
+        ]),
+      ),
+      3,
+    ),
+  );
   group.add(new LineSegments(axles, lines));
   return group;
 }
@@ -181,6 +224,10 @@ export const euler = (pose) => new Euler(pose[3], pose[4], pose[5], "ZYX");
 function local(point, pose) {
   const [cr, sr, cp, sp, cy, sy] = [3, 4, 5].flatMap((k) => [Math.cos(pose[k]), Math.sin(pose[k])]);
   const d = [0, 1, 2].map((k) => point[k] - pose[k]);
-  const turn = [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr], [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], [-sp, cp * sr, cp * cr]];
+  const turn = [
+    [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+    [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+    [-sp, cp * sr, cp * cr],
+  ];
   return [0, 1, 2].map((c) => turn[0][c] * d[0] + turn[1][c] * d[1] + turn[2][c] * d[2]);
 }

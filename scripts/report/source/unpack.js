@@ -27,15 +27,18 @@ class Planes {
 /** Of each frame and tire: three axes of deviations, then bytes of force and speed. */
 async function tireFrames(block) {
   const read = new Planes(await bytes("tires"));
-  return block.times.map(() => block.tires.map((tire) => {
-    const deviation = [0, 1, 2].map(() => new Int16Array(tire.vertices));
-    for (const axis of deviation) read.words(tire.vertices, axis);
-    return { deviation, force: read.bytes(tire.vertices), speed: read.bytes(tire.vertices) };
-  }));
+  return block.times.map(() =>
+    block.tires.map((tire) => {
+      const deviation = [0, 1, 2].map(() => new Int16Array(tire.vertices));
+      for (const axis of deviation) read.words(tire.vertices, axis);
+      return { deviation, force: read.bytes(tire.vertices), speed: read.bytes(tire.vertices) };
+    }),
+  );
 }
 
 async function grainFrames(block) {
-  const read = new Planes(await bytes("grains")), count = block.bed.grains;
+  const read = new Planes(await bytes("grains")),
+    count = block.bed.grains;
   let last = null;
   return block.times.map(() => {
     const frame = [0, 1, 2].map((axis) => {
@@ -49,7 +52,8 @@ async function grainFrames(block) {
 }
 
 async function surfaceFrames(block) {
-  const read = new Planes(await bytes("surface")), count = block.bed.nx * block.bed.ny;
+  const read = new Planes(await bytes("surface")),
+    count = block.bed.nx * block.bed.ny;
   let last = null;
   return block.times.map(() => {
     const values = new Int16Array(count);
@@ -68,7 +72,9 @@ export async function unpack(block) {
 export function tirePositions(tire, reference, pose, deviation, out) {
   const [a, b, c, d, e, f, g, h, k, x, y, z] = pose;
   for (let i = 0; i < tire.vertices; i++) {
-    const p = reference[3 * i], q = reference[3 * i + 1], r = reference[3 * i + 2];
+    const p = reference[3 * i],
+      q = reference[3 * i + 1],
+      r = reference[3 * i + 2];
     out[3 * i] = a * p + b * q + c * r + x + tire.quantum * deviation[0][i];
     out[3 * i + 1] = d * p + e * q + f * r + y + tire.quantum * deviation[1][i];
     out[3 * i + 2] = g * p + h * q + k * r + z + tire.quantum * deviation[2][i];

@@ -68,14 +68,10 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
 
 std::vector<std::string> calibration_warnings(const Calibration& calibration, const CalibrationResults& results) {
   std::vector<std::string> warnings = calibration.model->notes();
-  const std::vector<std::string> missed =
-      reach_warnings(calibration.model->targets(TargetSet::fitted), results.optimum.reach);
+  const std::vector<Target>& fitted = calibration.model->targets(TargetSet::fitted);
+  const std::vector<std::string> missed = results.optimum.reach.empty() ? misfit_warnings(fitted, results.fitted)
+                                                                        : reach_warnings(fitted, results.optimum.reach);
   warnings.insert(warnings.end(), missed.begin(), missed.end());
-  if (results.optimum.reach.empty()) {
-    const std::vector<std::string> misfits =
-        misfit_warnings(calibration.model->targets(TargetSet::fitted), results.fitted);
-    warnings.insert(warnings.end(), misfits.begin(), misfits.end());
-  }
   const Confidence& c = results.confidence;
   for (std::size_t k = 0; k < calibration.parameters.size(); ++k) {
     const Parameter& p = calibration.parameters[k];

@@ -25,17 +25,22 @@ std::string numbers_text(std::span<const double> values) {
   return text;
 }
 
+std::vector<std::string_view> split(std::string_view text, char at) {
+  std::vector<std::string_view> parts;
+  for (std::size_t end = text.find(at); end != std::string_view::npos; end = text.find(at)) {
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  parts.push_back(text);
+  return parts;
+}
+
 std::optional<std::vector<double>> numbers_of(std::string_view text) {
   std::vector<double> values;
-  while (!text.empty()) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc()) return std::nullopt;
-    values.push_back(value);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (text.empty()) break;
-    if (text.front() != ' ') return std::nullopt;
-    text.remove_prefix(1);
+  if (text.empty()) return values;
+  for (const std::string_view word : split(text, ' ')) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), values.emplace_back());
+    if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
   }
   return values;
 }
@@ -64,7 +69,7 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
   std::string text;
   if (std::filesystem::exists(file_, error)) {
     text = read_whole_file(file_);
-    if (text.find('\n') == std::string::npos) text.clear();  // cut short before the first line was whole
+    text.resize(text.rfind('\n') + 1);  // 0 where it was cut short before the first line was whole
     if (!text.empty() && !text.starts_with(mark))
       throw input_error(folder.string(), "--out",
                         std::string(text.starts_with(kMark)
@@ -72,24 +77,14 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
                                           "targets or program differ"
                                         : "holds an evaluations.csv that no calibration wrote") +
                             ", expected a new folder or --overwrite");
-  }
-  const std::size_t whole = text.empty() ? 0 : text.rfind('\n') + 1;
-  text.resize(whole);
-  if (whole > 0) {
-    if (text.size() >= mark.size() + head.size())
-      read(text.substr(mark.size()), head);
-    else
-      text.clear();
-  }
-  stream_.reset(std::fopen(file_.c_str(), text.empty() ? "we" : "r+e"));
-  if (!stream_) throw io_error(file_.string(), std::string("cannot be written: ") + std::strerror(errno));
-  if (text.empty()) {
-    write(mark + head);
-  } else {
+    if (text.size() < mark.size() + head.size()) text.clear();
+    if (!text.empty()) read(text.substr(mark.size()), head);
     std::filesystem::resize_file(file_, text.size(), error);
-    if (error || std::fseek(stream_.get(), 0, SEEK_END) != 0)
-      throw io_error(file_.string(), "cannot be written from its last whole line on");
   }
+  stream_.reset(std::fopen(file_.c_str(), "ae"));
+  if (error || !stream_)
+    throw io_error(file_.string(), "cannot be written: " + (error ? error.message() : std::strerror(errno)));
+  if (text.empty()) write(mark + head);
 }
 
 void EvaluationTable::read(const std::string& text, const std::string& head) {
@@ -97,30 +92,18 @@ void EvaluationTable::read(const std::string& text, const std::string& head) {
     return input_error(file_.string(), "", what + ", expected the file as furrow wrote it, or --overwrite");
   };
   if (!text.starts_with(head)) throw damaged("its columns are not those of this study");
-  int number = 2;
-  for (std::size_t at = head.size(), end; at < text.size(); at = end + 1) {
-    end = text.find('\n', at);
-    const std::string_view line = std::string_view(text).substr(at, end - at);
-    ++number;
-    std::vector<std::string_view> cells;
-    for (std::size_t from = 0;;) {
-      const std::size_t comma = line.find(',', from);
-      cells.push_back(line.substr(from, comma == std::string_view::npos ? comma : comma - from));
-      if (comma == std::string_view::npos) break;
-      from = comma + 1;
-    }
-    if (cells.size() != parameters_ + 5) throw damaged(fmt::format("line {} is damaged", number));
-    std::vector<double> values;
-    for (std::size_t k = 0; k < parameters_; ++k) {
-      const auto one = numbers_of(cells[k + 1]);
-      if (!one || one->size() != 1) throw damaged(fmt::format("line {} is damaged", number));
-      values.push_back(one->front());
-    }
-    const auto found = numbers_of(cells[parameters_ + 2]), errors = numbers_of(cells[parameters_ + 3]),
-               time = numbers_of(cells[parameters_ + 4]);
-    if (!found || !errors || !time || time->size() > 1) throw damaged(fmt::format("line {} is damaged", number));
-    known_[key_of(std::string(cells[0]), values)] = {*found, *errors, std::string(cells[parameters_ + 1]),
-                                                     time->empty() ? 0.0 : time->front()};
+  const std::vector<std::string_view> lines = split(text, '\n');
+  for (std::size_t k = 1; k + 1 < lines.size(); ++k) {  // after the last line break is nothing
+    const std::vector<std::string_view> cells = split(lines[k], ',');
+    const std::size_t problem = parameters_ + 1;
+    const auto number = [&](std::size_t after) {
+      return problem + after < cells.size() ? numbers_of(cells[problem + after]) : std::nullopt;
+    };
+    const auto values = number(1), errors = number(2), time = number(3);
+    if (cells.size() != problem + 4 || !values || !errors || !time || time->size() > 1)
+      throw damaged(fmt::format("line {} is damaged", k + 2));
+    const std::string key(cells.front().data(), cells[problem].data() - 1);
+    known_[key] = {*values, *errors, std::string(cells[problem]), time->empty() ? 0.0 : time->front()};
   }
 }
 

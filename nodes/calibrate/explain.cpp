@@ -1,44 +1,21 @@
 #include "nodes/calibrate/explain.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "nodes/calibrate/kind.hpp"
+#include "nodes/calibrate/kinds.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
-#include "protocol/files/nearest_words.hpp"
 
 namespace furrow::calibrate {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::string_view kRoot = "calibrate";
-
-constexpr auto kKeys = std::to_array<CalibrationKey>({
-    {"format_version", "Version of the form of this file: 1."},
-    {"description", "What the calibration is for, for people and 'furrow list'."},
-    {"calibrate", "Kind of the model that is fitted."},
-    {"start",
-     "File that the fit begins from, relative to the study, then to the files that come with furrow. What is "
-     "not fitted stays as it is there."},
-    {"set", "Settings of the scenario that grains begin from, by dotted path, as of a study.", false},
-    {"tests", "The virtual soil tests of each evaluation: seeds, stresses (Pa) and speed (m/s).", false},
-    {"parameters", "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
-    {"targets",
-     "What is fitted to: a list of objects, each with data (a CSV file), name, sigma, weight and keys of the kind."},
-    {"held_out", "What is predicted with the result and never fitted: a list as of targets."},
-    {"starts", "Number of starts: that of the file, and random ones within the bounds. 1 to 1000, default 8."},
-    {"seed", "Seed of the random starts. Default 1."},
-    {"evaluations", "How often a noisy model is evaluated at most. Default 6 for each parameter, and 4 more.", false},
-    {"result", "Name of the fitted file, in the folder of results. Default <start>_fitted.json."},
-});
-
-[[noreturn]] void refuse(const std::string& key, const std::string& last, const std::vector<std::string>& known) {
-  throw input_error("explain", key, unknown_text(nearest_words(last, known), known));
-}
+constexpr std::size_t kListed = 4;  // values of a target that are named one by one
 
 std::string row(std::string_view name, std::string_view text) { return fmt::format("{:<24} {}\n", name, text); }
 
@@ -48,17 +25,11 @@ std::string range(double lower, double upper, const std::string& unit) {
 
 std::string with_root(std::string_view name) { return fmt::format("{}.{}", kRoot, name); }
 
-std::vector<std::string> parameters_of(const CalibrationKind& kind) {
-  std::vector<std::string> names;
-  for (const ParameterRule& rule : kind.parameters()) names.push_back(rule.name);
-  return names;
-}
-
 std::string explain_all() {
   std::string text =
       "calibrate\n  A study that fits the parameters of a model to data, with the error of each: furrow "
       "calibrate STUDY.\n\nkeys of the file\n";
-  for (const CalibrationKey& key : kKeys) text += row(with_root(key.name), key.meaning);
+  for (const CalibrationKey& key : calibration_keys()) text += row(with_root(key.name), key.meaning);
   text += "\nkinds\n";
   for (const CalibrationKind& kind : calibration_kinds())
     text += row(with_root(kind.name), fmt::format("Begins from {}.", kind.start));
@@ -68,10 +39,10 @@ std::string explain_all() {
 std::string explain_kind(const CalibrationKind& kind) {
   std::string text = fmt::format("{}\n  Begins from {}.\n\nparameters, with their bounds where the study gives none\n",
                                  with_root(kind.name), kind.start);
-  for (const ParameterRule& rule : kind.parameters()) text += row(rule.name, range(rule.lower, rule.upper, rule.unit));
-  if (!kind.quantities) return text;
+  for (const ParameterRule& rule : kind.parameters) text += row(rule.name, range(rule.lower, rule.upper, rule.unit));
+  if (kind.quantities.empty()) return text;
   text += "\nquantities of targets, with the range of their values\n";
-  for (const TargetQuantity& q : kind.quantities())
+  for (const TargetQuantity& q : kind.quantities)
     text += fmt::format("{:<36} {}\n", q.name, range(q.least, q.most, "-"));
   return text;
 }
@@ -82,9 +53,33 @@ std::string explain_parameter(const std::string& key, const ParameterRule& rule)
                      "scale", rule.logarithmic ? "log" : "linear");
 }
 
-}  // namespace
+std::string span_of(const std::vector<double>& values, const std::string& name) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return fmt::format("{} {} to {}", name, number_text(*least), number_text(*most));
+}
 
-std::span<const CalibrationKey> calibration_keys() { return kKeys; }
+std::string target_text(const Target& target) {
+  std::string text = fmt::format("{} ({}): ", target.name, target.what);
+  const auto [least, most] = std::minmax_element(target.sigma.begin(), target.sigma.end());
+  if (target.labels.empty())
+    text += fmt::format("{} points, {}, {}", target.y.size(), span_of(target.x, target.x_name),
+                        span_of(target.y, target.y_name));
+  else if (target.y.size() > kListed)
+    text += span_of(target.y, fmt::format("{} values,", target.y.size())) +
+            (*least < *most ? ", " + span_of(target.sigma, "each ±") : ", each ± " + number_text(*least));
+  else
+    for (std::size_t k = 0; k < target.y.size(); ++k)
+      text += fmt::format("{}{} {} ± {}", k == 0 ? "" : ", ", target.labels[k], number_text(target.y[k]),
+                          number_text(target.sigma[k]));
+  return text;
+}
+
+Json target_json(const Target& target) {
+  return {{"name", target.name},       {"what", target.what}, {"data", target.data.string()},
+          {"points", target.y.size()}, {"x", target.x_name},  {"y", target.y_name}};
+}
+
+}  // namespace
 
 bool explains_calibrations(const std::string& key) { return key == kRoot || key.starts_with(with_root("")); }
 
@@ -92,21 +87,58 @@ std::string explain_calibration(const std::string& key) {
   if (key == kRoot) return explain_all();
   const std::string rest = key.substr(kRoot.size() + 1), first = rest.substr(0, rest.find('.'));
   const bool one_part = first.size() == rest.size();
-  std::vector<std::string> known;
-  for (const CalibrationKey& one : kKeys) {
-    if (one_part && one.name == first) return fmt::format("{}\n  {}\n", key, one.meaning);
-    known.emplace_back(one.name);
-  }
+  const auto wrong = [&](const std::string& what) { return input_error("explain", key, what); };
+  std::vector<CalibrationKey> known(calibration_keys().begin(), calibration_keys().end());
   for (const CalibrationKind& kind : calibration_kinds()) {
-    known.emplace_back(kind.name);
+    known.push_back({kind.name, ""});
     if (kind.name != first) continue;
     if (one_part) return explain_kind(kind);
-    const std::string parameter = rest.substr(first.size() + 1);
-    for (const ParameterRule& rule : kind.parameters())
-      if (rule.name == parameter) return explain_parameter(key, rule);
-    refuse(key, parameter, parameters_of(kind));
+    return explain_parameter(key, entry_named(kind.parameters, rest.substr(first.size() + 1), wrong));
   }
-  refuse(key, first, known);
+  const CalibrationKey& found = entry_named(known, one_part ? first : rest, wrong);
+  return fmt::format("{}\n  {}\n", key, found.meaning);
+}
+
+std::string calibration_check_text(const Calibration& c) {
+  std::string text;
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("calibration", fmt::format("{}, kind {}", c.file.string(), c.kind->name));
+  line("start", c.start.string());
+  for (const Parameter& p : c.parameters)
+    line("parameter", fmt::format("{}: {}, {}, from {}", p.name, range(p.lower, p.upper, p.unit),
+                                  p.logarithmic ? "logarithmic" : "linear", number_text(p.start)));
+  for (const Target& target : c.model->targets(TargetSet::fitted)) line("target", target_text(target));
+  for (const Target& target : c.model->targets(TargetSet::held_out)) line("held out", target_text(target));
+  if (c.kind->noisy)
+    line("evaluations", fmt::format("at most {}, seed {}", c.evaluations, c.seed));
+  else
+    line("starts", fmt::format("{}, seed {}", c.starts, c.seed));
+  line("result", c.result);
+  return text;
+}
+
+Json calibration_check_json(const Calibration& c) {
+  Json json{{"format_version", 1},  {"calibration", c.file.string()}, {"description", c.description},
+            {"kind", c.kind->name}, {"start", c.start.string()},      {"parameters", Json::object()}};
+  for (const Parameter& p : c.parameters)
+    json["parameters"][p.name] = {{"unit", p.unit},
+                                  {"lower", p.lower},
+                                  {"upper", p.upper},
+                                  {"scale", p.logarithmic ? "log" : "linear"},
+                                  {"start", p.start}};
+  for (const TargetSet set : kBothSets) {
+    Json& list = json[set == TargetSet::fitted ? "targets" : "held_out"] = Json::array();
+    for (const Target& target : c.model->targets(set)) list.push_back(target_json(target));
+  }
+  if (c.kind->noisy)
+    json["evaluations"] = c.evaluations;
+  else
+    json["starts"] = c.starts;
+  json["seed"] = c.seed;
+  json["result"] = c.result;
+  return json;
 }
 
 }  // namespace furrow::calibrate

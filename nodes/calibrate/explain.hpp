@@ -1,19 +1,13 @@
-// What a calibration study may hold, in words: `furrow explain calibrate`.
+// Calibration studies in words, before anything is computed: `furrow explain calibrate` and `furrow validate`.
 #pragma once
 
-#include <span>
 #include <string>
-#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "nodes/calibrate/study.hpp"
 
 namespace furrow::calibrate {
-
-struct CalibrationKey {
-  std::string_view name, meaning;
-  bool of_every_kind = true;  // else of the kinds that ask for it
-};
-
-/// Keys of the file, in the order in which people write them.
-std::span<const CalibrationKey> calibration_keys();
 
 /// Whether `key` is "calibrate", or begins with "calibrate.".
 bool explains_calibrations(const std::string& key);
@@ -22,5 +16,9 @@ bool explains_calibrations(const std::string& key);
 /// kind; of "calibrate.ring.bending", that parameter.
 /// @throws Error(bad_input) for what is not known, with what looks like it
 std::string explain_calibration(const std::string& key);
+
+/// What the study fits to which data.
+std::string calibration_check_text(const Calibration& calibration);
+nlohmann::ordered_json calibration_check_json(const Calibration& calibration);
 
 }  // namespace furrow::calibrate

@@ -1,5 +1,15 @@
-#include "nodes/calibrate/grains.hpp"
-
+// Kind of calibration that fits grains to the strength of a soil: what the virtual soil tests (terrain/soil) measure on
+// them against what was measured on the soil.
+//
+//   "start": "drawbar_pull_small.json", "set": {"terrain.material": "loose_sand.json"},   a scenario with grains
+//   "tests": {"seeds": 2, "stresses": [5e3, 15e3, 40e3], "speed": 0.1},
+//   "targets": [{"quantity": "friction_angle_deg", "data": "lete_sand.json", "sigma": 1.0},     value of a soil file
+//               {"quantity": "bulk_density_kg_m3", "value": 1500, "sigma": 30}]
+//
+// Parameters are keys of the section `terrain`, quantities are figures of soil.json. A prediction is what `furrow soil`
+// gives for the start with the parameters as settings, to the last bit, with its standard errors between beds. Only
+// those tests run that the targets need. What a test gives for held-out targets is kept with the fitted ones of the
+// same parameters.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +22,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "nodes/calibrate/kinds.hpp"
+#include "nodes/calibrate/noisy.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "nodes/study/study.hpp"
@@ -49,50 +61,32 @@ const auto kRules = std::to_array<ParameterRule>({
     {"young_modulus", "Pa", 1e5, 1e11, 1e7, 1e8, true},
 });
 
-/// The start's own value; NaN where it says none.
-double value_of(const DemOptions& grains, const std::string& name) {
-  double found = NAN;
-  terrain::dem::visit_fields(
-      [&](const auto& field, const auto& value) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-          if (name == field.name) found = value;
-      },
-      grains);
-  return name == "settling_friction" && found < 0.0 ? NAN : found;
-}
-
 // ---- what the tests measure
-
-enum class Test { shear, repose, plate, cone, any };
-enum class Figure { cohesion, phi, phi_alone, K, repose, repose_dry, n, k_c, k_phi, cone_index, bulk_density };
 
 /// A figure of soil.json, and the key of soil files that says it to the engine scm.
 struct Quantity {
   std::string_view name, of_file;
-  Test test;
-  Figure figure;
-  double least, most;  // of a target, in the unit of its name
+  bool SoilOptions::*test;             // that measures it; null: any
+  Measured SoilParameters::*measured;  // null: the bulk density of the beds
+  double unit;                         // of the name, in SI units
+  double least, most;                  // of a target, in the unit of its name
 };
 constexpr auto kQuantities = std::to_array<Quantity>({
-    {"friction_angle_deg", "mohr_friction_angle", Test::shear, Figure::phi, 0.0, 60.0},
-    {"cohesion_Pa", "mohr_cohesion", Test::shear, Figure::cohesion, 0.0, 1e7},
-    {"friction_angle_without_cohesion_deg", "", Test::shear, Figure::phi_alone, 0.0, 85.0},
-    {"janosi_K_m", "janosi_k", Test::shear, Figure::K, 1e-6, 1.0},
-    {"repose_angle_deg", "", Test::repose, Figure::repose, 0.0, 85.0},
-    {"repose_angle_without_cohesion_deg", "", Test::repose, Figure::repose_dry, 0.0, 60.0},
-    {"n", "bekker_n", Test::plate, Figure::n, 1e-3, 5.0},
-    {"k_c", "bekker_k_c", Test::plate, Figure::k_c, -1e12, 1e12},
-    {"k_phi", "bekker_k_phi", Test::plate, Figure::k_phi, 0.0, 1e13},
-    {"cone_index_Pa", "", Test::cone, Figure::cone_index, 0.0, 1e9},
-    {"bulk_density_kg_m3", "", Test::any, Figure::bulk_density, 50.0, 2e4},
+    {"friction_angle_deg", "mohr_friction_angle", &SoilOptions::shear, &SoilParameters::phi, kDegree, 0.0, 60.0},
+    {"cohesion_Pa", "mohr_cohesion", &SoilOptions::shear, &SoilParameters::cohesion, 1.0, 0.0, 1e7},
+    {"friction_angle_without_cohesion_deg", "", &SoilOptions::shear, &SoilParameters::phi_alone, kDegree, 0.0, 85.0},
+    {"janosi_K_m", "janosi_k", &SoilOptions::shear, &SoilParameters::K, 1.0, 1e-6, 1.0},
+    {"repose_angle_deg", "", &SoilOptions::repose, &SoilParameters::repose, kDegree, 0.0, 85.0},
+    {"repose_angle_without_cohesion_deg", "", &SoilOptions::repose, &SoilParameters::repose_dry, kDegree, 0.0, 60.0},
+    {"n", "bekker_n", &SoilOptions::plate, &SoilParameters::n, 1.0, 1e-3, 5.0},
+    {"k_c", "bekker_k_c", &SoilOptions::plate, &SoilParameters::k_c, 1.0, -1e12, 1e12},
+    {"k_phi", "bekker_k_phi", &SoilOptions::plate, &SoilParameters::k_phi, 1.0, 0.0, 1e13},
+    {"cone_index_Pa", "", &SoilOptions::cone, &SoilParameters::cone_index, 1.0, 0.0, 1e9},
+    {"bulk_density_kg_m3", "", nullptr, nullptr, 1.0, 50.0, 2e4},
 });
 
-struct Found {
-  double value = 0.0, error = 0.0;
-};
-
 /// Of the beds of the first test that was made, in the order of their cost.
-Found bulk_density(const SoilResults& results) {
+Measured bulk_density(const SoilResults& results) {
   std::vector<double> beds;
   const auto take = [&](const auto& tests) {
     if (!beds.empty()) return;
@@ -101,37 +95,7 @@ Found bulk_density(const SoilResults& results) {
         beds.push_back(tests[k].specimen.bulk_density);
   };
   take(results.shear), take(results.repose), take(results.plate), take(results.cone);
-  const Measured mean = terrain::soil::mean_of(beds);
-  return {mean.value, mean.standard_error};
-}
-
-Found figure_of(Figure figure, const SoilParameters& p, const SoilResults& results) {
-  const auto in = [](const Measured& m, double unit = 1.0) { return Found{m.value / unit, m.standard_error / unit}; };
-  switch (figure) {
-    case Figure::cohesion:
-      return in(p.cohesion);
-    case Figure::phi:
-      return in(p.phi, kDegree);
-    case Figure::phi_alone:
-      return in(p.phi_alone, kDegree);
-    case Figure::K:
-      return in(p.K);
-    case Figure::repose:
-      return in(p.repose, kDegree);
-    case Figure::repose_dry:
-      return in(p.repose_dry.samples > 0 ? p.repose_dry : p.repose, kDegree);
-    case Figure::n:
-      return in(p.n);
-    case Figure::k_c:
-      return in(p.k_c);
-    case Figure::k_phi:
-      return in(p.k_phi);
-    case Figure::cone_index:
-      return in(p.cone_index);
-    case Figure::bulk_density:
-      break;
-  }
-  return bulk_density(results);
+  return terrain::soil::mean_of(beds);
 }
 
 double processor_time() {
@@ -150,27 +114,24 @@ struct TestSettings {
 
 TestSettings read_tests(OrderedJsonReader& whole) {
   TestSettings tests;
-  whole.skip("tests");
-  if (!whole.given("tests")) return tests;
+  if (!takes(whole, "tests")) return tests;
   OrderedJsonReader reader = whole.child("tests");
-  reader.skip("seeds"), reader.skip("speed"), reader.skip("stresses");
-  if (reader.given("seeds")) tests.seeds = reader.count("seeds", 1, kMostSeeds);
-  if (reader.given("speed")) tests.speed = reader.positive("speed");
+  if (takes(reader, "seeds")) tests.seeds = reader.count("seeds", 1, kMostSeeds);
+  if (takes(reader, "speed")) tests.speed = reader.positive("speed");
   if (tests.speed > kMostSpeed)
     reader.fail("speed",
                 fmt::format("is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed), kMostSpeed));
-  if (reader.given("stresses")) {
-    tests.stresses = reader.numbers("stresses");
-    std::sort(tests.stresses.begin(), tests.stresses.end());
-    const auto same = std::adjacent_find(tests.stresses.begin(), tests.stresses.end());
-    if (tests.stresses.size() < 2 || tests.stresses.size() > kMostStresses || same != tests.stresses.end())
+  if (takes(reader, "stresses")) {
+    std::vector<double>& stresses = tests.stresses = reader.numbers("stresses");
+    std::sort(stresses.begin(), stresses.end());
+    const bool differ = std::adjacent_find(stresses.begin(), stresses.end()) == stresses.end();
+    if (stresses.size() < 2 || stresses.size() > kMostStresses || !differ)
       reader.fail("stresses",
                   fmt::format("expected two to {} different normal stresses, Pa: c and φ are of a line through them",
                               kMostStresses));
-    if (!(tests.stresses.front() > 0.0 && tests.stresses.back() <= kMostStress))
-      reader.fail("stresses", fmt::format("has {} Pa, expected each above 0 up to {} Pa",
-                                          number_text(tests.stresses.front() > 0.0 ? tests.stresses.back()
-                                                                                   : tests.stresses.front()),
+    const double odd = stresses.front() > 0.0 ? stresses.back() : stresses.front();
+    if (!(odd > 0.0 && odd <= kMostStress))
+      reader.fail("stresses", fmt::format("has {} Pa, expected each above 0 up to {} Pa", number_text(odd),
                                           number_text(kMostStress)));
   }
   reader.finish();
@@ -179,7 +140,7 @@ TestSettings read_tests(OrderedJsonReader& whole) {
 
 class GrainModel final : public CalibrationModel {
  public:
-  explicit GrainModel(CalibrationInput& input) : names_(input.parameters), start_(input.start) {
+  explicit GrainModel(CalibrationInput& input) : CalibrationModel(input) {
     set_ = study::settings_of(input.whole.object_or_empty("set"));
     tests_ = read_tests(input.whole);
     try {
@@ -191,32 +152,33 @@ class GrainModel final : public CalibrationModel {
       throw Error(error.code(), fmt::format("{}\n{}: with its key 'set'", error.what(), input.study.string()));
     }
     for (const auto& [key, value] : set_)
-      if (std::find(names_.begin(), names_.end(), key.starts_with("terrain.") ? key.substr(8) : "") != names_.end())
+      if (key.starts_with("terrain.") && fits(key.substr(8)))
         throw input_error(input.study.string(), "set." + key, "is a parameter too, expected its 'start' there");
     state_ += fmt::format(" {} {:.17g} {}", tests_.seeds, tests_.speed, fmt::join(tests_.stresses, " "));
-    read(input.targets, input.study, fitted_, of_fitted_);
-    read(input.held_out, input.study, held_out_, of_held_out_);
+    for (const TargetSet set : kBothSets)
+      for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);
     leave_out_small_K(input);
   }
 
   std::vector<double> start_values() const override {
     std::vector<double> values;
-    for (const std::string& name : names_) values.push_back(value_of(grains_, name));
+    for (const std::string& name : names_) {
+      const double value = *number_named(grains_, name);
+      values.push_back(name == "settling_friction" && value < 0.0 ? NAN : value);
+    }
     return values;
   }
-
-  std::vector<std::string> notes() const override { return notes_; }
 
   Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) override {
     const std::vector<double> key(values.begin(), values.end());
     auto known = known_.find(key);
     if (known == known_.end()) known = known_.emplace(key, tested(values, progress)).first;
-    Prediction found = known->second;
+    const Prediction& found = known->second;
     if (!found.problem.empty()) return found;
     // All figures are kept; those of the set are asked for.
     Prediction part;
     part.processor_time = set == TargetSet::fitted ? found.processor_time : 0.0;
-    for (const Quantity* quantity : set == TargetSet::fitted ? of_fitted_ : of_held_out_) {
+    for (const Quantity* quantity : quantities_[set]) {
       const auto at = static_cast<std::size_t>(quantity - kQuantities.data());
       part.values.push_back(found.values[at]), part.errors.push_back(found.errors[at]);
     }
@@ -251,17 +213,20 @@ class GrainModel final : public CalibrationModel {
       options.material = grains_of(values);
       options.seeds = tests_.seeds, options.speed = tests_.speed, options.stresses = tests_.stresses;
       options.threads = options.material.settle_threads;
-      options.shear = needs(Test::shear), options.repose = needs(Test::repose);
-      options.plate = needs(Test::plate), options.cone = needs(Test::cone);
+      options.shear = options.repose = options.plate = options.cone = false;
+      for (const Quantity& quantity : kQuantities)
+        if (quantity.test && needed(quantity)) options.*quantity.test = true;
       if (!options.repose && !options.plate && !options.cone) options.shear = true;  // of the density alone
       const terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
       const SoilResults results = terrain::soil::run_soil_tests(options, plan, progress);
-      const SoilParameters p = terrain::soil::soil_parameters(results, plan, options.material.radius);
+      SoilParameters p = terrain::soil::soil_parameters(results, plan, options.material.radius);
+      if (p.repose_dry.samples == 0) p.repose_dry = p.repose;
       for (const Quantity& quantity : kQuantities) {
-        const bool is = quantity.test == Test::any || needs(quantity.test);
-        const Found figure = is ? figure_of(quantity.figure, p, results) : Found{NAN, NAN};
-        found.values.push_back(figure.value), found.errors.push_back(figure.error);
-        if (is && needed(quantity) && !std::isfinite(figure.value))
+        const bool is = !quantity.test || options.*quantity.test;
+        const Measured figure = quantity.measured ? p.*quantity.measured : bulk_density(results);
+        found.values.push_back(is ? figure.value / quantity.unit : NAN);
+        found.errors.push_back(is ? figure.standard_error / quantity.unit : NAN);
+        if (needed(quantity) && !std::isfinite(figure.value))
           found.problem = fmt::format("the tests give no {}", quantity.name);
       }
     } catch (const Error& error) {
@@ -274,129 +239,97 @@ class GrainModel final : public CalibrationModel {
   }
 
   bool needed(const Quantity& quantity) const {
-    const auto in = [&](const std::vector<const Quantity*>& list) {
-      return std::find(list.begin(), list.end(), &quantity) != list.end();
-    };
-    return in(of_fitted_) || in(of_held_out_);
-  }
-  bool needs(Test test) const {
-    const auto in = [&](const std::vector<const Quantity*>& list) {
-      return std::any_of(list.begin(), list.end(), [&](const Quantity* q) { return q->test == test; });
-    };
-    return in(of_fitted_) || in(of_held_out_);
-  }
-
-  const Quantity& quantity_of(OrderedJsonReader& reader) const {
-    const std::string name = reader.text("quantity");
-    std::vector<std::string> known;
-    for (const Quantity& quantity : kQuantities) {
-      if (quantity.name == name) return quantity;
-      known.emplace_back(quantity.name);
-    }
-    reader.fail("quantity", "'" + name + "' " + unknown_text(nearest_words(name, known), known));
+    return std::any_of(std::begin(kBothSets), std::end(kBothSets), [&](TargetSet set) {
+      return std::find(quantities_[set].begin(), quantities_[set].end(), &quantity) != quantities_[set].end();
+    });
   }
 
   /// The value, of the study or of a soil file; sets the target's `data` and what it says.
-  double target_value(OrderedJsonReader& reader, const Quantity& quantity, const std::filesystem::path& study,
-                      Target& target) {
-    reader.skip("data"), reader.skip("value");
-    if (reader.given("data") == reader.given("value"))
+  static double target_value(OrderedJsonReader& reader, const Quantity& quantity, const std::filesystem::path& study,
+                             Target& target) {
+    const bool of_file = takes(reader, "data");
+    if (of_file == takes(reader, "value"))
       reader.fail("value", "expected either 'value' or 'data', the name of a soil file that has it");
-    target.data = study;
-    target.what = "measured";
-    const auto outside = [&](double value) { return !(value >= quantity.least && value <= quantity.most); };
-    const auto range = [&](double value) {
-      return fmt::format("is {}, expected {} to {} for {}", number_text(value), number_text(quantity.least),
-                         number_text(quantity.most), quantity.name);
-    };
-    if (reader.given("value")) {
-      const double value = reader.number("value");
-      if (outside(value)) reader.fail("value", range(value));
+    const auto checked = [&](double value, const auto& wrong) {
+      if (!(value >= quantity.least && value <= quantity.most))
+        throw wrong(fmt::format("is {}, expected {} to {} for {}", number_text(value), number_text(quantity.least),
+                                number_text(quantity.most), quantity.name));
       return value;
+    };
+    if (!of_file) {
+      target.data = study, target.what = "measured";
+      return checked(reader.number("value"), [&](const std::string& what) { return reader.wrong("value", what); });
     }
     target.data = find_file(reader.text("data"), reader.full("data"), study);
     target.what = target.data.filename().string();
+    const std::string key(quantity.of_file);
+    const auto wrong = [&](const std::string& what) {
+      return input_error(target.data.string(), key.empty() ? "terrain" : "terrain." + key, what);
+    };
     const nlohmann::json soil = scenario::read_soil_material(target.data);
-    if (quantity.of_file.empty() || !soil.contains(quantity.of_file))
-      throw input_error(target.data.string(),
-                        quantity.of_file.empty() ? "terrain" : "terrain." + std::string(quantity.of_file),
-                        fmt::format("is missing: soil files do not say {}, expected a 'value' in {} of {}",
-                                    quantity.name, reader.full("value"), study.string()));
-    const double value = soil[std::string(quantity.of_file)].get<double>();
-    if (outside(value))
-      throw input_error(target.data.string(), "terrain." + std::string(quantity.of_file), range(value));
-    return value;
+    if (key.empty() || !soil.contains(key))
+      throw wrong(fmt::format("is missing: soil files do not say {}, expected a 'value' in {} of {}", quantity.name,
+                              reader.full("value"), study.string()));
+    return checked(soil[key].get<double>(), wrong);
   }
 
-  void read(std::vector<OrderedJsonReader>& readers, const std::filesystem::path& study, std::vector<Target>& targets,
-            std::vector<const Quantity*>& quantities) {
-    for (OrderedJsonReader& reader : readers) {
-      const Quantity& quantity = quantity_of(reader);
-      if (needed(quantity))
-        reader.fail("quantity", fmt::format("is {} a second time, expected each once", quantity.name));
-      Target target;
-      target.name = reader.text_or("name", std::string(quantity.name));
-      if (target.name.empty() || target.name.find_first_of(",\"") != std::string::npos)
-        reader.fail("name", "expected a name without commas and quotes");
-      target.y.push_back(target_value(reader, quantity, study, target));
-      if (!reader.given("sigma"))
-        reader.fail("sigma", "is missing, expected the standard error of the value, in its unit");
-      target.sigma.push_back(reader.positive("sigma"));
-      reader.finish();
-      target.x.push_back(0.0), target.x_name = "", target.y_name = quantity.name;
-      target.labels.emplace_back(quantity.name);
-      target.state = std::string(quantity.name) + " " + state_;
-      targets.push_back(target);
-      quantities.push_back(&quantity);
-    }
+  void read(OrderedJsonReader& reader, const std::filesystem::path& study, TargetSet set) {
+    const std::string named = reader.text("quantity");
+    const Quantity& quantity = entry_named(kQuantities, named, [&](const std::string& what) {
+      return reader.wrong("quantity", "'" + named + "' " + what);
+    });
+    if (needed(quantity))
+      reader.fail("quantity", fmt::format("is {} a second time, expected each once", quantity.name));
+    Target target;
+    target.name = target_name(reader, named);
+    target.y.push_back(target_value(reader, quantity, study, target));
+    if (!reader.given("sigma"))
+      reader.fail("sigma", "is missing, expected the standard error of the value, in its unit");
+    target.sigma.push_back(reader.positive("sigma"));
+    reader.finish();
+    target.x.push_back(0.0), target.y_name = named;
+    target.labels.push_back(named);
+    target.state = named + " " + state_;
+    targets_[set].push_back(target);
+    quantities_[set].push_back(&quantity);
   }
 
   /// A K that such grains cannot have is compared, and not fitted: it would spoil what can be.
   void leave_out_small_K(const CalibrationInput& input) {
-    const auto at =
-        std::find_if(of_fitted_.begin(), of_fitted_.end(), [](const Quantity* q) { return q->figure == Figure::K; });
-    if (at == of_fitted_.end() || std::find(names_.begin(), names_.end(), "radius") != names_.end()) return;
-    const std::size_t k = static_cast<std::size_t>(at - of_fitted_.begin());
-    const Target target = fitted_[k];
-    const Quantity* const quantity = *at;
+    auto& [of_fitted, of_held_out] = quantities_;
+    const auto at = std::find_if(of_fitted.begin(), of_fitted.end(),
+                                 [](const Quantity* q) { return q->measured == &SoilParameters::K; });
+    if (at == of_fitted.end() || fits("radius")) return;
+    const auto target = targets_.fitted.begin() + (at - of_fitted.begin());
     const double least = kLeastK * 2.0 * grains_.radius;
-    if (target.y.front() + 2.0 * target.sigma.front() >= least) return;
+    if (target->y.front() + 2.0 * target->sigma.front() >= least) return;
     notes_.push_back(
-        fmt::format("{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} "
-                    "mm, {:g} of the "
-                    "diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm "
-                    "or less could reach it",
-                    target.name, 1e3 * target.y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK,
-                    1e3 * target.y.front() / kLeastK));
-    fitted_.erase(fitted_.begin() + static_cast<std::ptrdiff_t>(k)), of_fitted_.erase(at);
-    held_out_.push_back(target), of_held_out_.push_back(quantity);
-    if (fitted_.empty())
+        fmt::format("{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} mm, {:g} of "
+                    "the diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm or "
+                    "less could reach it",
+                    target->name, 1e3 * target->y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK,
+                    1e3 * target->y.front() / kLeastK));
+    targets_.held_out.push_back(*target), of_held_out.push_back(*at);
+    targets_.fitted.erase(target), of_fitted.erase(at);
+    if (targets_.fitted.empty())
       throw input_error(input.study.string(), "targets", "has no target that can be reached: " + notes_.back());
   }
 
-  std::vector<std::string> names_;
-  std::filesystem::path start_;
   Settings set_;
   TestSettings tests_;
   DemOptions grains_;
   std::string state_;
-  std::vector<const Quantity*> of_fitted_, of_held_out_;
-  std::vector<std::string> notes_;
+  PerSet<std::vector<const Quantity*>> quantities_;
   std::map<std::vector<double>, Prediction> known_;  // all figures, of this process
 };
 
 }  // namespace
 
-std::span<const ParameterRule> grain_parameters() { return kRules; }
-
-std::vector<TargetQuantity> grain_quantities() {
-  std::vector<TargetQuantity> all;
-  for (const Quantity& q : kQuantities) all.push_back({q.name, q.least, q.most});
-  return all;
-}
-
-std::unique_ptr<CalibrationModel> read_grain_calibration(CalibrationInput& input) {
-  return std::make_unique<GrainModel>(input);
+CalibrationKind grain_kind() {
+  CalibrationKind kind{"grains", "a scenario with grains", kRules, read_model<GrainModel>, optimize_noisy,
+                       true,     {"set", "tests"}};
+  for (const Quantity& q : kQuantities) kind.quantities.push_back({q.name, q.least, q.most});
+  return kind;
 }
 
 }  // namespace furrow::calibrate

@@ -1,6 +1,11 @@
-#include "nodes/calibrate/handling.hpp"
-#include "nodes/calibrate/files.hpp"
-
+// The kind of calibration that fits the Magic Formula of a tire property file (.tir) to tables of `furrow sweep` on
+// hard ground (tire/handling/sweep_table.hpp): longitudinal slip, slip angle, camber and load against forces and
+// moments.
+//
+// A target names a table and what of it is compared: "of": "fx", "fy", "mx", "my", "mz" (ISO-W axes), "loaded_radius",
+// or "rolling_radius" of the rows that roll freely. Parameters are coefficients by their names in the file. In addition
+// to the tire file, which names them, the calibration leaves a fitted .tir and the tables in the layout of TYDEX
+// (.tdx); both state the ranges of slips and load that were fitted, and the residuals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +17,9 @@
 
 #include <fmt/format.h>
 
+#include "nodes/calibrate/kinds.hpp"
+#include "nodes/calibrate/smooth.hpp"
+#include "nodes/calibrate/statistics.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
@@ -23,7 +31,7 @@
 namespace furrow::calibrate {
 namespace {
 
-using tire::handling::MagicFormula;
+using tire::handling::HandlingForces, tire::handling::MagicFormula;
 using tire::handling::SweepPoint;
 
 constexpr double kMost = 1e9;          // of any coefficient's size
@@ -39,8 +47,13 @@ struct Quantity {
   double (*said)(const MagicFormula& tire, const SweepPoint& point);
 };
 
-tire::handling::HandlingForces forces(const MagicFormula& tire, const SweepPoint& p) {
-  return tire::handling::evaluate_formula(tire, p.state);
+template <double HandlingForces::*kForce>
+double measured(const SweepPoint& p) {
+  return p.forces.*kForce;
+}
+template <double HandlingForces::*kForce>
+double said(const MagicFormula& tire, const SweepPoint& p) {
+  return tire::handling::evaluate_formula(tire, p.state).*kForce;
 }
 
 /// R_l = R_0 − ρ with F_z = C_z ρ/cos γ (tire/handling/rolling_contact.hpp).
@@ -48,23 +61,20 @@ double loaded_radius(const MagicFormula& tire, const SweepPoint& p) {
   return tire.dimension.unloaded_radius - p.state.load * std::cos(p.state.camber) / tire.vertical.vertical_stiffness;
 }
 
+double rolling_radius(const MagicFormula& tire, const SweepPoint& p) {
+  return tire::handling::rolling_radius(tire, p.state.load / tire.vertical.vertical_stiffness);
+}
+
 constexpr auto kQuantities = std::to_array<Quantity>({
-    {"fx", "Fx_N", "N", false, [](const SweepPoint& p) { return p.forces.fx; },
-     [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).fx; }},
-    {"fy", "Fy_N", "N", false, [](const SweepPoint& p) { return p.forces.fy; },
-     [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).fy; }},
-    {"mx", "Mx_Nm", "N m", false, [](const SweepPoint& p) { return p.forces.mx; },
-     [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).mx; }},
-    {"my", "My_Nm", "N m", false, [](const SweepPoint& p) { return p.forces.my; },
-     [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).my; }},
-    {"mz", "Mz_Nm", "N m", false, [](const SweepPoint& p) { return p.forces.mz; },
-     [](const MagicFormula& t, const SweepPoint& p) { return forces(t, p).mz; }},
+    {"fx", "Fx_N", "N", false, measured<&HandlingForces::fx>, said<&HandlingForces::fx>},
+    {"fy", "Fy_N", "N", false, measured<&HandlingForces::fy>, said<&HandlingForces::fy>},
+    {"mx", "Mx_Nm", "N m", false, measured<&HandlingForces::mx>, said<&HandlingForces::mx>},
+    {"my", "My_Nm", "N m", false, measured<&HandlingForces::my>, said<&HandlingForces::my>},
+    {"mz", "Mz_Nm", "N m", false, measured<&HandlingForces::mz>, said<&HandlingForces::mz>},
     {"loaded_radius", "loaded_radius_m", "m", false, [](const SweepPoint& p) { return p.loaded_radius; },
      loaded_radius},
     {"rolling_radius", "rolling_radius_m", "m", true, [](const SweepPoint& p) { return p.rolling_radius; },
-     [](const MagicFormula& t, const SweepPoint& p) {
-       return tire::handling::rolling_radius(t, p.state.load / t.vertical.vertical_stiffness);
-     }},
+     rolling_radius},
 });
 
 /// Bounds where a study gives none: those of usual tires for what has usual values.
@@ -97,10 +107,8 @@ double* coefficient(MagicFormula& tire, const std::string& name) {
   return found;
 }
 
-/// Numbers of a target: which quantity of which rows.
+/// Which quantity of which rows a target compares.
 struct Rows {
-  std::string target;  // its name
-  std::filesystem::path data;
   const Quantity* quantity = nullptr;
   std::vector<SweepPoint> points;
 };
@@ -110,16 +118,15 @@ std::string label_of(const SweepPoint& p) {
                      p.state.camber);
 }
 
-class HandlingModel final : public CalibrationModel, public LeavesFiles {
+class HandlingModel final : public CalibrationModel {
  public:
-  explicit HandlingModel(CalibrationInput& input)
-      : names_(input.parameters), start_(input.start), stem_(input.start.stem().string() + "_fitted") {
+  explicit HandlingModel(CalibrationInput& input) : CalibrationModel(input), stem_(start_.stem().string() + "_fitted") {
     if (!tire::is_tir(start_))
       throw input_error(input.study.string(), "start",
                         fmt::format("is '{}', expected a tire property file (.tir)", start_.filename().string()));
     formula_ = tire::handling::read_tir(start_);
-    read(input.targets, input.study, fitted_, of_fitted_);
-    read(input.held_out, input.study, held_out_, of_held_out_);
+    for (const TargetSet set : kBothSets)
+      for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);
   }
 
   std::vector<double> start_values() const override {
@@ -132,33 +139,33 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
   Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall&) override {
     const MagicFormula tire = with(values);
     Prediction found;
-    for (const Rows& rows : set == TargetSet::fitted ? of_fitted_ : of_held_out_)
+    for (const Rows& rows : rows_[set])
       for (const SweepPoint& point : rows.points) {
         found.values.push_back(rows.quantity->said(tire, point));
-        if (std::isfinite(found.values.back())) continue;
-        found.values.clear();
-        found.problem = "the formula has no value at " + label_of(point);
-        return found;
+        if (!std::isfinite(found.values.back())) return {{}, {}, "the formula has no value at " + label_of(point)};
       }
     return found;
   }
 
   nlohmann::ordered_json fitted_file(std::span<const double>, const std::string& source) const override {
-    nlohmann::ordered_json file{
-        {"format_version", 1}, {"model", "handling"}, {"source", source}, {"tir", stem_ + ".tir"}};
-    return file;
+    return {{"format_version", 1}, {"model", "handling"}, {"source", source}, {"tir", stem_ + ".tir"}};
   }
 
   std::vector<ResultFile> further_files(std::span<const double> values, const std::string& source) const override {
     const MagicFormula tire = ranged(with(values));
     std::vector<std::string> comments = lines_of(source);
-    comments.push_back("fitted ranges: " + ranges_text(tire));
-    for (std::size_t k = 0; k < of_fitted_.size(); ++k) comments.push_back(residual_text(tire, of_fitted_[k]));
+    comments.push_back(fmt::format(
+        "fitted ranges: slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N",
+        tire.slip.most, tire.slip_angle.most, tire.camber.most, tire.load.least, tire.load.most));
     std::vector<SweepPoint> points;
     std::set<std::filesystem::path> tables;
-    for (const Rows& rows : of_fitted_)
-      if (!rows.quantity->free_rolling && tables.insert(rows.data).second)
+    for (std::size_t k = 0; k < rows_.fitted.size(); ++k) {
+      const Rows& rows = rows_.fitted[k];
+      const Target& target = targets_.fitted[k];
+      comments.push_back(residual_text(tire, target, rows));
+      if (!rows.quantity->free_rolling && tables.insert(target.data).second)
         points.insert(points.end(), rows.points.begin(), rows.points.end());
+    }
     return {{stem_ + ".tir", tire::handling::tir_text(tire, comments)},
             {stem_ + ".tdx", tire::handling::tydex_text(stem_, tire, points, comments)}};
   }
@@ -177,7 +184,7 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
       range.least = first ? value : std::min(range.least, value);
       range.most = first ? value : std::max(range.most, value);
     };
-    for (const Rows& rows : of_fitted_)
+    for (const Rows& rows : rows_.fitted)
       for (const SweepPoint& p : rows.points) {
         take(tire.slip, p.state.slip), take(tire.slip_angle, p.state.slip_angle);
         take(tire.camber, p.state.camber), take(tire.load, p.state.load);
@@ -200,83 +207,56 @@ class HandlingModel final : public CalibrationModel, public LeavesFiles {
     return lines;
   }
 
-  static std::string ranges_text(const MagicFormula& t) {
-    return fmt::format("slip to {:.3g}, slip angle to {:.3g} rad, camber to {:.3g} rad, load {:.0f} to {:.0f} N",
-                       t.slip.most, t.slip_angle.most, t.camber.most, t.load.least, t.load.most);
-  }
-
-  static std::string residual_text(const MagicFormula& tire, const Rows& rows) {
-    double squares = 0.0, largest = 0.0, peak = 0.0;
-    for (const SweepPoint& p : rows.points) {
-      const double measured = rows.quantity->measured(p), residual = rows.quantity->said(tire, p) - measured;
-      squares += residual * residual;
-      largest = std::max(largest, std::abs(residual));
-      peak = std::max(peak, std::abs(measured));
-    }
+  static std::string residual_text(const MagicFormula& tire, const Target& target, const Rows& rows) {
+    std::vector<double> said;
+    for (const SweepPoint& point : rows.points) said.push_back(rows.quantity->said(tire, point));
+    const Goodness g = goodness(target, said);
     return fmt::format(
-        "residual of {}: root mean square {:.3g} {}, largest {:.3g} {} of a peak of {:.4g} {}, {} points", rows.target,
-        std::sqrt(squares / static_cast<double>(rows.points.size())), rows.quantity->unit, largest, rows.quantity->unit,
-        peak, rows.quantity->unit, rows.points.size());
+        "residual of {0}: root mean square {1:.3g} {4}, largest {2:.3g} {4} of a peak of {3:.4g} {4}, {5} points",
+        target.name, g.root_mean_square, g.largest_error, g.peak, rows.quantity->unit, said.size());
   }
 
-  static const Quantity& quantity_of(OrderedJsonReader& reader) {
-    const std::string name = reader.text("of");
-    std::vector<std::string> known;
-    for (const Quantity& quantity : kQuantities) {
-      if (quantity.name == name) return quantity;
-      known.emplace_back(quantity.name);
+  void read(OrderedJsonReader& reader, const std::filesystem::path& study, TargetSet set) {
+    TargetKeys keys = read_target_keys(reader, study);
+    Target& target = keys.target;
+    const std::string of = reader.text("of");
+    Rows rows;
+    rows.quantity = &entry_named(kQuantities, of,
+                                 [&](const std::string& what) { return reader.wrong("of", "'" + of + "' " + what); });
+    if (!reader.given("name")) target.name += "_" + of;
+    reader.finish();
+    for (const SweepPoint& point : tire::handling::read_sweep_table(target.data)) {
+      if (rows.quantity->free_rolling && !point.rolls_freely) continue;
+      rows.points.push_back(point);
+      target.x.push_back(static_cast<double>(rows.points.size()));
+      target.y.push_back(rows.quantity->measured(point));
+      target.labels.push_back(label_of(point));
     }
-    reader.fail("of", fmt::format("is '{}', expected {}", name, one_of(known)));
+    target.what = fmt::format("{} of {} rows", of, rows.points.size());
+    target.x_name = "row", target.y_name = rows.quantity->column;
+    set_sigma(keys, {});
+    target.state = fmt::format("handling {} {}", of, file_hash(target.data));
+    targets_[set].push_back(target);
+    rows_[set].push_back(std::move(rows));
   }
 
-  void read(std::vector<OrderedJsonReader>& readers, const std::filesystem::path& study, std::vector<Target>& targets,
-            std::vector<Rows>& all) {
-    for (OrderedJsonReader& reader : readers) {
-      TargetKeys keys = read_target_keys(reader, study);
-      Target& target = keys.target;
-      Rows rows;
-      rows.quantity = &quantity_of(reader);
-      if (!reader.given("name")) target.name += "_" + std::string(rows.quantity->name);
-      reader.finish();
-      for (const SweepPoint& point : tire::handling::read_sweep_table(target.data)) {
-        if (rows.quantity->free_rolling && !point.rolls_freely) continue;
-        rows.points.push_back(point);
-        target.x.push_back(static_cast<double>(rows.points.size()));
-        target.y.push_back(rows.quantity->measured(point));
-        target.labels.push_back(label_of(point));
-      }
-      target.what = fmt::format("{} of {} rows", rows.quantity->name, rows.points.size());
-      target.x_name = "row", target.y_name = rows.quantity->column;
-      rows.target = target.name, rows.data = target.data;
-      set_sigma(keys, {});
-      target.state = fmt::format("handling {} {}", rows.quantity->name, file_hash(target.data));
-      targets.push_back(target);
-      all.push_back(std::move(rows));
-    }
-  }
-
-  std::vector<std::string> names_;
-  std::filesystem::path start_;
   std::string stem_;  // of the files that it leaves
   MagicFormula formula_;
-  std::vector<Rows> of_fitted_, of_held_out_;
+  PerSet<std::vector<Rows>> rows_;
 };
+
+std::vector<ParameterRule> rules_of_coefficients() {
+  std::vector<ParameterRule> all;
+  const MagicFormula none;
+  visit_coefficients([&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); }, none);
+  return all;
+}
 
 }  // namespace
 
-std::span<const ParameterRule> handling_parameters() {
-  static const std::vector<ParameterRule> rules = [] {
-    std::vector<ParameterRule> all;
-    const MagicFormula none;
-    visit_coefficients([&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); },
-                       none);
-    return all;
-  }();
-  return rules;
-}
-
-std::unique_ptr<CalibrationModel> read_handling_calibration(CalibrationInput& input) {
-  return std::make_unique<HandlingModel>(input);
+CalibrationKind handling_kind() {
+  static const std::vector<ParameterRule> rules = rules_of_coefficients();
+  return {"handling", "a tire property file (.tir)", rules, read_model<HandlingModel>, optimize_smooth};
 }
 
 }  // namespace furrow::calibrate

@@ -27,15 +27,34 @@ double Parameter::slope(double share) const {
   return logarithmic ? off_scale(share) * std::log(upper / lower) : upper - lower;
 }
 
+std::size_t points_of(const std::vector<Target>& targets) {
+  std::size_t points = 0;
+  for (const Target& target : targets) points += target.y.size();
+  return points;
+}
+
+bool CalibrationModel::fits(std::string_view name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
+bool takes(OrderedJsonReader& reader, const std::string& key) {
+  reader.skip(key);
+  return reader.given(key);
+}
+
+std::string target_name(OrderedJsonReader& reader, const std::string& otherwise) {
+  const std::string name = reader.text_or("name", otherwise);
+  if (name.empty() || name.find_first_of(",\"") != std::string::npos)
+    reader.fail("name", "expected a name without commas and quotes");
+  return name;
+}
+
 TargetKeys read_target_keys(OrderedJsonReader& reader, const std::filesystem::path& study) {
   TargetKeys keys;
   keys.target.data = find_file(reader.text("data"), reader.full("data"), study);
-  keys.target.name = reader.text_or("name", keys.target.data.stem().string());
-  if (keys.target.name.empty() || keys.target.name.find_first_of(",\"") != std::string::npos)
-    reader.fail("name", "expected a name without commas and quotes");
-  reader.skip("sigma"), reader.skip("weight");
-  if (reader.has("sigma")) keys.sigma = reader.positive("sigma");
-  if (reader.has("weight")) keys.weight = reader.positive("weight");
+  keys.target.name = target_name(reader, keys.target.data.stem().string());
+  if (takes(reader, "sigma")) keys.sigma = reader.positive("sigma");
+  if (takes(reader, "weight")) keys.weight = reader.positive("weight");
   return keys;
 }
 

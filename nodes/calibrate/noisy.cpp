@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include "nodes/calibrate/budget.hpp"
 #include "nodes/calibrate/surrogate.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"

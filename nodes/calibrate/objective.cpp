@@ -18,7 +18,7 @@ std::string state_of(const std::vector<Target>& held_out) {
     hash.add(target.state), hash.add("\n");
     hash.add(std::span<const double>(target.x));
   }
-  return std::string(kTargetSets[1]) + " " + hash.hex();
+  return std::string(kSetNames.held_out) + " " + hash.hex();
 }
 
 }  // namespace
@@ -50,12 +50,11 @@ std::vector<double> Objective::start() const {
 
 const Prediction& Objective::predict(std::span<const double> shares, TargetSet set) {
   const std::vector<double> at = values(shares);
-  const std::string state = set == TargetSet::fitted ? std::string(kTargetSets[0]) : held_out_state_;
+  const std::string state = set == TargetSet::fitted ? std::string(kSetNames.fitted) : held_out_state_;
   ++asked_;
   if (const Prediction* known = table_.find(state, at)) return *known;
   Prediction found = calibration_.model->predict(at, set, progress_);
-  std::size_t points = 0;
-  for (const Target& target : calibration_.model->targets(set)) points += target.y.size();
+  const std::size_t points = points_of(calibration_.model->targets(set));
   FURROW_ASSERT(!found.problem.empty() || found.values.size() == points, found.values.size(), points);
   ++computed_;
   return table_.add(state, at, std::move(found));

@@ -5,9 +5,9 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "nodes/calibrate/calibrate.hpp"
-#include "nodes/calibrate/files.hpp"
 #include "nodes/calibrate/reach.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_number.hpp"
@@ -116,47 +116,34 @@ Json identifiability_json(const Calibration& calibration, const Confidence& conf
 
 std::string fit_table(const Calibration& calibration, const CalibrationResults& results) {
   std::string text = "target,set,label,x,data,sigma,model\n";
-  for (const TargetSet set : {TargetSet::fitted, TargetSet::held_out}) {
-    const Prediction& prediction = set == TargetSet::fitted ? results.fitted : results.held_out;
+  for (const TargetSet set : kBothSets) {
+    const std::vector<double>& model = set == TargetSet::fitted ? results.fitted.values : results.held_out.values;
     std::size_t at = 0;
     for (const Target& target : calibration.model->targets(set))
       for (std::size_t k = 0; k < target.y.size(); ++k, ++at)
-        fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{:.12g},{:.6g},{}\n", target.name,
-                       kTargetSets[static_cast<std::size_t>(set)], target.labels.empty() ? "" : target.labels[k],
-                       target.x[k], target.y[k], target.sigma[k],
-                       at < prediction.values.size() ? fmt::format("{:.12g}", prediction.values[at]) : "");
+        fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{:.12g},{:.6g},{}\n", target.name, kSetNames[set],
+                       target.labels.empty() ? "" : target.labels[k], target.x[k], target.y[k], target.sigma[k],
+                       at < model.size() ? fmt::format("{:.12g}", model[at]) : "");
   }
-  return text;
-}
-
-std::string list_of(const std::vector<Target>& targets) {
-  std::string text;
-  for (const Target& target : targets)
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", target.name, target.what);
   return text;
 }
 
 /// Where the values of the fitted file come from.
 std::string source_text(const Calibration& calibration, const CalibrationResults& results, const Json& summary) {
-  std::string names;
-  for (const Parameter& p : calibration.parameters) names += (names.empty() ? "" : ", ") + p.name;
-  const std::vector<Target>& fitted = calibration.model->targets(TargetSet::fitted);
-  if (!results.optimum.reach.empty()) {
-    std::string noisy = fmt::format(
-        "furrow calibrate {} of {} fitted {}: {}; {} evaluations, {:.2g} minutes of processor time. All "
-        "other values are those of {}",
-        FURROW_VERSION, calibration.file.filename().string(), names, reach_text(fitted, results.optimum.reach),
-        results.optimum.evaluations, results.processor_time / 60.0, calibration.start.filename().string());
-    for (const std::string& warning : calibration_warnings(calibration, results)) noisy += ". Note: " + warning;
-    return noisy;
-  }
-  std::string text = fmt::format(
-      "furrow calibrate {} of {} fitted {} to {}: R² {:.5f}, largest error {:.2g} % of the peak. All other "
-      "values are those of {}",
-      FURROW_VERSION, calibration.file.filename().string(), names,
-      list_of(calibration.model->targets(TargetSet::fitted)),
-      joint_r_squared(calibration.model->targets(TargetSet::fitted), results.fitted.values),
-      100.0 * summary["fitted"]["largest_error_of_peak"].get<double>(), calibration.start.filename().string());
+  const std::vector<Target>& targets = calibration.model->targets(TargetSet::fitted);
+  std::vector<std::string> names, fitted;
+  for (const Parameter& p : calibration.parameters) names.push_back(p.name);
+  for (const Target& target : targets) fitted.push_back(fmt::format("{} ({})", target.name, target.what));
+  const std::string how = results.optimum.known_errors
+                              ? fmt::format(": {}; {} evaluations, {:.2g} minutes of processor time",
+                                            reach_text(targets, results.optimum.reach), results.optimum.evaluations,
+                                            results.processor_time / 60.0)
+                              : fmt::format(" to {}: R² {:.5f}, largest error {:.2g} % of the peak",
+                                            fmt::join(fitted, ", "), joint_r_squared(targets, results.fitted.values),
+                                            100.0 * summary["fitted"]["largest_error_of_peak"].get<double>());
+  std::string text = fmt::format("furrow calibrate {} of {} fitted {}{}. All other values are those of {}",
+                                 FURROW_VERSION, calibration.file.filename().string(), fmt::join(names, ", "), how,
+                                 calibration.start.filename().string());
   for (const std::string& warning : calibration_warnings(calibration, results)) text += ". Note: " + warning;
   return text;
 }
@@ -201,9 +188,8 @@ void write_calibration(const Calibration& calibration, const CalibrationResults&
     file["measured"].update(measured_json(calibration.model->targets(TargetSet::fitted), results.fitted));
   write_whole_file(folder / "fit.csv", fit_table(calibration, results));
   write_whole_file(folder / calibration.result, file.dump(2) + "\n");
-  if (const auto* leaves = dynamic_cast<const LeavesFiles*>(calibration.model.get()))
-    for (const ResultFile& further : leaves->further_files(results.values, source))
-      write_whole_file(folder / further.name, further.text);
+  for (const ResultFile& further : calibration.model->further_files(results.values, source))
+    write_whole_file(folder / further.name, further.text);
   write_whole_file(folder / kCalibration, summary.dump(2) + "\n");
 }
 

@@ -1,5 +1,11 @@
-#include "nodes/calibrate/press.hpp"
-
+// Kinds of calibration that press a tire: its file's values from load–deflection curves on plates and cleats.
+//
+// A target names a CSV file with the columns deflection_m and force_N, as press.csv of `furrow press` has them, and
+// maybe sigma_N, the force's standard error. Lines of unloading are left out, and those without deflection. A
+// prediction is what `furrow press` gives for the fitted file, to the tolerance of its solver: both go through the
+// tire's reader and its static test.
+//
+// The parameter `softening` of a ring is k₂/√(3 k₁k₃), from 0 to 1, where the sidewall's force would begin to fall.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "nodes/calibrate/kinds.hpp"
+#include "nodes/calibrate/smooth.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/csv_file.hpp"
@@ -24,104 +32,54 @@ using nlohmann::json;
 
 constexpr double kMostDeflection = 0.2;  // m, as of `furrow press`
 constexpr double kMostPressure = 1e8;    // Pa
-
-/// A parameter and its place in the tire's file.
-struct Place {
-  const char* parameter;
-  const char* pointer;
-  std::optional<double> otherwise = {};  // where a file may leave it out
-};
+constexpr const char* kSoftening = "softening";
 
 /// What a model whose tire is pressed needs to be told.
 struct PressKind {
   const char* model;  // of the tire's file
   bool has_pressure;  // another inflation pressure is the same tire
-  std::span<const Place> places;
+  std::span<const ParameterRule> rules;
   std::unique_ptr<tire::TireSpec> (*read)(const json& file, const tire::TireOptions& options);
-  /// After all places were written: parameters that are none of the file's.
-  void (*derive)(json& file, const std::vector<std::string>& names, std::span<const double> values);
-  double (*derived_start)(const json& file, const std::string& name);
   double (*most_deflection)(const json& file);  // that the tire can be pressed by, m
   const char* most_text;                        // what that is
 };
 
-// ---- flexible ring
-
-constexpr auto kRingPlaces = std::to_array<Place>({{"bending", "/bending"},
-                                                   {"shear", "/shear"},
-                                                   {"tangential", "/tangential"},
-                                                   {"sidewall_1", "/sidewall/0"},
-                                                   {"sidewall_2", "/sidewall/1"},
-                                                   {"sidewall_3", "/sidewall/2"},
-                                                   {"air_share", "/air_share"},
-                                                   {"tension_share", "/tension_share", 0.0},
-                                                   {"width", "/width"}});
 const auto kRingRules = std::to_array<ParameterRule>({
-    {"bending", "N/m", 1e-9, 1e12, 1.0, 1e6, true},
-    {"shear", "N/m", 1e-9, 1e12, 1e2, 1e8, true},
-    {"tangential", "N/m", 1e-9, 1e12, 1e3, 1e7, true},
-    {"sidewall_1", "N/m", 1e-9, 1e12, 1e4, 1e8, true},
-    {"sidewall_2", "N/m²", 0.0, 1e15, 0.0, 1e9, false},
-    {"sidewall_3", "N/m³", 0.0, 1e18, 1e4, 1e11, true},
-    {"softening", "-", 0.0, 1.0, 0.0, 1.0, false},
-    {"air_share", "-", 1e-6, 1.0, 0.05, 1.0, false},
-    {"tension_share", "-", 0.0, 1.0, 0.0, 1.0, false},
-    {"width", "m", 1e-3, 5.0, 0.05, 0.5, false},
+    {"bending", "N/m", 1e-9, 1e12, 1.0, 1e6, true, "/bending"},
+    {"shear", "N/m", 1e-9, 1e12, 1e2, 1e8, true, "/shear"},
+    {"tangential", "N/m", 1e-9, 1e12, 1e3, 1e7, true, "/tangential"},
+    {"sidewall_1", "N/m", 1e-9, 1e12, 1e4, 1e8, true, "/sidewall/0"},
+    {"sidewall_2", "N/m²", 0.0, 1e15, 0.0, 1e9, false, "/sidewall/1"},
+    {"sidewall_3", "N/m³", 0.0, 1e18, 1e4, 1e11, true, "/sidewall/2"},
+    {kSoftening, "-", 0.0, 1.0, 0.0, 1.0, false},
+    {"air_share", "-", 1e-6, 1.0, 0.05, 1.0, false, "/air_share"},
+    {"tension_share", "-", 0.0, 1.0, 0.0, 1.0, false, "/tension_share"},
+    {"width", "m", 1e-3, 5.0, 0.05, 0.5, false, "/width"},
 });
-
-// k₂ = s √(3 k₁k₃)
-void derive_softening(json& file, const std::vector<std::string>& names, std::span<const double> values) {
-  const auto at = std::find(names.begin(), names.end(), "softening");
-  if (at == names.end()) return;
-  json& k = file["sidewall"];
-  // A hair below 1: the reader's own product may round the other way.
-  const double s = std::min(values[static_cast<std::size_t>(at - names.begin())], 1.0 - 1e-12);
-  k[1] = s * std::sqrt(3.0 * k[0].get<double>() * k[2].get<double>());
-}
-
-double start_of_softening(const json& file, const std::string&) {
-  const json& k = file["sidewall"];
-  const double product = 3.0 * k[0].get<double>() * k[2].get<double>();
-  return product > 0.0 ? std::min(k[1].get<double>() / std::sqrt(product), 1.0) : NAN;
-}
-
-constexpr PressKind kRing{
+const PressKind kRing{
     "ring",
     true,
-    kRingPlaces,
+    kRingRules,
     tire::read_ring,
-    derive_softening,
-    start_of_softening,
     [](const json& file) { return tire::kMostRingDeflection * tire::read_ring_file(file, "").params.radius; },
     "a quarter of the tire's radius"};
 
-// ---- planar finite elements
-
-constexpr auto kPlanarPlaces = std::to_array<Place>({{"young_modulus", "/tire/young_modulus"},
-                                                     {"poisson_ratio", "/tire/poisson_ratio"},
-                                                     {"disc_young_modulus", "/disc/young_modulus"},
-                                                     {"contact_stiffness", "/contact_stiffness"}});
 const auto kPlanarRules = std::to_array<ParameterRule>({
-    {"young_modulus", "Pa", 1.0, 1e12, 1e4, 1e8, true},
-    {"poisson_ratio", "-", 0.0, 0.499, 0.0, 0.49, false},
-    {"disc_young_modulus", "Pa", 1.0, 1e13, 1e6, 1e11, true},
-    {"contact_stiffness", "N/m²", 1.0, 1e12, 1e5, 1e9, true},
+    {"young_modulus", "Pa", 1.0, 1e12, 1e4, 1e8, true, "/tire/young_modulus"},
+    {"poisson_ratio", "-", 0.0, 0.499, 0.0, 0.49, false, "/tire/poisson_ratio"},
+    {"disc_young_modulus", "Pa", 1.0, 1e13, 1e6, 1e11, true, "/disc/young_modulus"},
+    {"contact_stiffness", "N/m²", 1.0, 1e12, 1e5, 1e9, true, "/contact_stiffness"},
 });
-
-constexpr PressKind kPlanar{"planar",
-                            false,
-                            kPlanarPlaces,
-                            tire::read_planar,
-                            nullptr,
-                            nullptr,
-                            [](const json& file) {
-                              const auto& size = tire::read_planar_file(file, "").params.size;
-                              return tire::kMostPlanarDeflection * (size.radius - size.rim_radius);
-                            },
-                            "0.6 of the tire's height over its rim"};
+const PressKind kPlanar{"planar",
+                        false,
+                        kPlanarRules,
+                        tire::read_planar,
+                        [](const json& file) {
+                          const auto& size = tire::read_planar_file(file, "").params.size;
+                          return tire::kMostPlanarDeflection * (size.radius - size.rim_radius);
+                        },
+                        "0.6 of the tire's height over its rim"};
 static_assert(tire::kMostRingDeflection == 0.25 && tire::kMostPlanarDeflection == 0.6, "as most_text says");
-
-// ---- both
 
 /// A target with what the tire is pressed on.
 struct PressTarget {
@@ -134,19 +92,19 @@ tire::PressObstacle obstacle_of(OrderedJsonReader& reader, std::string& what) {
   const std::string on = reader.text("on");
   if (on != "plate" && on != "cleat") reader.fail("on", "is '" + on + "', expected 'plate' or 'cleat'");
   for (const char* key : {"cleat_width", "cleat_height", "cleat_position"}) {
-    reader.skip(key);
-    if (on == "plate" && reader.has(key)) reader.fail(key, "is given on a plate, expected it with \"on\": \"cleat\"");
+    if (takes(reader, key) && on == "plate")
+      reader.fail(key, "is given on a plate, expected it with \"on\": \"cleat\"");
   }
   what = on;
   if (on == "plate") return obstacle;
   const auto within = [&](const char* key, double least, double most, double otherwise) {
-    const double value = reader.has(key) ? reader.number(key) : otherwise;
+    const double value = reader.given(key) ? reader.number(key) : otherwise;
     if (!(value > least && value <= most))
       reader.fail(key, fmt::format("is {} m, expected above {} up to {} m", number_text(value), number_text(least),
                                    number_text(most)));
     return value;
   };
-  if (!reader.has("cleat_width")) reader.fail("cleat_width", "is missing, expected the width of the cleat, m");
+  if (!reader.given("cleat_width")) reader.fail("cleat_width", "is missing, expected the width of the cleat, m");
   obstacle.width = within("cleat_width", 0.0, 1.0, 0.0);
   obstacle.height = within("cleat_height", 0.0, 0.2, 0.1);
   obstacle.position = within("cleat_position", -1.0, 1.0, 0.0);
@@ -197,46 +155,32 @@ std::vector<double> read_curve(Target& target, double most, const char* most_tex
 class PressModel final : public CalibrationModel {
  public:
   PressModel(const PressKind& kind, CalibrationInput& input)
-      : kind_(kind), names_(input.parameters), start_(input.start) {
-    file_ = load_json(input.start, "a tire file in JSON");
+      : CalibrationModel(input), kind_(kind), file_(load_json(start_, "a tire file in JSON")) {
     if (!file_.contains("model") || file_["model"] != kind.model)
-      throw input_error(input.start.string(), "model",
+      throw input_error(start_.string(), "model",
                         fmt::format("is not '{}', expected the file of such a tire in 'start' of {}", kind.model,
                                     input.study.string()));
-    tire::TireOptions options;
-    options.file = start_;
-    (void)kind_.read(file_, options);
-    most_deflection_ = kind_.most_deflection(file_);
-    require_one_of_two(input);
-    read(input.targets, input.study, fitted_, of_fitted_);
-    read(input.held_out, input.study, held_out_, of_held_out_);
+    (void)kind_.read(file_, options_for({}));
+    if (fits(kSoftening) && fits("sidewall_2"))
+      throw input_error(input.study.string(), std::string("parameters.") + kSoftening,
+                        "is given with sidewall_2, expected one of them: softening is k2/√(3 k1 k3)");
+    for (const TargetSet set : kBothSets)
+      for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);
   }
 
   std::vector<double> start_values() const override {
     std::vector<double> values;
-    for (const std::string& name : names_) {
-      const Place* place = place_of(name);
-      if (!place)
-        values.push_back(kind_.derived_start(file_, name));
-      else if (const json::json_pointer at(place->pointer); place->otherwise && !file_.contains(at))
-        values.push_back(*place->otherwise);
-      else
-        values.push_back(file_.at(at).get<double>());
-    }
+    for (const std::string& name : names_)  // a file may leave out a share that is 0
+      values.push_back(name == kSoftening ? softening() : file_.value(place_of(name), 0.0));
     return values;
   }
-
-  std::vector<std::string> notes() const override { return notes_; }
 
   Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) override {
     Prediction found;
     const json file = document(values);
     try {
-      for (const PressTarget& target : set == TargetSet::fitted ? of_fitted_ : of_held_out_) {
-        tire::TireOptions options;
-        options.file = start_;
-        if (target.pressure) options.pressure.knots = {{0.0, *target.pressure}};
-        const auto test = kind_.read(file, options)->static_test();
+      for (const PressTarget& target : presses_[set]) {
+        const auto test = kind_.read(file, options_for(target.pressure))->static_test();
         const tire::PressResults results = test->press(target.options, progress);
         for (std::size_t k = 1; k < results.loading.size(); ++k) found.values.push_back(results.loading[k].force);
       }
@@ -258,84 +202,93 @@ class PressModel final : public CalibrationModel {
   }
 
  private:
-  const Place* place_of(const std::string& name) const {
-    for (const Place& place : kind_.places)
-      if (name == place.parameter) return &place;
-    return nullptr;
+  tire::TireOptions options_for(std::optional<double> pressure) const {
+    tire::TireOptions options;
+    options.file = start_;
+    if (pressure) options.pressure.knots = {{0.0, *pressure}};
+    return options;
   }
 
-  void require_one_of_two(const CalibrationInput& input) const {
-    const auto fits = [&](const char* name) { return std::find(names_.begin(), names_.end(), name) != names_.end(); };
-    if (fits("softening") && fits("sidewall_2"))
-      throw input_error(input.study.string(), "parameters.softening",
-                        "is given with sidewall_2, expected one of them: softening is k2/√(3 k1 k3)");
+  json::json_pointer place_of(const std::string& name) const {
+    const auto rule =
+        std::find_if(kind_.rules.begin(), kind_.rules.end(), [&](const auto& r) { return r.name == name; });
+    return json::json_pointer(rule->place);
   }
 
-  void read(std::vector<OrderedJsonReader>& readers, const std::filesystem::path& study, std::vector<Target>& targets,
-            std::vector<PressTarget>& presses) {
-    for (OrderedJsonReader& reader : readers) {
-      TargetKeys keys = read_target_keys(reader, study);
-      Target& target = keys.target;
-      PressTarget press;
-      press.options.obstacle = obstacle_of(reader, target.what);
-      reader.skip("pressure");
-      if (reader.has("pressure")) {
-        if (!kind_.has_pressure)
-          reader.fail("pressure",
-                      fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
-        press.pressure = reader.not_negative("pressure");
-        if (*press.pressure > kMostPressure)
-          reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
-                                              number_text(kMostPressure)));
-        target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
-        for (const scenario::Problem& odd :
-             scenario::Schema::load().unusual({{"tire", {{"pressure", *press.pressure}}}}))
-          notes_.emplace_back(input_error(study.string(), reader.full("pressure"), odd.what).what());
-      }
-      reader.finish();
-      target.x_name = "deflection_m", target.y_name = "force_N";
-      set_sigma(keys, read_curve(target, most_deflection_, kind_.most_text));
-      press.options.unload = false;
-      press.options.at = target.x;
-      press.options.points = static_cast<int>(target.x.size());
-      press.options.deflection = target.x.back();
-      press.options.deflection_from = target.data.string(), press.options.deflection_key = "deflection_m";
-      press.options.load = std::numeric_limits<double>::infinity();
-      target.state =
-          fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g}", kind_.model, press.options.obstacle.height,
-                      press.options.obstacle.width, press.options.obstacle.position, press.pressure.value_or(-1.0));
-      targets.push_back(target);
-      presses.push_back(press);
+  // s = k₂/√(3 k₁k₃)
+  double softening() const {
+    const json& k = file_["sidewall"];
+    const double product = 3.0 * k[0].get<double>() * k[2].get<double>();
+    return product > 0.0 ? std::min(k[1].get<double>() / std::sqrt(product), 1.0) : NAN;
+  }
+
+  void read(OrderedJsonReader& reader, const std::filesystem::path& study, TargetSet set) {
+    TargetKeys keys = read_target_keys(reader, study);
+    Target& target = keys.target;
+    PressTarget press;
+    press.options.obstacle = obstacle_of(reader, target.what);
+    if (takes(reader, "pressure")) {
+      if (!kind_.has_pressure)
+        reader.fail("pressure",
+                    fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
+      press.pressure = reader.not_negative("pressure");
+      if (*press.pressure > kMostPressure)
+        reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
+                                            number_text(kMostPressure)));
+      target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
+      for (const scenario::Problem& odd : scenario::Schema::load().unusual({{"tire", {{"pressure", *press.pressure}}}}))
+        notes_.emplace_back(input_error(study.string(), reader.full("pressure"), odd.what).what());
     }
+    reader.finish();
+    target.x_name = "deflection_m", target.y_name = "force_N";
+    set_sigma(keys, read_curve(target, kind_.most_deflection(file_), kind_.most_text));
+    press.options.unload = false;
+    press.options.at = target.x;
+    press.options.points = static_cast<int>(target.x.size());
+    press.options.deflection = target.x.back();
+    press.options.deflection_from = target.data.string(), press.options.deflection_key = "deflection_m";
+    press.options.load = std::numeric_limits<double>::infinity();
+    target.state =
+        fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g}", kind_.model, press.options.obstacle.height,
+                    press.options.obstacle.width, press.options.obstacle.position, press.pressure.value_or(-1.0));
+    targets_[set].push_back(target);
+    presses_[set].push_back(press);
   }
 
   json document(std::span<const double> values) const {
     json file = file_;
     for (std::size_t k = 0; k < names_.size(); ++k)
-      if (const Place* place = place_of(names_[k])) file[json::json_pointer(place->pointer)] = values[k];
-    if (kind_.derive) kind_.derive(file, names_, values);
+      if (names_[k] != kSoftening) file[place_of(names_[k])] = values[k];
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (names_[k] != kSoftening) continue;
+      json& wall = file["sidewall"];
+      // A hair below 1: the reader's own product may round the other way.
+      const double s = std::min(values[k], 1.0 - 1e-12);
+      wall[1] = s * std::sqrt(3.0 * wall[0].get<double>() * wall[2].get<double>());
+    }
     return file;
   }
 
   const PressKind& kind_;
-  std::vector<std::string> names_;
-  std::filesystem::path start_;
   json file_;
-  double most_deflection_ = 0.0;  // m
-  std::vector<std::string> notes_;
-  std::vector<PressTarget> of_fitted_, of_held_out_;
+  PerSet<std::vector<PressTarget>> presses_;
 };
 
 }  // namespace
 
-std::span<const ParameterRule> ring_parameters() { return kRingRules; }
-std::span<const ParameterRule> planar_parameters() { return kPlanarRules; }
-
-std::unique_ptr<CalibrationModel> read_ring_calibration(CalibrationInput& input) {
-  return std::make_unique<PressModel>(kRing, input);
+CalibrationKind ring_kind() {
+  return {"ring", "a tire file", kRingRules,
+          [](CalibrationInput& input) -> std::unique_ptr<CalibrationModel> {
+            return std::make_unique<PressModel>(kRing, input);
+          },
+          optimize_smooth};
 }
-std::unique_ptr<CalibrationModel> read_planar_calibration(CalibrationInput& input) {
-  return std::make_unique<PressModel>(kPlanar, input);
+CalibrationKind planar_kind() {
+  return {"planar", "a tire file", kPlanarRules,
+          [](CalibrationInput& input) -> std::unique_ptr<CalibrationModel> {
+            return std::make_unique<PressModel>(kPlanar, input);
+          },
+          optimize_smooth};
 }
 
 }  // namespace furrow::calibrate

@@ -59,7 +59,6 @@ Json figures_json(const Target& target, const Prediction& prediction, std::size_
 
 std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const std::vector<Reach>& reach) {
   std::vector<std::string> warnings;
-  if (reach.empty()) return warnings;
   each_figure(fitted, [&](const Target& target, std::size_t k, std::size_t at) {
     const Reach& r = reach[at];
     const ReachState state = reach_state(r, target.y[k], target.sigma[k]);

@@ -1,5 +1,9 @@
-#include "nodes/calibrate/scm.hpp"
-
+// Kind `scm` of calibrations: empirical soil (terrain/scm) from the curves of plate and shear tests.
+//
+// A target names plate.csv or shear.csv of `furrow soil`, or a measured table of the same columns. Each width of a
+// plate and each normal stress of a shear test is a target of its own, named after both. Starts that neither the study
+// nor the soil file gives are the fits of `furrow soil` to the same curves (terrain/soil/fits.hpp). Parameters are keys
+// of the section `terrain`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "nodes/calibrate/kinds.hpp"
+#include "nodes/calibrate/smooth.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/fields.hpp"
@@ -46,46 +52,33 @@ struct Curve {
   std::vector<double> normal;  // under which is sheared, Pa
 };
 
-/// One test of a file: its points, by what tells curves apart.
-struct Points {
-  std::vector<double> x, y, sigma, normal;
+struct Point {
+  double x, y, sigma, normal;
 };
 
 class ScmModel final : public CalibrationModel {
  public:
-  explicit ScmModel(CalibrationInput& input) : names_(input.parameters), start_(input.start) {
-    const json soil = scenario::read_soil_material(input.start);
-    visit_fields(
-        [&](const Field& field, auto& value) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-            if (field.is(role::soil) && soil.contains(field.name) && soil.at(field.name).is_number()) {
-              value = soil.at(field.name).template get<double>();
-              given_.push_back(field.name);
-            }
-        },
-        soil_);
-    for (OrderedJsonReader& reader : input.targets) read(reader, input.study, fitted_, of_fitted_);
-    for (OrderedJsonReader& reader : input.held_out) read(reader, input.study, held_out_, of_held_out_);
+  explicit ScmModel(CalibrationInput& input) : CalibrationModel(input) {
+    const json soil = scenario::read_soil_material(start_);
+    for (const auto& [key, value] : soil.items())
+      if (double* const own = number_named(soil_, key); own && value.is_number())
+        *own = value.get<double>(), given_.push_back(key);
+    for (const TargetSet set : kBothSets)
+      for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);
   }
 
   std::vector<double> start_values() const override {
-    const std::map<std::string, double> fits = fits_of_curves();
+    std::map<std::string, double> starts = fits_of_curves();
+    for (const std::string& name : given_) starts[name] = *number_named(soil_, name);
     std::vector<double> values;
-    for (const std::string& name : names_) {
-      double value = NAN;
-      if (std::find(given_.begin(), given_.end(), name) != given_.end())
-        with(soil_, name, [&](double own) { value = own; });
-      else if (const auto fit = fits.find(name); fit != fits.end())
-        value = fit->second;
-      values.push_back(value);
-    }
+    for (const std::string& name : names_) values.push_back(starts.contains(name) ? starts[name] : NAN);
     return values;
   }
 
   Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) override {
     if (progress) progress("", 0.0);
     ScmOptions soil = soil_;
-    for (std::size_t k = 0; k < names_.size(); ++k) with(soil, names_[k], [&](double& own) { own = values[k]; });
+    for (std::size_t k = 0; k < names_.size(); ++k) *number_named(soil, names_[k]) = values[k];
     const terrain::scm::PressureLaw pressure{soil.bekker_k_c,
                                              soil.bekker_k_phi,
                                              soil.bekker_n,
@@ -95,7 +88,7 @@ class ScmModel final : public CalibrationModel {
     const terrain::scm::ShearLaw shear{soil.mohr_cohesion, std::tan(soil.mohr_friction_angle * kDegree), soil.janosi_k,
                                        kNoSlip};
     Prediction found;
-    const std::vector<Curve>& curves = set == TargetSet::fitted ? of_fitted_ : of_held_out_;
+    const std::vector<Curve>& curves = curves_[set];
     for (std::size_t i = 0; i < curves.size(); ++i) {
       const std::vector<double>& x = targets(set)[i].x;
       for (std::size_t k = 0; k < x.size(); ++k) {
@@ -129,19 +122,7 @@ class ScmModel final : public CalibrationModel {
   }
 
  private:
-  /// Calls visit(value) of the key.
-  template <class Options, class Visit>
-  static void with(Options& options, const std::string& name, Visit visit) {
-    visit_fields(
-        [&](const Field& field, auto& value) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-            if (name == field.name) visit(value);
-        },
-        options);
-  }
-
-  void read(OrderedJsonReader& reader, const std::filesystem::path& study, std::vector<Target>& targets,
-            std::vector<Curve>& curves) {
+  void read(OrderedJsonReader& reader, const std::filesystem::path& study, TargetSet set) {
     const TargetKeys keys = read_target_keys(reader, study);
     const std::string on = reader.text("on");
     if (on != "plate" && on != "shear") reader.fail("on", "is '" + on + "', expected 'plate' or 'shear'");
@@ -153,24 +134,32 @@ class ScmModel final : public CalibrationModel {
     for (const auto& [mark, points] : tests_of(keys.target.data, plate, reader, one)) {
       TargetKeys of_curve = keys;
       Target& target = of_curve.target;
-      target.name += plate ? fmt::format(" {:g} mm", 1e3 * mark) : fmt::format(" {:g} kPa", 1e-3 * mark);
-      target.what = plate ? fmt::format("plate, {:g} mm", 1e3 * mark) : fmt::format("shear, {:g} kPa", 1e-3 * mark);
+      const std::string size = plate ? fmt::format("{:g} mm", 1e3 * mark) : fmt::format("{:g} kPa", 1e-3 * mark);
+      target.name += " " + size;
+      target.what = on + ", " + size;
       target.x_name = plate ? "sinkage_m" : "travel_m";
       target.y_name = plate ? "pressure_Pa" : "stress_Pa";
-      target.x = points.x, target.y = points.y;
-      set_sigma(of_curve, points.sigma);
       target.state = fmt::format("scm {} {:.17g}", on, mark);
-      for (const double stress : points.normal) target.state += fmt::format(" {:.17g}", stress);
-      targets.push_back(target);
-      curves.push_back({plate, plate ? mark : 0.0, points.normal});
+      Curve curve{plate, plate ? mark : 0.0, {}};
+      std::vector<double> sigma;
+      for (const Point& point : points) {
+        target.x.push_back(point.x), target.y.push_back(point.y);
+        if (std::isfinite(point.sigma)) sigma.push_back(point.sigma);
+        if (plate) continue;
+        curve.normal.push_back(point.normal);
+        target.state += fmt::format(" {:.17g}", point.normal);
+      }
+      set_sigma(of_curve, sigma);
+      targets_[set].push_back(target);
+      curves_[set].push_back(curve);
     }
   }
 
   /// The points of a file by the plate's width or by the nominal normal stress, by rising x. As in `furrow soil` what
   /// has no sinkage or no pressure is left out.
   /// @param key of the target that says it where the file has no such column
-  static std::map<double, Points> tests_of(const std::filesystem::path& file, bool plate, OrderedJsonReader& reader,
-                                           const char* key) {
+  static std::map<double, std::vector<Point>> tests_of(const std::filesystem::path& file, bool plate,
+                                                       OrderedJsonReader& reader, const char* key) {
     const CsvFile table(file, plate ? "a plate-sinkage test in CSV" : "a shear test in CSV",
                         plate ? std::vector<std::string>{"sinkage_m", "pressure_Pa", "width_m", "seed", "sigma_Pa"}
                               : std::vector<std::string>{"travel_m", "shear_stress_Pa", "normal_stress_Pa",
@@ -188,38 +177,23 @@ class ScmModel final : public CalibrationModel {
       throw table.wrong(
           0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
     const double given = marked ? NAN : reader.positive(key);
-    std::map<double, Points> tests;
+    std::map<double, std::vector<Point>> tests;
     for (std::size_t row = 0; row < table.row_count(); ++row) {
-      const double at = table.number(row, x), value = table.number(row, y),
-                   which = marked ? table.number(row, mark) : given;
+      const auto number = [&](const char* column, double otherwise) {
+        return table.has(column) ? table.number(row, column) : otherwise;
+      };
+      const double which = marked ? number(mark, NAN) : given;
+      const Point point{number(x, NAN), number(y, NAN), number("sigma_Pa", NAN),
+                        std::max(number("normal_stress_Pa", which), 0.0)};
       if (!(which > 0.0)) throw table.wrong(row, fmt::format("{} is {}, expected above 0", mark, number_text(which)));
-      if (!(at > 0.0) || (plate && !(value > 0.0))) continue;
-      Points& points = tests[which];
-      points.x.push_back(at), points.y.push_back(value);
-      if (!plate)
-        points.normal.push_back(
-            std::max(table.has("normal_stress_Pa") ? table.number(row, "normal_stress_Pa") : which, 0.0));
-      if (!table.has("sigma_Pa")) continue;
-      points.sigma.push_back(table.number(row, "sigma_Pa"));
-      if (!(points.sigma.back() > 0.0))
-        throw table.wrong(row, "sigma_Pa is " + number_text(points.sigma.back()) + ", expected above 0");
+      if (!(point.x > 0.0) || (plate && !(point.y > 0.0))) continue;
+      if (point.sigma <= 0.0) throw table.wrong(row, "sigma_Pa is " + number_text(point.sigma) + ", expected above 0");
+      tests[which].push_back(point);
     }
     if (tests.empty()) throw input_error(file.string(), "", fmt::format("has no point with {} above 0", x));
-    for (auto& [unused, points] : tests) sort_points(points);
+    for (auto& [unused, points] : tests)
+      std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
     return tests;
-  }
-
-  static void sort_points(Points& points) {
-    std::vector<std::size_t> order(points.x.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return points.x[a] < points.x[b]; });
-    for (std::vector<double>* values : {&points.x, &points.y, &points.sigma, &points.normal}) {
-      if (values->empty()) continue;
-      std::vector<double> sorted;
-      for (const std::size_t k : order) sorted.push_back((*values)[k]);
-      *values = std::move(sorted);
-    }
   }
 
   /// What `furrow soil` makes of the same curves, as far as there are enough of them.
@@ -227,25 +201,28 @@ class ScmModel final : public CalibrationModel {
     std::map<std::string, double> fits;
     std::vector<terrain::soil::PlateCurve> plates;
     std::vector<double> normal, most, K;
-    for (std::size_t i = 0; i < of_fitted_.size(); ++i) {
-      const Target& target = fitted_[i];
-      if (of_fitted_[i].plate) {
-        if (target.x.size() >= 2) plates.push_back({of_fitted_[i].width, target.x, target.y});
+    const auto mean = [](const std::vector<double>& list) {
+      return std::accumulate(list.begin(), list.end(), 0.0) / static_cast<double>(list.size());
+    };
+    for (std::size_t i = 0; i < curves_.fitted.size(); ++i) {
+      const Target& target = targets_.fitted[i];
+      const Curve& curve = curves_.fitted[i];
+      if (curve.plate) {
+        if (target.x.size() >= 2) plates.push_back({curve.width, target.x, target.y});
       } else if (target.x.size() >= 3) {
         const terrain::soil::JanosiFit fit = terrain::soil::fit_janosi(target.x, target.y);
-        const std::vector<double>& stress = of_fitted_[i].normal;
-        normal.push_back(std::accumulate(stress.begin(), stress.end(), 0.0) / static_cast<double>(stress.size()));
-        most.push_back(fit.tau_max), K.push_back(fit.K);
+        normal.push_back(mean(curve.normal)), most.push_back(fit.tau_max), K.push_back(fit.K);
       }
     }
-    const auto differ = [](double a, double b) { return a != b; };
-    if (std::adjacent_find(plates.begin(), plates.end(),
-                           [](const auto& a, const auto& b) { return a.width != b.width; }) != plates.end()) {
+    const auto differ = [](const auto& list, auto of) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& one) { return of(one) != of(list.front()); });
+    };
+    if (differ(plates, [](const auto& plate) { return plate.width; })) {
       const terrain::soil::BekkerFit fit = terrain::soil::fit_bekker(plates);
       fits["bekker_k_c"] = fit.k_c, fits["bekker_k_phi"] = fit.k_phi, fits["bekker_n"] = fit.n;
     }
-    if (!K.empty()) fits["janosi_k"] = std::accumulate(K.begin(), K.end(), 0.0) / static_cast<double>(K.size());
-    if (std::adjacent_find(normal.begin(), normal.end(), differ) != normal.end()) {
+    if (!K.empty()) fits["janosi_k"] = mean(K);
+    if (differ(normal, [](double stress) { return stress; })) {
       const terrain::soil::CoulombFit fit = terrain::soil::fit_coulomb(normal, most);
       fits["mohr_cohesion"] = std::max(fit.cohesion.value, 0.0);
       fits["mohr_friction_angle"] = std::max(fit.phi.value, 0.0) / kDegree;
@@ -253,18 +230,13 @@ class ScmModel final : public CalibrationModel {
     return fits;
   }
 
-  std::vector<std::string> names_, given_;
-  std::filesystem::path start_;
+  std::vector<std::string> given_;
   ScmOptions soil_;
-  std::vector<Curve> of_fitted_, of_held_out_;
+  PerSet<std::vector<Curve>> curves_;
 };
 
 }  // namespace
 
-std::span<const ParameterRule> scm_parameters() { return kRules; }
-
-std::unique_ptr<CalibrationModel> read_scm_calibration(CalibrationInput& input) {
-  return std::make_unique<ScmModel>(input);
-}
+CalibrationKind scm_kind() { return {"scm", "a soil file", kRules, read_model<ScmModel>, optimize_smooth}; }
 
 }  // namespace furrow::calibrate

@@ -1,19 +1,20 @@
 #include "nodes/calibrate/study.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "nodes/calibrate/budget.hpp"
-#include "nodes/calibrate/explain.hpp"
+#include "nodes/calibrate/kinds.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_text.hpp"
-#include "protocol/files/nearest_words.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::calibrate {
@@ -27,24 +28,24 @@ constexpr int kMostEvaluations = 1000, kMostStarts = 1000, kMostTargets = 1000, 
 /// Names that results of a calibration have.
 constexpr const char* kTaken[] = {"calibration.json", "sweep.json", "summary.json", "scenario.json"};
 
-const CalibrationKind& kind_of(Reader& reader) {
-  const std::string name = reader.text("calibrate");
-  std::vector<std::string> known;
-  for (const CalibrationKind& kind : calibration_kinds()) {
-    if (kind.name == name) return kind;
-    known.emplace_back(kind.name);
-  }
-  reader.fail("calibrate", "'" + name + "' " + unknown_text(nearest_words(name, known), known));
-}
-
-const ParameterRule& rule_of(Reader& reader, const CalibrationKind& kind, const std::string& name) {
-  std::vector<std::string> known;
-  for (const ParameterRule& rule : kind.parameters()) {
-    if (rule.name == name) return rule;
-    known.push_back(rule.name);
-  }
-  reader.fail("parameters." + name, unknown_text(nearest_words(name, known), known));
-}
+constexpr auto kKeys = std::to_array<CalibrationKey>({
+    {"format_version", "Version of the form of this file: 1."},
+    {"description", "What the calibration is for, for people and 'furrow list'."},
+    {"calibrate", "Kind of the model that is fitted."},
+    {"start",
+     "File that the fit begins from, relative to the study, then to the files that come with furrow. What is "
+     "not fitted stays as it is there."},
+    {"set", "Settings of the scenario that grains begin from, by dotted path, as of a study.", false},
+    {"tests", "The virtual soil tests of each evaluation: seeds, stresses (Pa) and speed (m/s).", false},
+    {"parameters", "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
+    {"targets",
+     "What is fitted to: a list of objects, each with data (a CSV file), name, sigma, weight and keys of the kind."},
+    {"held_out", "What is predicted with the result and never fitted: a list as of targets."},
+    {"starts", "Number of starts: that of the file, and random ones within the bounds. 1 to 1000, default 8."},
+    {"seed", "Seed of the random starts. Default 1."},
+    {"evaluations", "How often a noisy model is evaluated at most. Default 6 for each parameter, and 4 more.", false},
+    {"result", "Name of the fitted file, in the folder of results. Default <start>_fitted.json."},
+});
 
 bool is_logarithmic(Reader& reader, const ParameterRule& rule) {
   const std::string scale = reader.text_or("scale", rule.logarithmic ? "log" : "linear");
@@ -55,21 +56,14 @@ bool is_logarithmic(Reader& reader, const ParameterRule& rule) {
 /// Name, bounds and scale; `start` is NaN where the study gives none.
 Parameter parameter_of(Reader reader, const ParameterRule& rule) {
   Parameter p{rule.name, rule.unit, rule.lower, rule.upper, NAN, is_logarithmic(reader, rule)};
-  const auto bound = [&](const char* key, double& value) {
-    reader.skip(key);
-    if (reader.has(key)) value = reader.number(key);
-    if (value < rule.least || value > rule.most)
-      reader.fail(key, fmt::format("is {}, expected {} to {} {}", number_text(value), number_text(rule.least),
-                                   number_text(rule.most), rule.unit));
+  const auto read = [&](const char* key, double& value, double least, double most, const char* expected) {
+    if (takes(reader, key)) value = reader.number(key);
+    if (value < least || value > most)
+      reader.fail(key, fmt::format("is {}, expected {}{} to {} {}", number_text(value), expected, number_text(least),
+                                   number_text(most), rule.unit));
   };
-  bound("lower", p.lower), bound("upper", p.upper);
-  reader.skip("start");
-  if (reader.has("start")) {
-    p.start = reader.number("start");
-    if (!(p.start >= p.lower && p.start <= p.upper))
-      reader.fail("start", fmt::format("is {}, expected a value from lower to upper, {} to {} {}", number_text(p.start),
-                                       number_text(p.lower), number_text(p.upper), p.unit));
-  }
+  read("lower", p.lower, rule.least, rule.most, ""), read("upper", p.upper, rule.least, rule.most, "");
+  read("start", p.start, p.lower, p.upper, "a value from lower to upper, ");
   if (!(p.lower < p.upper))
     reader.fail("upper",
                 fmt::format("is {}, expected more than lower, {}", number_text(p.upper), number_text(p.lower)));
@@ -80,26 +74,25 @@ Parameter parameter_of(Reader reader, const ParameterRule& rule) {
 }
 
 std::vector<Parameter> parameters_of(Reader& reader, const CalibrationKind& kind) {
-  const Json& all = reader.object().at("parameters");
+  (void)reader.child("parameters");
   std::vector<Parameter> parameters;
-  for (const auto& [name, value] : all.items()) {
+  for (const auto& [name, value] : reader.object().at("parameters").items()) {
     const std::string path = "parameters." + name;
     if (!value.is_object())
       reader.fail(path, "is " + value_text(value) + ", expected an object { } with lower, upper, start, scale");
-    parameters.push_back(parameter_of(Reader(value, reader.file(), path), rule_of(reader, kind, name)));
+    parameters.push_back(parameter_of(
+        Reader(value, reader.file(), path),
+        entry_named(kind.parameters, name, [&](const std::string& what) { return reader.wrong(path, what); })));
   }
   if (parameters.empty()) reader.fail("parameters", "is empty, expected one parameter or more");
   return parameters;
 }
 
-std::vector<Reader> targets_of(Reader& reader, const std::string& key, bool required) {
-  if (!required && !reader.given(key)) {
-    reader.skip(key);
-    return {};
-  }
+std::vector<Reader> targets_of(Reader& reader, const std::string& key, std::size_t least) {
+  if (least == 0 && !takes(reader, key)) return {};
   const Json& list = reader.array(key);
-  if ((required && list.empty()) || list.size() > kMostTargets)
-    reader.fail(key, fmt::format("has {} entries, expected {} to {}", list.size(), required ? 1 : 0, kMostTargets));
+  if (list.size() < least || list.size() > kMostTargets)
+    reader.fail(key, fmt::format("has {} entries, expected {} to {}", list.size(), least, kMostTargets));
   std::vector<Reader> readers;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const std::string path = fmt::format("{}[{}]", key, k);
@@ -111,14 +104,12 @@ std::vector<Reader> targets_of(Reader& reader, const std::string& key, bool requ
 }
 
 void require_names(const Reader& reader, const CalibrationModel& model) {
-  std::vector<std::string> names;
-  for (const TargetSet set : {TargetSet::fitted, TargetSet::held_out})
-    for (const Target& target : model.targets(set)) {
-      if (std::find(names.begin(), names.end(), target.name) != names.end())
-        reader.fail(std::string(set == TargetSet::fitted ? "targets" : "held_out"),
+  std::set<std::string> names;
+  for (const TargetSet set : kBothSets)
+    for (const Target& target : model.targets(set))
+      if (!names.insert(target.name).second)
+        reader.fail(set == TargetSet::fitted ? "targets" : "held_out",
                     "has the name '" + target.name + "' twice in this study, expected another 'name' for one of them");
-      names.push_back(target.name);
-    }
 }
 
 void take_starts(std::vector<Parameter>& parameters, const CalibrationModel& model, const Reader& reader) {
@@ -136,12 +127,6 @@ void take_starts(std::vector<Parameter>& parameters, const CalibrationModel& mod
               "begins at {} {}, which is the start file's, expected bounds around it or a 'start' within {} to {}",
               number_text(p.start), p.unit, number_text(p.lower), number_text(p.upper)));
   }
-}
-
-int evaluations_of(Reader& reader, std::size_t parameters) {
-  const int least = least_evaluations(parameters);
-  return reader.given("evaluations") ? reader.count("evaluations", least, kMostEvaluations)
-                                     : usual_evaluations(parameters);
 }
 
 std::string result_name(Reader& reader, const Calibration& c) {
@@ -170,6 +155,8 @@ std::string digest_of(const Calibration& c) {
 
 }  // namespace
 
+std::span<const CalibrationKey> calibration_keys() { return kKeys; }
+
 bool is_calibration(const std::filesystem::path& name) {
   std::error_code error;
   const std::filesystem::path file = named_file(name, {"rigs"});
@@ -184,7 +171,10 @@ Calibration load_calibration(const std::filesystem::path& name) {
   if (!document.contains("calibrate"))
     throw input_error(file.string(), "calibrate", "is missing, expected a calibration study");
   Reader reader(document, file.string());
-  const CalibrationKind& kind = kind_of(reader);
+  const std::string wanted = reader.text("calibrate");
+  const CalibrationKind& kind = entry_named(calibration_kinds(), wanted, [&](const std::string& what) {
+    return reader.wrong("calibrate", "'" + wanted + "' " + what);
+  });
   std::vector<std::string> keys;
   for (const CalibrationKey& key : calibration_keys())
     if (key.of_every_kind) keys.emplace_back(key.name);
@@ -197,24 +187,27 @@ Calibration load_calibration(const std::filesystem::path& name) {
   c.name = file.stem().string();
   c.description = reader.text_or("description", "");
   c.kind = &kind;
-  if (!reader.given("start")) reader.fail("start", fmt::format("is missing, expected {}", c.kind->start));
+  if (!reader.given("start")) reader.fail("start", fmt::format("is missing, expected {}", kind.start));
   c.start = find_file(reader.text("start"), "start", file);
-  (void)reader.child("parameters");
-  c.parameters = parameters_of(reader, *c.kind);
-  c.starts = reader.given("starts") ? reader.count("starts", 1, kMostStarts) : c.starts;
-  c.seed = reader.given("seed") ? static_cast<std::uint64_t>(reader.count("seed", 0, kLargestSeed)) : c.seed;
-  if (kind.noisy) c.evaluations = evaluations_of(reader, c.parameters.size());
+  c.parameters = parameters_of(reader, kind);
+  const auto count = [&](const char* key, int least, int most, int otherwise) {
+    return reader.given(key) ? reader.count(key, least, most) : otherwise;
+  };
+  c.starts = count("starts", 1, kMostStarts, c.starts);
+  c.seed = static_cast<std::uint64_t>(count("seed", 0, kLargestSeed, static_cast<int>(c.seed)));
+  if (kind.noisy)
+    c.evaluations = count("evaluations", least_evaluations(c.parameters.size()), kMostEvaluations,
+                          usual_evaluations(c.parameters.size()));
   c.result = result_name(reader, c);
-  CalibrationInput input{file,  c.start, {}, targets_of(reader, "targets", true), targets_of(reader, "held_out", false),
-                         reader};
+  CalibrationInput input{
+      file, c.start, {}, {targets_of(reader, "targets", 1), targets_of(reader, "held_out", 0)}, reader};
   for (const Parameter& p : c.parameters) input.parameters.push_back(p.name);
-  c.model = c.kind->read(input);
+  c.model = kind.read(input);
   require_names(reader, *c.model);
   take_starts(c.parameters, *c.model, reader);
-  std::size_t points = 0;
-  for (const Target& target : c.model->targets(TargetSet::fitted)) points += target.y.size();
-  if (points < c.parameters.size() || (points == c.parameters.size() && !kind.noisy)) {
-    const std::vector<std::string> notes = c.model->notes();  // why a target was left out, where one was
+  const std::size_t points = points_of(c.model->targets(TargetSet::fitted));
+  if (points < c.parameters.size() + (kind.noisy ? 0 : 1)) {
+    const std::vector<std::string>& notes = c.model->notes();  // why a target was left out, where one was
     reader.fail("targets", fmt::format("has {} points, expected {} there are parameters, {}{}{}", points,
                                        kind.noisy ? "as many as" : "more than", c.parameters.size(),
                                        notes.empty() ? "" : "; ", fmt::join(notes, "; ")));

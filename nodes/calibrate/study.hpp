@@ -13,7 +13,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "nodes/calibrate/kind.hpp"
@@ -35,6 +37,13 @@ struct Calibration {
   /// Of all that a prediction depends on: start file, parameters, targets and the program's version.
   std::string digest;
 };
+
+struct CalibrationKey {
+  std::string_view name, meaning;
+  bool of_every_kind = true;  // else of the kinds that ask for it
+};
+/// Keys of the file, in the order in which people write them.
+std::span<const CalibrationKey> calibration_keys();
 
 /// Whether a file, or a calibration that comes with the program, says of itself that it is one.
 bool is_calibration(const std::filesystem::path& name);

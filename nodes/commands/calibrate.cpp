@@ -6,9 +6,8 @@
 #include <fmt/format.h>
 
 #include "nodes/calibrate/calibrate.hpp"
-#include "nodes/calibrate/check.hpp"
 #include "nodes/calibrate/evaluations.hpp"
-#include "nodes/calibrate/files.hpp"
+#include "nodes/calibrate/explain.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/commands/questions.hpp"
 #include "nodes/commands/wrapped.hpp"
@@ -96,9 +95,8 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / calibration.name : arguments.out;
   std::vector<std::string> files{calibrate::kCalibration, calibrate::kEvaluations, "fit.csv", calibration.result};
-  if (const auto* leaves = dynamic_cast<const calibrate::LeavesFiles*>(calibration.model.get()))
-    for (const calibrate::ResultFile& further : leaves->further_files(calibration.model->start_values(), ""))
-      files.push_back(further.name);
+  for (const calibrate::ResultFile& further : calibration.model->further_files(calibration.model->start_values(), ""))
+    files.push_back(further.name);
   launch::RunDirectory directory = launch::RunDirectory::of_calibration(folder, arguments.overwrite, files);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();

@@ -1,17 +1,23 @@
-// Models with closed forms, for tests of calibrations.
+// Models with closed forms and a folder for studies, for tests of calibrations.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <random>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "nodes/calibrate/calibrate.hpp"
 #include "nodes/calibrate/smooth.hpp"
+#include "nodes/calibrate/study.hpp"
+#include "protocol/core/error.hpp"
 #include "tests/nodes/temporary_folder.hpp"
 
 namespace furrow::calibrate::testing {
@@ -26,7 +32,7 @@ class CurveModel final : public CalibrationModel {
     target.name = "curve", target.what = "a curve", target.x_name = "x", target.y_name = "y", target.state = "curve";
     target.sigma.assign(x.size(), sigma);
     target.x = std::move(x), target.y = std::move(y);
-    fitted_.push_back(std::move(target));
+    targets_.fitted.push_back(std::move(target));
   }
   std::vector<double> start_values() const override { return {}; }
   Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) override {
@@ -49,7 +55,7 @@ class CurveModel final : public CalibrationModel {
 };
 
 inline const CalibrationKind& curve_kind() {
-  static const CalibrationKind kind{"curve", "nothing", nullptr, nullptr, optimize_smooth};
+  static const CalibrationKind kind{"curve", "nothing", {}, nullptr, optimize_smooth};
   return kind;
 }
 
@@ -78,5 +84,39 @@ inline std::vector<double> steps(double from, double to, int count) {
   for (int k = 0; k < count; ++k) x.push_back(from + (to - from) * k / (count - 1));
   return x;
 }
+
+/// A folder with the files of studies.
+class StudyTest : public ::testing::Test {
+ protected:
+  using json = nlohmann::ordered_json;  // parameters in the order of the file
+  /// Where a study is changed, to what, and what is said of it.
+  using Wrong = std::vector<std::tuple<const char*, json, const char*>>;
+
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_.path() / name) << text; }
+  Calibration load(const json& study) {
+    write("study.json", study.dump());
+    return load_calibration(folder_.path() / "study.json");
+  }
+  std::string complaint(const json& study) {
+    try {
+      load(study);
+      return "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
+      return error.what();
+    }
+  }
+  void expect_refused(const json& good, const Wrong& wrong) {
+    ASSERT_EQ(complaint(good), "no error");
+    for (const auto& [pointer, value, expected] : wrong) {
+      json study = good;
+      study[json::json_pointer(pointer)] = value;
+      const std::string told = complaint(study);
+      EXPECT_NE(told.find(expected), std::string::npos) << pointer << ": " << told;
+    }
+  }
+
+  furrow::testing::TemporaryFolder folder_;
+};
 
 }  // namespace furrow::calibrate::testing

@@ -8,7 +8,6 @@
 #include <random>
 #include <set>
 
-#include "nodes/calibrate/budget.hpp"
 #include "nodes/calibrate/reach.hpp"
 #include "nodes/calibrate/surrogate.hpp"
 #include "protocol/core/error.hpp"
@@ -39,7 +38,7 @@ class NoisyModel final : public CalibrationModel {
       Target target;
       target.name = target.what = target.y_name = target.state = "figure" + std::to_string(k);
       target.x = {0.0}, target.y = {data[k]}, target.sigma = {sigma[k]}, target.labels = {target.name};
-      fitted_.push_back(std::move(target));
+      targets_.fitted.push_back(std::move(target));
     }
   }
   std::vector<double> start_values() const override { return {}; }
@@ -66,7 +65,7 @@ class NoisyModel final : public CalibrationModel {
 
 Calibration noisy_study(Figures figures, std::vector<double> data, std::vector<double> sigma, std::vector<double> noise,
                         std::vector<Parameter> parameters, std::uint64_t seed, int evaluations) {
-  static const CalibrationKind kind{"noisy", "nothing", nullptr, nullptr, optimize_noisy, true};
+  static const CalibrationKind kind{"noisy", "nothing", {}, nullptr, optimize_noisy, true};
   Calibration c;
   c.file = "study.json", c.start = "start.json", c.name = "study", c.kind = &kind;
   c.parameters = std::move(parameters);

@@ -20,8 +20,6 @@ namespace furrow::calibrate::calibrate_ring_test {
 namespace {
 
 using namespace testing;
-using nlohmann::json;
-using Ordered = nlohmann::ordered_json;  // parameters in the order of the file
 
 /// The flexible ring on a plate from its energy alone (tire/ring/ring_mechanics.hpp, (1) to (4)), with dense matrices,
 /// a penalty in place of contact and hoop tension from the length and the area of the polygon of segments: nothing of
@@ -116,17 +114,14 @@ class DenseRing {
   Eigen::VectorXd q_;
 };
 
-class CalibrateRing : public ::testing::Test {
+class CalibrateRing : public StudyTest {
  protected:
   void SetUp() override {
-    file_ = json::parse(std::ifstream(data_folder() / "tire" / "data" / "hmmwv_ring.json"));
+    file_ = nlohmann::json::parse(std::ifstream(data_folder() / "tire" / "data" / "hmmwv_ring.json"));
     file_["segments"] = 60, file_["bending"] = 146, file_["shear"] = 5e3, file_["tangential"] = 5e4;
     file_["sidewall"] = {8.84e5, 5e5, 1e6}, file_["air_share"] = 0.55;
     file_.erase("tension_share");
-    write("ring.json", file_);
-  }
-  void write(const std::string& name, const Ordered& content) {
-    std::ofstream(folder_.path() / name) << content.dump();
+    write("ring.json", file_.dump());
   }
   /// Forces of the other program with the file's values, and normal noise.
   void write_curve(const std::string& name, double pressure, double noise, std::uint64_t seed) {
@@ -140,19 +135,17 @@ class CalibrateRing : public ::testing::Test {
     for (const double x : steps(0.003, 0.045, 15))
       csv << fmt::format("{:.17g},{:.17g},{}\n", x, ring.press(x) + noise * normal(bits), noise > 0.0 ? noise : 1.0);
   }
-  Calibration study(const Ordered& parameters, int starts = 1) {
-    write("study.json", {{"calibrate", "ring"},
-                         {"start", "ring.json"},
-                         {"parameters", parameters},
-                         {"targets",
-                          {{{"data", "low.csv"}, {"on", "plate"}, {"pressure", 1e5}},
-                           {{"data", "high.csv"}, {"on", "plate"}, {"pressure", 3e5}}}},
-                         {"starts", starts}});
-    return load_calibration(folder_.path() / "study.json");
+  Calibration study(const json& parameters, int starts = 1) {
+    return load({{"calibrate", "ring"},
+                 {"start", "ring.json"},
+                 {"parameters", parameters},
+                 {"targets",
+                  {{{"data", "low.csv"}, {"on", "plate"}, {"pressure", 1e5}},
+                   {{"data", "high.csv"}, {"on", "plate"}, {"pressure", 3e5}}}},
+                 {"starts", starts}});
   }
 
-  json file_;
-  furrow::testing::TemporaryFolder folder_;
+  nlohmann::json file_;
 };
 
 TEST_F(CalibrateRing, parameters_are_found_again_from_curves_of_another_program) {
@@ -168,12 +161,12 @@ TEST_F(CalibrateRing, the_belts_share_of_the_pressure_is_found_again) {
   file_["tension_share"] = 0.4;
   write_curve("low.csv", 1e5, 0.0, 1), write_curve("high.csv", 3e5, 0.0, 1);
   file_.erase("tension_share");  // a file may leave it out: the start is 0
-  write("ring.json", file_);
+  write("ring.json", file_.dump());
   const Calibration c = study({{"sidewall_1", {{"start", 6e5}}}, {"tension_share", json::object()}});
   const CalibrationResults results = calibrated(c);
   EXPECT_NEAR(results.values[0] / 8.84e5, 1.0, 2e-3);
   EXPECT_NEAR(results.values[1] / 0.4, 1.0, 1e-2);
-  const json fitted = json::parse(c.model->fitted_file(results.values, "").dump());
+  const nlohmann::json fitted = nlohmann::json::parse(c.model->fitted_file(results.values, "").dump());
   EXPECT_EQ(fitted["tension_share"], results.values[1]);
 }
 
@@ -198,7 +191,7 @@ TEST_F(CalibrateRing, the_fitted_file_presses_as_the_calibration_predicts) {
   write_curve("low.csv", 1e5, 0.0, 1), write_curve("high.csv", 3e5, 0.0, 1);
   const Calibration c = study({{"sidewall_1", {{"start", 3e5}}}, {"softening", {{"start", 0.2}}}});
   const CalibrationResults results = calibrated(c);
-  const json fitted = json::parse(c.model->fitted_file(results.values, "where from").dump());
+  const nlohmann::json fitted = nlohmann::json::parse(c.model->fitted_file(results.values, "where from").dump());
   EXPECT_EQ(fitted["source"], "where from");
   tire::TireOptions options;
   options.file = folder_.path() / "fitted.json";
@@ -214,34 +207,32 @@ TEST_F(CalibrateRing, the_fitted_file_presses_as_the_calibration_predicts) {
 
 // Stress is proportional to the modulus where the disc is as much stiffer: F(δ; cE) = c F(δ; E).
 TEST_F(CalibrateRing, a_planar_tire_twice_as_stiff_is_found) {
-  json planar = json::parse(std::ifstream(data_folder() / "tire" / "data" / "aligator_planar.json"));
+  nlohmann::json planar =
+      nlohmann::json::parse(std::ifstream(data_folder() / "tire" / "data" / "aligator_planar.json"));
   planar["elements_circumference"] = 36, planar["elements_radial"] = 3;
-  write("planar.json", planar);
-  json half = planar;
+  write("planar.json", planar.dump());
+  nlohmann::json half = planar;
   half["tire"]["young_modulus"] = 0.5 * planar["tire"]["young_modulus"].get<double>();
   half["disc"]["young_modulus"] = 0.5 * planar["disc"]["young_modulus"].get<double>();
   half["contact_stiffness"] = 0.5 * planar["contact_stiffness"].get<double>();
-  write("half.json", half);
-  std::ofstream csv(folder_.path() / "curve.csv");
-  csv << "deflection_m,force_N\n";
-  write("press.json", {{"calibrate", "planar"},
-                       {"start", "half.json"},
-                       {"parameters", {{"young_modulus", json::object()}}},
-                       {"targets", {{{"data", "made.csv"}, {"on", "plate"}}}},
-                       {"starts", 1}});
-  std::ofstream(folder_.path() / "made.csv") << "deflection_m,force_N\n0.01,1\n0.02,1\n0.03,1\n";
-  const Calibration of_half = load_calibration(folder_.path() / "press.json");
+  write("half.json", half.dump());
+  write("made.csv", "deflection_m,force_N\n0.01,1\n0.02,1\n0.03,1\n");
+  const Calibration of_half = load({{"calibrate", "planar"},
+                                    {"start", "half.json"},
+                                    {"parameters", {{"young_modulus", json::object()}}},
+                                    {"targets", {{{"data", "made.csv"}, {"on", "plate"}}}},
+                                    {"starts", 1}});
   const Prediction soft =
       of_half.model->predict(std::vector<double>{half["tire"]["young_modulus"].get<double>()}, TargetSet::fitted, {});
   ASSERT_EQ(soft.values.size(), 3u) << soft.problem;
-  for (int k = 0; k < 3; ++k) csv << fmt::format("{},{:.17g}\n", 0.01 * (k + 1), 2.0 * soft.values[k]);
-  csv.close();
-  write("study.json", {{"calibrate", "planar"},
-                       {"start", "planar.json"},
-                       {"parameters", {{"young_modulus", {{"start", 1e5}}}}},
-                       {"targets", {{{"data", "curve.csv"}, {"on", "plate"}}}},
-                       {"starts", 2}});
-  const CalibrationResults results = calibrated(load_calibration(folder_.path() / "study.json"));
+  std::string curve = "deflection_m,force_N\n";
+  for (int k = 0; k < 3; ++k) curve += fmt::format("{},{:.17g}\n", 0.01 * (k + 1), 2.0 * soft.values[k]);
+  write("curve.csv", curve);
+  const CalibrationResults results = calibrated(load({{"calibrate", "planar"},
+                                                      {"start", "planar.json"},
+                                                      {"parameters", {{"young_modulus", {{"start", 1e5}}}}},
+                                                      {"targets", {{{"data", "curve.csv"}, {"on", "plate"}}}},
+                                                      {"starts", 2}}));
   EXPECT_NEAR(results.values[0] / planar["tire"]["young_modulus"].get<double>(), 1.0, 1e-5);
 }
 

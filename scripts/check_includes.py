@@ -30,6 +30,7 @@ FLOORS = [
     ["nodes/output"],
     ["nodes/ranks"],
     ["nodes/study"],
+    ["nodes/calibrate"],
     ["nodes/commands"],
     ["nodes"],
 ]

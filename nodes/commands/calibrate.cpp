@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "nodes/calibrate/calibrate.hpp"
+#include "nodes/calibrate/evaluations.hpp"
+#include "nodes/calibrate/explain.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/commands/questions.hpp"
 #include "nodes/commands/wrapped.hpp"
@@ -12,10 +15,6 @@
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
-#include "nodes/study/calibrate.hpp"
-#include "nodes/study/calibrate_check.hpp"
-#include "nodes/study/calibrate_evaluations.hpp"
-#include "nodes/study/calibrate_files.hpp"
 #include "protocol/files/digits.hpp"
 
 namespace furrow::commands {
@@ -82,23 +81,22 @@ std::string result_text(const Json& summary) {
 }  // namespace
 
 ExitCode validate_calibration(const std::string& name, bool json) {
-  const study::Calibration calibration = study::load_calibration(name);
+  const calibrate::Calibration calibration = calibrate::load_calibration(name);
   for (const std::string& note : calibration.model->notes()) print_warning(note);
   if (json)
-    std::cout << study::calibration_check_json(calibration).dump(2) << "\n";
+    std::cout << calibrate::calibration_check_json(calibration).dump(2) << "\n";
   else
-    print_text(study::calibration_check_text(calibration), Piped::whole_lines);
+    print_text(calibrate::calibration_check_text(calibration), Piped::whole_lines);
   return ExitCode::done;
 }
 
 ExitCode calibrate_command(const CalibrateArguments& arguments) {
-  const study::Calibration calibration = study::load_calibration(arguments.study);
+  const calibrate::Calibration calibration = calibrate::load_calibration(arguments.study);
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / calibration.name : arguments.out;
-  std::vector<std::string> files{study::kCalibration, study::kEvaluations, "fit.csv", calibration.result};
-  if (const auto* leaves = dynamic_cast<const study::LeavesFiles*>(calibration.model.get()))
-    for (const study::ResultFile& further : leaves->further_files(calibration.model->start_values(), ""))
-      files.push_back(further.name);
+  std::vector<std::string> files{calibrate::kCalibration, calibrate::kEvaluations, "fit.csv", calibration.result};
+  for (const calibrate::ResultFile& further : calibration.model->further_files(calibration.model->start_values(), ""))
+    files.push_back(further.name);
   launch::RunDirectory directory = launch::RunDirectory::of_calibration(folder, arguments.overwrite, files);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
@@ -108,8 +106,8 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
   for (const std::string& note : notes) print_warning(note);
   try {
     launch::ProgressDisplay display;
-    const study::CalibrationResults results =
-        study::calibrate(calibration, folder, [&](const std::string& what, double share) {
+    const calibrate::CalibrationResults results =
+        calibrate::calibrate(calibration, folder, [&](const std::string& what, double share) {
           if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal");
           if (!directory.lock().stands())
             throw io_error(folder.string(),
@@ -117,8 +115,8 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
           display.show({.phase = what, .share = share});
         });
     display.clear();
-    study::write_calibration(calibration, results, folder);
-    const Json summary = study::calibration_json(calibration, results);
+    calibrate::write_calibration(calibration, results, folder);
+    const Json summary = calibrate::calibration_json(calibration, results);
     launch::say(result_text(summary));
     const auto warnings = summary["warnings"].get<std::vector<std::string>>();
     for (const std::string& warning : warnings)

@@ -1,8 +1,8 @@
 // `furrow explain`: what a key of a scenario or of a calibration study means.
 #include "nodes/scenario/explain.hpp"
+#include "nodes/calibrate/explain.hpp"
 #include "nodes/commands/questions.hpp"
 #include "nodes/commands/wrapped.hpp"
-#include "nodes/study/calibrate_explain.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::commands {
@@ -10,7 +10,8 @@ namespace furrow::commands {
 ExitCode explain_command(const std::string& key) {
   if (key.ends_with(".json"))
     throw input_error("explain", key, "is the name of a file, expected a key; 'furrow validate' checks a file");
-  const std::string text = study::explains_calibrations(key) ? study::explain_calibration(key) : scenario::explain(key);
+  const std::string text =
+      calibrate::explains_calibrations(key) ? calibrate::explain_calibration(key) : scenario::explain(key);
   print_text(text, Piped::whole_lines);
   return ExitCode::done;
 }

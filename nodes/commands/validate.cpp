@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "nodes/calibrate/study.hpp"
 #include "nodes/commands/questions.hpp"
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/scenario/machine_speed.hpp"
@@ -13,13 +14,12 @@
 #include "nodes/scenario/runnable.hpp"
 #include "nodes/scenario/validate.hpp"
 #include "nodes/scenario/vehicle_tires.hpp"
-#include "nodes/study/calibrate_study.hpp"
 
 namespace furrow::commands {
 
 ExitCode validate_command(Typed& typed) {
   const bool vehicle = scenario::is_vehicle(typed.scenario),
-             calibration = !vehicle && study::is_calibration(typed.scenario);
+             calibration = !vehicle && calibrate::is_calibration(typed.scenario);
   if (vehicle || calibration) {
     if (!settings_of(typed).empty())
       throw input_error("command line", typed.threads.empty() ? "--set" : "--threads",

@@ -1,0 +1,155 @@
+// Grains fitted to the strength of a soil: what is wrong with such studies, and that a prediction is what the soil
+// tests give.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "nodes/calibrate/study.hpp"
+#include "nodes/scenario/load_scenario.hpp"
+#include "nodes/scenario/soil_material.hpp"
+#include "protocol/core/error.hpp"
+#include "terrain/soil/soil_tests.hpp"
+#include "tests/nodes/calibrate/examples.hpp"
+
+namespace furrow::calibrate {
+namespace {
+
+using namespace testing;
+
+class CalibrateGrains : public StudyTest {
+ protected:
+  static json good() {
+    return {{"calibrate", "grains"},
+            {"start", "drawbar_pull_small.json"},
+            {"set", {{"terrain.material", "loose_sand.json"}}},
+            {"tests", {{"seeds", 1}, {"stresses", {20e3, 60e3}}, {"speed", 1.0}}},
+            {"evaluations", 20},
+            {"parameters",
+             {{"rolling_friction", {{"lower", 0}, {"upper", 0.6}}}, {"cohesion", {{"lower", 0}, {"upper", 60e3}}}}},
+            {"targets",
+             {{{"quantity", "friction_angle_deg"}, {"data", "lete_sand.json"}, {"sigma", 1.0}},
+              {{"quantity", "cohesion_Pa"}, {"value", 1300.0}, {"sigma", 300.0}}}}};
+  }
+};
+
+TEST_F(CalibrateGrains, a_study_is_read) {
+  const Calibration c = load(good());
+  EXPECT_EQ(c.evaluations, 20);
+  EXPECT_EQ(c.result, "drawbar_pull_small_fitted.json");
+  EXPECT_EQ(c.parameters[0].start, 0.2);  // of the material
+  const auto& targets = c.model->targets(TargetSet::fitted);
+  EXPECT_EQ(targets[0].y, std::vector<double>{31.1});  // of the soil file
+  EXPECT_EQ(targets[0].what, "lete_sand.json");
+  EXPECT_EQ(targets[1].sigma, std::vector<double>{300.0});
+  json without = good();
+  without.erase("evaluations"), without.erase("tests");
+  EXPECT_EQ(load(without).evaluations, 16);
+}
+
+TEST_F(CalibrateGrains, wrong_studies_are_refused_with_file_and_key) {
+  const json more{{"quantity", "janosi_K_m"}, {"value", 0.02}, {"sigma", 0.003}};
+  expect_refused(
+      good(),
+      {
+          {"/evaluations", 7, "key 'evaluations': is 7, expected a whole number from 8 to 1000"},
+          {"/evaluations", 9.5, "key 'evaluations'"},
+          {"/start", "hmmwv_ring.json", "hmmwv_ring.json"},
+          {"/start", "rigid_ground.json", "key 'terrain.material': is a key of engine"},
+          {"/set/terrain.frction", 0.5, "key 'terrain.frction'"},
+          {"/set/terrain.cohesion", 5, "key 'set.terrain.cohesion': is a parameter too, expected its 'start' there"},
+          {"/set", 3, "key 'set'"},
+          {"/tests", 3, "key 'tests'"},
+          {"/tests/seeds", 0, "key 'tests.seeds': is 0, expected a whole number from 1 to 100"},
+          {"/tests/speed", 20, "key 'tests.speed': is 20 m/s, expected above 0 up to 10 m/s"},
+          {"/tests/stresses", {1e3}, "key 'tests.stresses': expected two to 10 different normal stresses"},
+          {"/tests/stresses", {1e3, 1e3}, "key 'tests.stresses': expected two to 10 different normal stresses"},
+          {"/tests/stresses", {-1e3, 1e3}, "key 'tests.stresses': has -1000 Pa, expected each above 0 up to 1e7 Pa"},
+          {"/tests/stress", 5, "key 'tests.stress': is unknown, expected 'stresses'?"},
+          {"/parameters/rolling", json::object(),
+           "key 'parameters.rolling': is unknown, expected one of: friction, rolling_friction"},
+          {"/parameters/settling_friction", json::object(), "key 'parameters.settling_friction': has no 'start'"},
+          {"/parameters/friction", json::object(),
+           "key 'targets': has 2 points, expected as many as there are parameters, 3"},
+          {"/targets/0/quantity", "friction_angle",
+           "key 'targets[0].quantity': 'friction_angle' is unknown, expected one of: friction_angle_deg"},
+          {"/targets/0/quantity", "cone_index_Pa",
+           "lete_sand.json: key 'terrain': is missing: soil files do not say cone_index_Pa"},
+          {"/targets/0/data", "dry_soil.json", "key 'targets[0].data'"},
+          {"/targets/0/value", 30.0, "key 'targets[0].value': expected either 'value' or 'data'"},
+          {"/targets/1/value", nullptr, "key 'targets[1].value': expected either 'value' or 'data'"},
+          {"/targets/1/value", -5.0, "key 'targets[1].value': is -5, expected 0 to 1e7 for cohesion_Pa"},
+          {"/held_out",
+           {{{"quantity", "repose_angle_without_cohesion_deg"}, {"value", 400.0}, {"sigma", 1.0}}},
+           "key 'held_out[0].value': is 400, expected 0 to 60 for repose_angle_without_cohesion_deg"},
+          {"/targets/1/sigma", 0, "key 'targets[1].sigma'"},
+          {"/targets/1/sigma", nullptr, "key 'targets[1].sigma': is missing, expected the standard error"},
+          {"/targets/1/quantity", "friction_angle_deg",
+           "key 'targets[1].quantity': is friction_angle_deg a second time"},
+          {"/targets/1/on", "plate", "key 'targets[1].on': is unknown"},
+          {"/targets/1/name", "a,b", "key 'targets[1].name': expected a name without commas"},
+          {"/held_out",
+           {{{"quantity", "cohesion_Pa"}, {"value", 1.0}, {"sigma", 1.0}}},
+           "key 'held_out[0].quantity': is cohesion_Pa a second time"},
+      });
+  // The keys are those of this kind alone.
+  for (const char* key : {"set", "tests", "evaluations"}) {
+    json study{{"calibrate", "ring"}, {key, 1}};
+    EXPECT_NE(complaint(study).find(std::string("key '") + key + "': is unknown"), std::string::npos) << key;
+  }
+}
+
+TEST_F(CalibrateGrains, a_K_below_what_grains_of_the_size_have_is_told_and_not_fitted) {
+  json study = good();
+  study["targets"].push_back({{"quantity", "janosi_K_m"}, {"value", 2e-3}, {"sigma", 1e-3}});
+  const Calibration c = load(study);
+  ASSERT_EQ(c.model->notes().size(), 1u);
+  EXPECT_NE(c.model->notes()[0].find("janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"),
+            std::string::npos);
+  EXPECT_EQ(c.model->targets(TargetSet::fitted).size(), 2u);
+  EXPECT_EQ(c.model->targets(TargetSet::held_out).size(), 1u);
+  // Where too few are left, it is told why.
+  json few = study;
+  few["targets"].erase(std::size_t{0});
+  EXPECT_NE(complaint(few).find("has 1 points, expected as many as there are parameters, 2; janosi_K_m of 2 mm cannot"),
+            std::string::npos)
+      << complaint(few);
+  // Where the size is a parameter, it can follow.
+  study["parameters"]["radius"] = {{"lower", 1e-3}, {"upper", 0.012}, {"start", 0.01}};
+  EXPECT_TRUE(load(study).model->notes().empty());
+}
+
+TEST_F(CalibrateGrains, a_prediction_is_what_the_soil_tests_give_and_the_result_is_a_soil_file) {
+  json study = good();
+  study["held_out"] = {{{"quantity", "bulk_density_kg_m3"}, {"value", 1300.0}, {"sigma", 50.0}}};
+  const Calibration c = load(study);
+  const std::vector<double> values{0.3, 20e3};
+  const Prediction found = c.model->predict(values, TargetSet::fitted, {}),
+                   beside = c.model->predict(values, TargetSet::held_out, {});
+  ASSERT_TRUE(found.problem.empty()) << found.problem;
+  EXPECT_GT(found.processor_time, 0.0);
+  EXPECT_EQ(beside.processor_time, 0.0);  // of the same tests
+
+  terrain::soil::SoilOptions options;
+  options.material = scenario::load_scenario(c.start, {{"terrain.material", "loose_sand.json"},
+                                                       {"terrain.rolling_friction", "0.3"},
+                                                       {"terrain.cohesion", "20000"}})
+                         .grains("");
+  options.seeds = 1, options.speed = 1.0, options.stresses = {20e3, 60e3};
+  options.plate = options.cone = options.repose = false;
+  const auto plan = terrain::soil::soil_plan(options);
+  const auto results = terrain::soil::run_soil_tests(options, plan, {});
+  const auto p = terrain::soil::soil_parameters(results, plan, options.material.radius);
+  EXPECT_EQ(found.values, (std::vector<double>{p.phi.value / (std::numbers::pi / 180.0), p.cohesion.value}));
+  EXPECT_EQ(beside.values, std::vector<double>{results.shear.front().specimen.bulk_density});
+
+  write("fitted.json", c.model->fitted_file(values, "by hand").dump());
+  const auto soil = scenario::read_soil_material(folder_.path() / "fitted.json");
+  EXPECT_EQ(soil["rolling_friction"], 0.3);
+  EXPECT_EQ(soil["cohesion"], 20e3);
+  EXPECT_EQ(soil["size_spread"], 0.3);
+}
+
+}  // namespace
+}  // namespace furrow::calibrate

@@ -26,9 +26,8 @@ matplotlib.use("Agg")
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
 # noqa: E402
-from plot import (accounts, calibrate, charts, ground, kinematics, modes,
-                  press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,
-                  vehicle_run, vehicle_scene, wheels)
+from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep,
+                  vehicle_ground, vehicle_plots, vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.own_files import may_write, remove_own, write_whole  # noqa: E402
 from plot.run_data import Damaged, Missing, Run, printable, why_no_folder  # noqa: E402
@@ -155,9 +154,8 @@ def main():
         return 5
     written, in_the_way = [], []
     of_beds = of_sweep and run.values.get("beds")
-    plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil
-             else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep and run.values.get("passes")
-             else CURVE_PLOTS if of_sweep else PRESS_PLOTS if of_press
+    plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil else BEDS_PLOTS if of_beds else SWEEP_PLOTS
+             if of_sweep and run.values.get("passes") else CURVE_PLOTS if of_sweep else PRESS_PLOTS if of_press
              else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
              else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS)
     names = [*(arguments.only or plots), "page"]
@@ -208,8 +206,7 @@ def main():
     print(json.dumps(written))
     if not written and in_the_way:
         print(f"furrow: error: {printable(out)}: no plot was written, as other files have their names, expected "
-              f"another folder",
-              file=sys.stderr)
+              "another folder", file=sys.stderr)
     elif not written:
         before = arguments.directory / ".furrow-before"
         hint = f"; {before} holds earlier results, which 'furrow resume' brings back" if before.is_dir() else ""

@@ -7,23 +7,18 @@ from .run_data import Damaged, Missing, check_types
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window
 
 # Entries of accounts.energy, in J.
-WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along",
-        "guide_work": "rails and steering",
+WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along", "guide_work": "rails and steering",
         "wall_work": "walls"}
 STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation",
-          "terrain_potential": "grains: height",
-          "terrain_elastic_normal": "grains: normal springs",
-          "terrain_elastic_tangential": "grains: tangential springs",
-          "terrain_cohesion": "grains: cohesion", "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain",
-          "tire_pressure": "tires: air", "tire_potential": "tires: height",
-          "rig_kinetic_and_potential": "rig: motion and height"}
+          "terrain_potential": "grains: height", "terrain_elastic_normal": "grains: normal springs",
+          "terrain_elastic_tangential": "grains: tangential springs", "terrain_cohesion": "grains: cohesion",
+          "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain", "tire_pressure": "tires: air",
+          "tire_potential": "tires: height", "rig_kinetic_and_potential": "rig: motion and height"}
 LOST = {"sliding_loss": "sliding", "normal_damping_loss": "normal damping",
-        "tangential_damping_loss": "tangential damping",
-        "rolling_loss": "rolling", "opening_loss": "contacts that open",
-        "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
+        "tangential_damping_loss": "tangential damping", "rolling_loss": "rolling",
+        "opening_loss": "contacts that open", "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
         "tire_numerical_loss": "tires: numerical", "tire_solver_loss": "tires: solver",
-        "damper_loss": "touch-down damper",
-        "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
+        "damper_loss": "touch-down damper", "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
 GROUPS = (("work", WORK, BLUE), ("stored", STORED, PURPLE), ("lost", LOST, ORANGE))
 LEAST_SHARE = 1e-3  # of what is turned over: smaller entries have no bar
 
@@ -58,8 +53,7 @@ def entries(found, file):
         values = found.get(group) or {}
         check_types(values, f"{where}: key '{group}'", numbers=list(values))
         rows += [(f"{label} ({'in' if group == 'work' else group})", float(values[key]), colour) for key,
-                 label in labels.items()
-                 if values.get(key) is not None and abs(values[key]) > least]
+                 label in labels.items() if values.get(key) is not None and abs(values[key]) > least]
     return rows + [("residual", float(found.get("residual") or 0.0), RED)]
 
 

@@ -109,8 +109,7 @@ def fit_of_figures(axis, target, colour):
         axis.vlines(place + 0.15, *(factor * np.array(spans).T), color=GREY, lw=1.0, alpha=0.6, label="all evaluations")
     errors = [factor * (figure.get("standard_error") or 0.0) for figure in told]
     axis.errorbar(place + 0.15, factor * target["model"], errors if len(errors) == len(place) and any(errors) else None,
-                  fmt="_", ms=10,
-                  capsize=3, color=RED, label="model, held out" if target["held_out"] else "model")
+                  fmt="_", ms=10, capsize=3, color=RED, label="model, held out" if target["held_out"] else "model")
     axis.set(ylabel=target["y_name"] if single else label_of(target["y_name"]))
 
 
@@ -124,9 +123,8 @@ def fit(run):
                 fit_of_figures(axis, target, colour)
                 continue
             axis.plot(x_factor * target["x"], y_factor * target["data"], "o", ms=3.5, color=colour)
-            axis.plot(x_factor * target["x"], y_factor * target["model"],
-                      "--" if target["held_out"] else "-", color=colour,
-                      label=f"{target['name']} ({target.get('what', '')})")
+            axis.plot(x_factor * target["x"], y_factor * target["model"], "--" if target["held_out"] else "-",
+                      color=colour, label=f"{target['name']} ({target.get('what', '')})")
         if alone:
             axis.set_title(alone)
         else:

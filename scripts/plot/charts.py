@@ -69,9 +69,8 @@ def pull_slip_sinkage(run):
     theory = run.soil_estimate.get("drawbar_pull_N")
     if theory is not None:
         error = run.soil_estimate.get("drawbar_pull_standard_error_N")
-        top.axhline(theory, color=ORANGE, ls="--", lw=1.5,
-                    label=f"soil theory for a rigid wheel, furrow soil's parameters: "
-                    f"{with_error(theory, error) if error is not None else digits(theory)} N")
+        top.axhline(theory, color=ORANGE, ls="--", lw=1.5, label="soil theory for a rigid wheel, furrow soil's "
+                    f"parameters: {with_error(theory, error) if error is not None else digits(theory)} N")
     top.axhline(0.0, color="black", lw=0.8)
     settled_limits(top, run, *([pull] if theory is None else [pull, np.full_like(pull, theory)]))
     top.set_ylabel("drawbar pull, N")

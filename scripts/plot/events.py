@@ -147,8 +147,7 @@ def in_rut(wheel):
 def rut_events(v, touched):
     met = meetings(v, touched)
     for following, leading, at in met:
-        yield Event(v.time[at], "reaches the place of touch-down", following.name,
-                    following["position_m"][at], "m",
+        yield Event(v.time[at], "reaches the place of touch-down", following.name, following["position_m"][at], "m",
                     "position at or beyond that of the wheel before it when that touched down")
         begin = first(in_rut(following))
         if begin is not None:
@@ -192,8 +191,7 @@ def pitch_events(v, met):
         yield Event(v.time[here], "pitch changes" if seen_it else "pitch changes (not above its noise)",
                     f"{v.axles[following.axle]} axle", math.degrees(change[here]), "°",
                     f"steepest within {PITCH_SEARCH[0]:g} to {PITCH_SEARCH[1]:g} s of the axle's meeting; value: mean "
-                    f"of "
-                    f"{PITCH_SPAN:g} s after less that before, nose down positive; elsewhere "
+                    f"of {PITCH_SPAN:g} s after less that before, nose down positive; elsewhere "
                     f"{math.degrees(noise):.2g}° (rms)")
 
 

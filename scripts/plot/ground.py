@@ -61,9 +61,8 @@ def top_view(figure, axis, field, depth, start, end, sign, tread, lateral, windo
     axis.plot(end, lateral, ">" if sign > 0 else "<", color="black", ms=9,
               label="axle at the end, in direction of travel")
     if tread:
-        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread),
-                                     window[1] - window[0], tread, fill=False, lw=1.4,
-                                     label="tread width, where the rut is measured"))
+        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread), window[1] - window[0], tread, fill=False,
+                                     lw=1.4, label="tread width, where the rut is measured"))
     axis.set_xlabel("x, m")
     axis.set_ylabel("y, m (left of +x)")
     axis.set_title("Seen from above (medians over 3 × 3 cells)", pad=24)

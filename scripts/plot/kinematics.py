@@ -87,10 +87,9 @@ def draw(run, motion, against, panels, columns, what):
 
 
 def parallel(run):
-    return draw(run, "parallel", TRAVEL, [CAMBER, TOE, CASTER, KINGPIN,
-                                          HALF_TRACK, SCRUB, TRAIL, ROLL_CENTER, ANTI_DIVE,
-                                          SPRING_RATIO, SHOCK_RATIO, WHEEL_RATE],
-                4, "both wheels of an axle lifted alike (grey: at rest)")
+    return draw(run, "parallel", TRAVEL, [CAMBER, TOE, CASTER, KINGPIN, HALF_TRACK, SCRUB, TRAIL, ROLL_CENTER,
+                                          ANTI_DIVE, SPRING_RATIO, SHOCK_RATIO, WHEEL_RATE], 4,
+                "both wheels of an axle lifted alike (grey: at rest)")
 
 
 def opposite(run):

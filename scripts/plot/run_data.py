@@ -86,8 +86,7 @@ def read_dataset(file, name):
     most = stored * (RATIO if group.id.get_create_plist().get_nfilters() else 1)
     if stored > os.path.getsize(file.filename) or group.size * group.dtype.itemsize > most:
         raise Damaged(f"{what} is said to have {group.size} numbers, but {stored} bytes are stored: it was never "
-                      f"written, "
-                      "or the file is cut short or damaged")
+                      "written, or the file is cut short or damaged")
     return group[()]
 
 
@@ -96,15 +95,13 @@ def table(file, name, columns):
     values = read_dataset(file, name)
     if (values.ndim != 1) if columns == 0 else (values.ndim != 2 or values.shape[1] != columns):
         raise Damaged(f"{pathlib.Path(file.filename).name}: the dataset '{name}' has the shape {values.shape}, "
-                      f"expected "
-                      + (f"N × {columns}" if columns else "N numbers"))
+                      "expected " + (f"N × {columns}" if columns else "N numbers"))
     return values
 
 
 # Keys of summary.json that plots read.
-NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient",
-           "tread_width_m", "rut_depth_m", "rut_width_m",
-           "surface_height_m", "sinkage_m", "grains", "bed_clearance_m")
+NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient", "tread_width_m", "rut_depth_m",
+           "rut_width_m", "surface_height_m", "sinkage_m", "grains", "bed_clearance_m")
 OBJECTS = ("drawbar_pull_N", "accounts")
 
 
@@ -159,9 +156,8 @@ class Run:
         if not isinstance(wheels[0], dict):
             raise Damaged(f"{name}: key 'wheels.0': expected an object")
         summary = {**wheels[0], **summary}
-        check_types(summary, name, texts=("scenario", "terrain_engine", "law"),
-                    numbers=NUMBERS, objects=OBJECTS + ("failed",),
-                    lists=("net_terrain_force_N", "ranks"))
+        check_types(summary, name, texts=("scenario", "terrain_engine", "law"), numbers=NUMBERS,
+                    objects=OBJECTS + ("failed",), lists=("net_terrain_force_N", "ranks"))
         pull = summary.get("drawbar_pull_N") or {}
         check_types(pull, name + ": key 'drawbar_pull_N'", numbers=("mean", "sem", "from_s", "to_s"), flags=("steady",),
                     lists=("unsteady_because",))

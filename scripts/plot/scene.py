@@ -202,8 +202,7 @@ def scene(run):
         bar = figure.add_axes([0.72, 0.075, 0.25, 0.018])
         map_ = mpl.colors.LinearSegmentedColormap.from_list("soil", np.array(SOIL) ** (1 / 2.2))
         colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span / scale, 1e3 * span / scale),
-                                                          map_), cax=bar,
-                                    orientation="horizontal")
+                                                          map_), cax=bar, orientation="horizontal")
         colourbar.set_label("height of grains about the undisturbed surface, mm", fontsize=9)
         colourbar.ax.tick_params(labelsize=8)
     return figure

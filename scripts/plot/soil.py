@@ -75,9 +75,8 @@ def plate(soil):
     axis.set_ylim(0.0)
     axis.set_xlabel("sinkage below the mean surface, mm")
     axis.set_ylabel("pressure, kPa")
-    axis.set_title("Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, "
-                   f"n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²",
-                   fontsize=9)
+    axis.set_title(f"Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} "
+                   f"kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²", fontsize=9)
     axis.legend(loc="upper left")
     return figure
 

@@ -207,8 +207,7 @@ def rut_lines(sweep, axis, where, profile):
             lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after - undisturbed))
         for n, of_runs in sorted(lines.items()):
             axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)],
-                      alpha=0.35 + 0.65 * n / len(lines),
-                      lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label
+                      alpha=0.35 + 0.65 * n / len(lines), lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label
                       else f"{label}, pass 1 (thin) to {n}" if n == max(lines) else None)
     axis.axhline(0.0, color=GREY, lw=0.8)
 

@@ -204,9 +204,8 @@ class VehicleRun:
     def tracks(self):
         """(x, y) of each wheel's centre over the ground against time."""
         yaw = self["yaw_rad"]
-        return [(self["x_m"] + np.cos(yaw) * ahead - np.sin(yaw) * left,
-                 self["y_m"] + np.sin(yaw) * ahead + np.cos(yaw) * left)
-                for ahead, left in self.places]
+        return [(self["x_m"] + np.cos(yaw) * ahead - np.sin(yaw) * left, self["y_m"] + np.sin(yaw) * ahead + np.cos(yaw)
+                 * left) for ahead, left in self.places]
 
     @functools.cached_property
     def data(self):

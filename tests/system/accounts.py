@@ -39,9 +39,8 @@ class Accounts(SystemTest):
         lost = accounts["energy"]["lost"]
         for entry in ("sliding_loss", "normal_damping_loss", "tire_viscous_loss", "tire_numerical_loss", "damper_loss"):
             self.assertGreater(lost[entry], 0.0, entry)
-        self.assertRegex(told,
-                         r"furrow: accounts: energy residual -?[\d.e+-]+ % of [\d.]+ J turned over, momentum residual "
-                         r"[\d.e-]+ of")
+        self.assertRegex(told, r"furrow: accounts: energy residual -?[\d.e+-]+ % of [\d.]+ J turned over, momentum "
+                         r"residual [\d.e-]+ of")
         self.assertNotIn("does not close", told)
         with open(self.folder / "run/timeseries_accounts.csv", newline="") as file:
             last = list(csv.DictReader(file))[-1]
@@ -74,8 +73,7 @@ class Accounts(SystemTest):
         self.check(accounts)
         self.assertEqual(len(accounts["energy"]["each_tire"]), 2)
         self.assertAlmostEqual(sum(t["residual"] for t in accounts["energy"]["each_tire"]),
-                               accounts["energy"]["residual_of"]["tires"],
-                               delta=1e-9 * accounts["energy"]["turnover"])
+                               accounts["energy"]["residual_of"]["tires"], delta=1e-9 * accounts["energy"]["turnover"])
 
     def test_a_resumed_run_has_the_same_accounts_bit_for_bit(self):
         whole, _ = self.accounts("whole")

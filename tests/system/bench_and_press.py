@@ -71,16 +71,14 @@ class Press(SystemTest):
     def press(self, *more, deflection="0.012", points="4"):
         path = self.folder / "pressed.json"
         path.write_text(json.dumps(SCENARIO))
-        return furrow("press", path, "--out", self.folder / "out", "--deflection",
-                      deflection, "--points", points, *more,
-                      cwd=self.folder)
+        return furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points,
+                      *more, cwd=self.folder)
 
     def test_plate(self):
         # Two rows of nodes or more touch: one alone has no length.
         done = self.press("--load", "2000", "--set", "tire.elements_circumference=60")
-        self.assertRegex(done.stderr,
-                         r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, footprint "
-                         r"\d[\d.]* mm long, [\d.]+ mm wide")
+        self.assertRegex(done.stderr, r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, "
+                         r"footprint \d[\d.]* mm long, [\d.]+ mm wide")
         self.assertEqual(done.returncode, 0, done.stderr)
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), str(out))
@@ -116,9 +114,8 @@ class Press(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("furrow: warning: this tire wrinkles under its pressure", done.stderr)
         done = furrow("press", self.folder / "pressed.json", "--out", self.folder / "out",
-                      "--overwrite", "--deflection", "0.02",
-                      "--points", "5", "--load", "1000", "--set", "tire.pressure=70000",
-                      "--set", "tire.elements_circumference=60",
+                      "--overwrite", "--deflection", "0.02", "--points", "5", "--load", "1000",
+                      "--set", "tire.pressure=70000", "--set", "tire.elements_circumference=60",
                       "--set", "tire.elements_width=12", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stderr,
@@ -143,9 +140,8 @@ class Press(SystemTest):
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
 
     def test_a_scenario_says_how_its_tire_is_pressed_and_options_override_it(self):
-        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8",
-                  "--points", "2", "--deflection", "0.012",
-                  "--load", "2000")
+        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8", "--points", "2",
+                  "--deflection", "0.012", "--load", "2000")
         deflections = []
         for more in ((), ("--cleat-width", "0.1"), ("--set", "press.cleat_width=0.1")):
             done = furrow("press", "cleat_press.json", "--out", self.folder / "out",
@@ -179,9 +175,8 @@ class Press(SystemTest):
         profile.write_text("x_m,z_m\n-0.0255,0\n0.0255,0\n")
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.051")),
                            ("profile", ("--on", "profile", "--profile", profile))):
-            done = furrow("press", path, "--out", self.folder / "out",
-                          "--overwrite", "--deflection", "0.03", "--points",
-                          "6", "--load", "8000", *more, cwd=self.folder)
+            done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.03",
+                          "--points", "6", "--load", "8000", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads((self.folder / "out/summary.json").read_text())
             self.assertEqual(summary["obstacle"], name)
@@ -218,9 +213,8 @@ class Press(SystemTest):
         deflections = {}
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.05")),
                            ("profile", ("--on", "profile", "--profile", profile))):
-            done = furrow("press", path, "--out", self.folder / "out",
-                          "--overwrite", "--deflection", "0.08", "--points",
-                          "4", "--load", "15000", *more, cwd=self.folder)
+            done = furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.08",
+                          "--points", "4", "--load", "15000", *more, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             summary = json.loads((self.folder / "out/summary.json").read_text())
             self.assertEqual(summary["obstacle"], name)

@@ -107,9 +107,8 @@ class Calibrate(SystemTest):
         self.assertEqual(len(told), 5, done.stderr)
         self.assertRegex(told[0],
                          r"fitted sweep_lumped_fx \(fx of 41 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
-        self.assertRegex(told[1],
-                         r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the "
-                         r"peak$")
+        self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of "
+                         r"the peak$")
         for plot in ("fit.png", "residual.png"):  # five panels in two rows
             wide, high = struct.unpack(">II", (self.folder / "out" / plot).read_bytes()[16:24])
             self.assertTrue(2 < wide / high < 3, (plot, wide, high))
@@ -201,18 +200,15 @@ class Calibrate(SystemTest):
         self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
         done = furrow("resume", "out", cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-        self.assertEqual(done.stderr,
-                         "furrow: error: out: holds a calibration, expected a run; the command that began it, 'furrow "
-                         "calibrate' "
-                                      "with the same study, continues it\n")
+        self.assertEqual(done.stderr, "furrow: error: out: holds a calibration, expected a run; the command that began "
+                         "it, 'furrow calibrate' with the same study, continues it\n")
         (self.folder / "out" / "calibration.json").unlink()  # as after a signal or kill −9
         before = set(self.names())
         for command in (("report",), ("resume",), ("events",), ("report", "--vtk", "vtk")):
             done = furrow(command[0], "out", *command[1:], cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertEqual(done.stderr,
-                             "furrow: error: out: holds a calibration that has not ended; the command that began it, "
-                                          "'furrow calibrate' with the same study, continues it\n")
+            self.assertEqual(done.stderr, "furrow: error: out: holds a calibration that has not ended; the command "
+                             "that began it, 'furrow calibrate' with the same study, continues it\n")
         self.assertEqual(set(self.names()), before)
         self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
 
@@ -223,9 +219,8 @@ class Calibrate(SystemTest):
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0], "calibration  study.json, kind ring")
         self.assertIn("parameter    sidewall_1: 100e3 to 1e7 N/m, logarithmic, from 235340", lines)
-        self.assertRegex(done.stdout,
-                         r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, force_N \S+ to "
-                         r"\S+\n")
+        self.assertRegex(done.stdout, r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, "
+                         r"force_N \S+ to \S+\n")
         self.assertRegex(done.stdout, r"\nheld out     again \(")
         self.assertIn("starts       3, seed 1", lines)
         self.assertIn("result       soft_ring_fitted.json", lines)
@@ -235,9 +230,8 @@ class Calibrate(SystemTest):
                           "start": told["parameters"]["air_share"]["start"]})
         self.assertEqual([target["name"] for target in told["targets"]], ["plate", "cleat"])
         done = furrow("validate", study, "--set", "rig.slip=0.1", cwd=self.folder)
-        self.assertEqual(done.stderr,
-                         "furrow: error: command line: key '--set': is given with a calibration study, expected a "
-                         "scenario\n")
+        self.assertEqual(done.stderr, "furrow: error: command line: key '--set': is given with a calibration study, "
+                         "expected a scenario\n")
         self.study("wrong.json", starts=0)
         self.assertEqual(furrow("validate", "wrong.json", cwd=self.folder).stderr,
                          furrow("calibrate", "wrong.json", cwd=self.folder).stderr)
@@ -246,17 +240,15 @@ class Calibrate(SystemTest):
     def test_validate_sums_up_a_target_of_many_values(self):
         done = furrow("validate", "calibrate_handling.json", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout,
-                         r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to 5587\.121, each "
-                         r"± 40\n")
+        self.assertRegex(done.stdout, r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to "
+                         r"5587\.121, each ± 40\n")
 
     def test_commands_for_scenarios_point_to_calibrate(self):
         for command in ("run", "ranks", "press", "bed", "soil"):
             done = furrow(command, "calibrate_ring.json", cwd=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertRegex(done.stderr,
-                             r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a scenario "
-                                          r"\('furrow calibrate' takes calibrations\)\n$")
+            self.assertRegex(done.stderr, r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a "
+                             r"scenario \('furrow calibrate' takes calibrations\)\n$")
 
     def test_explain_knows_the_keys_of_calibrations(self):
         def told(key):

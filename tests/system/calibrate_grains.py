@@ -62,8 +62,7 @@ class CalibrateGrains(SystemTest):
         self.assertEqual(soil["measured"]["grain_radius_m"], 0.01)
         self.assertIn("mean", soil["measured"]["bulk_density_kg_m3"])
         told = furrow("validate", ROOT / "rigs" / "drawbar_pull_small.json",
-                      "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}",
-                      cwd=self.folder)
+                      "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}", cwd=self.folder)
         self.assertEqual(told.returncode, 0, told.stderr)
         for name in ("fit.png", "residual.png", "report.html"):
             self.assertTrue((self.folder / "out" / name).exists(), name)

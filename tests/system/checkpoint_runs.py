@@ -20,9 +20,8 @@ RANKS = {"rig": 0, "tire": 1, "terrain": 2}
 # The wheel comes down within the first half: frames of a wheel in the air would show no forces whatever is saved.
 RUN = changed(rig={"touchdown_damping": 0}, run={"step": 2e-4, "end": 0.1, "average_from": 0.04, "peer_timeout": 20},
               output={"series_interval": 0.002, "frame_interval": 0.01}, checkpoint={"interval": 0.02, "keep": 3})
-FLEXIBLE = changed(tire={"file": "hmmwv_layered.json", "rigid": False,
-                         "elements_circumference": 30, "elements_width": 12},
-                   run=RUN["run"], output=RUN["output"], checkpoint=RUN["checkpoint"])
+FLEXIBLE = changed(tire={"file": "hmmwv_layered.json", "rigid": False, "elements_circumference": 30,
+                         "elements_width": 12}, run=RUN["run"], output=RUN["output"], checkpoint=RUN["checkpoint"])
 
 
 def steps(run):
@@ -77,9 +76,8 @@ class CheckpointTest(SystemTest):
 
     def start_waiting(self, point, rank, count, run=None, env=()):
         """A run that waits at the point until self.mark is removed."""
-        process = start("run", self.path, "--out", run or self.run_folder,
-                        "--no-plots", cwd=self.folder, program=FAULTY,
-                        env={**self.fault(point, rank, count, "wait"), **dict(env)})
+        process = start("run", self.path, "--out", run or self.run_folder, "--no-plots", cwd=self.folder,
+                        program=FAULTY, env={**self.fault(point, rank, count, "wait"), **dict(env)})
         self.addCleanup(process.kill)
         wait_for(lambda: self.mark.exists() or process.poll() is not None, 150, "the fault fires")
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")

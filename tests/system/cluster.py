@@ -41,9 +41,8 @@ class ClusterTest(CheckpointTest):
         return path
 
     def srun(self, *arguments, mpi="pmix", count=3):
-        return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none",
-                                 "--overcommit", "-n", count, FAULTY, *arguments,
-                                 cwd=self.folder, check=False)
+        return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none", "--overcommit", "-n", count, FAULTY,
+                                 *arguments, cwd=self.folder, check=False)
 
     def requeued_job_ends_as_if_undisturbed(self, **env):
         number = self.cluster.submit(self.script(), cwd=self.folder,
@@ -57,9 +56,8 @@ class ClusterTest(CheckpointTest):
         self.cluster.wait_for_state(number, lambda job: job["Restarts"] == "1"
                                     and job["JobState"] in ("PENDING", "RUNNING"), 60)
         time.sleep(3)  # Slurm refuses what it began in the same second; on its own it lets two minutes pass
-        wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}",
-                                           "StartTime=now", check=False).returncode == 0,
-                 30, "the job need not wait for two minutes")
+        wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}", "StartTime=now",
+                                           check=False).returncode == 0, 30, "the job need not wait for two minutes")
         self.cluster.wait_for_state(number, lambda job: job["JobState"] == "COMPLETED", 240)
         text = said.read_text()
         time_then = self.STOPPED_AT * self.SCENARIO["run"]["step"]
@@ -149,8 +147,7 @@ class FourWheelsOnTwoRanks(ClusterTest):
         self.assertEqual(sorted(path for path in rest if not path.startswith("checkpoints/")),
                          ["run.log", "summary.json"])
         print(f"signalled before step {min(signalled)} of {steps(self.whole)[-1]}; of {len(files)} files {len(equal)} "
-              f"are equal byte for "
-              f"byte; wall times aside so are summary.json and {len(rest) - 2} files of checkpoints")
+              f"are equal byte for byte; wall times aside so are summary.json and {len(rest) - 2} files of checkpoints")
 
 
 class QueuedAgainByItself(ClusterTest):

@@ -28,9 +28,8 @@ class Commands(SystemTest):
         text = self.output("--help")
         for command in ("run", "validate", "ranks", "explain", "report", "events", "bed", "soil"):
             self.assertIn(command, text)
-            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil")
-                          else "KEY" if command == "explain" else "DIR",
-                          self.output(command, "--help"))
+            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command
+                          == "explain" else "DIR", self.output(command, "--help"))
 
     def test_examples_in_the_help_name_options_and_files_that_there_are(self):
         commands = re.findall(r"^  (\w+)  ", self.output("--help"), re.MULTILINE)
@@ -92,9 +91,8 @@ class Commands(SystemTest):
 
     def test_validate_tells_people(self):
         text = self.output("validate", write_scenario(self.folder))
-        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius",
-                     "memory", "disk", "terrain",
-                     "load         4609 N", "sinkage", "Froude number",
+        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius", "memory", "disk",
+                     "terrain", "load         4609 N", "sinkage", "Froude number",
                      "bound by     terrain.radius: the contact is about"):
             self.assertIn(word, text)
 

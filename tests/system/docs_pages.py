@@ -21,8 +21,7 @@ class Stage(SystemTest):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
         done = subprocess.run([sys.executable, "-B", DOCS / "stage.py", self.folder / "site", "--root", root],
-                              text=True,
-                              capture_output=True)
+                              text=True, capture_output=True)
         return done
 
     def page(self, name):
@@ -82,9 +81,8 @@ class Reference(SystemTest):
         for name in ("time_s", "sinkage_m", "drawbar_pull_N", "iso_force_x_N",
                      "suspension_travel_m", "spring_energy_J"):
             self.assertIn(name, columns)
-        scenario = {"tire": {"file": "rigid_drum.json", "rigid": True},
-                    "terrain": {"engine": "rigid"}, "rig": {"load": 25},
-                    "run": {"end": 0.01, "average_from": 0}, "output": {"frame_interval": 0}}
+        scenario = {"tire": {"file": "rigid_drum.json", "rigid": True}, "terrain": {"engine": "rigid"},
+                    "rig": {"load": 25}, "run": {"end": 0.01, "average_from": 0}, "output": {"frame_interval": 0}}
         (self.folder / "a.json").write_text(json.dumps(scenario))
         done = furrow("run", "a.json", "--out", "a", "--no-plots", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)

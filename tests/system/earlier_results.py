@@ -67,9 +67,8 @@ class Overwrite(SystemTest):
         said = self.folder / "said"
         with open(said, "w") as file:
             process = subprocess.Popen([PROGRAM, "run", self.slow, "--out", self.out, "--overwrite", "--no-plots"],
-                                       cwd=self.folder,
-                                       stdin=subprocess.DEVNULL, stdout=file,
-                                       stderr=file, env={**os.environ, **self.cache})
+                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
+                                       env={**os.environ, **self.cache})
         self.addCleanup(process.kill)
         wait_for(lambda: "settling" in said.read_text(), 60, "the bed settles")
         self.assertIsNone(process.poll())
@@ -242,9 +241,8 @@ class ContinuedRun(SystemTest):
 
     def setUp(self):
         super().setUp()
-        self.path = write_scenario(self.folder,
-                                   changed(terrain={"engine": "rigid", "radius": None, "cohesion": None, "layers": None,
-                                                    "length": None, "width": None}))
+        self.path = write_scenario(self.folder, changed(terrain={"engine": "rigid", "radius": None, "cohesion": None,
+                                                                 "layers": None, "length": None, "width": None}))
         scenario = json.loads(self.path.read_text())
         scenario["terrain"] = {"engine": "rigid"}
         self.path.write_text(json.dumps(scenario))

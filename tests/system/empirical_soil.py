@@ -42,12 +42,9 @@ class EmpiricalSoil(SystemTest):
         self.assertLess(deepest, -0.005)
 
     def test_a_wheel_that_no_ground_bears_or_holds_is_warned_of(self):
-        for stiffness, step, words in (("1e4", 2e-4,
-                                        r"WARNING: the wheel has sunk in by \S+ radii: the ground does not bear its "
-                                        r"load"),
-                                       ("1e11", 5e-4,
-                                        r"WARNING: the wheel is \S+ radii above the ground as it was: it bounces or "
-                                        r"was thrown off")):
+        for stiffness, step, words in (("1e4", 2e-4, r"WARNING: the wheel has sunk in by \S+ radii: the ground does "
+                                        r"not bear its load"), ("1e11", 5e-4, r"WARNING: the wheel is \S+ radii above "
+                                                                r"the ground as it was: it bounces or was thrown off")):
             _, told = self.run_of(stiffness, "--set", f"terrain.bekker_k_phi={stiffness}",
                                   "--set", "terrain.bekker_k_c=0",
                                   "--set", "run.end=0.8", "--set", "run.average_from=0.7",

@@ -73,9 +73,8 @@ class LauncherVariables(EnvironmentTest):
 
     def test_a_finished_run_under_mpirun_says_so(self):
         self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)
-        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root",
-                               "--oversubscribe", "-n", "3", PROGRAM,
-                               "resume", "out"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", "3",
+                               PROGRAM, "resume", "out"], cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("there is nothing to do"), 1, done.stderr)
         self.assertEqual(done.stdout, "out\n")
@@ -84,9 +83,8 @@ class LauncherVariables(EnvironmentTest):
         study = {"scenario": "small.json", "set": {"run.end": 0.004, "run.average_from": 0, "terrain.engine": "rigid"},
                  "grid": {"rig.slip": [0.2]}}
         (self.folder / "study.json").write_text(json.dumps(study))
-        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root",
-                               "-n", "1", PROGRAM, "sweep", "study.json"],
-                              cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "-n", "1", PROGRAM, "sweep",
+                               "study.json"], cwd=self.folder, capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
@@ -120,9 +118,8 @@ class Launcher(EnvironmentTest):
     def test_that_fails_where_memory_is_scarce_is_a_limit(self):
         env = self.launcher("echo 'PMIX ERROR: NOT-AVAILABLE in file dstore_segment.c' >&2; exit 1\n")
         line = self.one_error(limited("-v 400000", "run", self.path, "--out", "out", cwd=self.folder, env=env), 6)
-        self.assertRegex(line,
-                         r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended with "
-                         r"status 1 .*PMIX ERROR")
+        self.assertRegex(line, r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended "
+                         r"with status 1 .*PMIX ERROR")
 
     def test_that_hands_on_the_death_of_a_rank_is_no_broken_one(self):
         # Open MPI's, of a rank that it has just started
@@ -176,41 +173,35 @@ class Limits(EnvironmentTest):
         self.assertIn(f"the folder for temporary files, TMPDIR {small}, has room for", done.stderr)
 
     def test_processor_time(self):
-        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3",
-                       "--set", "terrain.radius=0.012", "--set", "terrain.layers=12", "--set", "run.step=2e-5",
-                       "--out", "out", cwd=self.folder)
+        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3", "--set", "terrain.radius=0.012",
+                       "--set", "terrain.layers=12", "--set", "run.step=2e-5", "--out", "out", cwd=self.folder)
         self.assertIn("a process may use 2 s of processor time (ulimit -t)", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 
     def test_processor_time_of_a_command_without_ranks(self):
         for limits in ("-t 2", "-S -t 2"):
-            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006",
-                           "--set", "terrain.layers=30", "--set", "run.step=2e-5",
-                           cwd=self.folder)
-            self.assertEqual(self.one_error(done, 6),
-                             "furrow: error: a process may use 2 s of processor time (ulimit -t), expected a higher "
-                             "limit")
+            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006", "--set", "terrain.layers=30",
+                           "--set", "run.step=2e-5", cwd=self.folder)
+            self.assertEqual(self.one_error(done, 6), "furrow: error: a process may use 2 s of processor time (ulimit "
+                             "-t), expected a higher limit")
             self.assertEqual(self.names(), ["small.json"])
 
     def test_a_terrain_that_cannot_fit_is_refused_before_anything_begins(self):
-        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15",
-                 "--set", "terrain.length=100", "--set", "terrain.width=40",
-                 "--set", "run.step=2e-5"]
+        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100",
+                 "--set", "terrain.width=40", "--set", "run.step=2e-5"]
         for command in ("run", "bed"):
             begin = time.monotonic()
             line = self.one_error(limited("-v 4000000", command, self.path, *large, cwd=self.folder), 6)
-            self.assertRegex(line,
-                             r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB \(ulimit "
-                             r"-v\)")
+            self.assertRegex(line, r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB "
+                             r"\(ulimit -v\)")
             self.assertLess(time.monotonic() - begin, 20)
         self.assertEqual(self.names(), ["small.json"])
         self.assertEqual(limited("-v 4000000", "validate", self.path, *large, cwd=self.folder).returncode, 0)
 
     def test_memory_that_runs_out_on_the_way_is_no_failure_of_the_physics(self):
         # About 620,000 grains: half of the estimate is below the limit, so it is tried. MPI itself needs about 0.3 GB.
-        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15",
-                "--set", "terrain.length=13.3", "--set", "terrain.width=0.6",
-                "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
+        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=13.3",
+                "--set", "terrain.width=0.6", "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
         done = limited("-v 340000", "run", self.path, *many, cwd=self.folder, timeout=300)
         self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
         self.assertEqual(survivors(self.folder), [])
@@ -259,10 +250,8 @@ class LongWork(EnvironmentTest):
                    "--set", "terrain.layers=1", "--set", "run.step=2e-5", phase="placing the grains")
 
     def test_settling_many_grains(self):
-        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set",
-                   "terrain.length=12", "--set", "terrain.layers=12",
-                   "--set", "run.step=2e-5",
-                   phase="settling the bed")
+        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set", "terrain.length=12",
+                   "--set", "terrain.layers=12", "--set", "run.step=2e-5", phase="settling the bed")
 
     def test_plots_and_what_measures_the_machine(self):
         done = furrow("run", self.path, *SHORT, "--out", "out", "--no-plots", cwd=self.folder)
@@ -297,9 +286,8 @@ class Pause(EnvironmentTest):
 
     def stopped_run(self):
         """A run that Ctrl-Z has stopped, with its ranks."""
-        process = start("run", self.path, "--set", "run.end=0.3", "--out",
-                        "out", "--set", "terrain.engine=rigid", "--no-plots",
-                        "--set", "run.step=1e-6", cwd=self.folder)
+        process = start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid",
+                        "--no-plots", "--set", "run.step=1e-6", cwd=self.folder)
         self.addCleanup(process.kill)
         wait_for(lambda: (self.folder / "out" / "timeseries.csv").exists(), 60, "the run begins")
         process.send_signal(signal.SIGTSTP)
@@ -338,9 +326,8 @@ class Names(EnvironmentTest):
 
     def test_that_are_not_utf_8(self):
         folder = os.fsencode(self.folder) + b"/caf\xe9"
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path),
-                               *(word.encode() for word in SHORT), b"--out", folder],
-                              cwd=self.folder, capture_output=True)
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path), *(word.encode() for word in SHORT),
+                               b"--out", folder], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         done = subprocess.run([os.fsencode(PROGRAM), b"report", folder], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -357,9 +344,8 @@ class Names(EnvironmentTest):
             file.write(tire.read_bytes())
         with open(folder + b"/s.json", "w") as file:
             json.dump(changed(tire={"file": "own.json"}), file)
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json",
-                               *(word.encode() for word in SHORT), b"--out", b"out"],
-                              cwd=self.folder, capture_output=True)
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json", *(word.encode() for word in SHORT),
+                               b"--out", b"out"], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn(b"key 'tire.file': is in a folder with a name that is not UTF-8", done.stderr)
 

@@ -32,9 +32,8 @@ class Beds(SystemTest):
 
     def refused(self, expected, commands=("validate", "bed", "run")):
         for command in commands:
-            done = subprocess.run([PROGRAM, command, str(self.scenario)],
-                                  cwd=self.folder, capture_output=True, text=True, timeout=60,
-                                  stdin=subprocess.DEVNULL,
+            done = subprocess.run([PROGRAM, command, str(self.scenario)], cwd=self.folder, capture_output=True,
+                                  text=True, timeout=60, stdin=subprocess.DEVNULL,
                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (ENOUGH, ENOUGH)))
             lines = done.stderr.splitlines()
             self.assertIn(done.returncode, (2, 5), done.stderr)

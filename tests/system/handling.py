@@ -78,9 +78,8 @@ class Handling(SystemTest):
             row = max(found, key=lambda row: row["rig.carrier_mass"] == "450")
             # the same spin: rig.slip counts from each tire's own radius
             turns = 1.0 - SHELL_RADIUS * (1.0 - slip) / radius
-            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}",
-                               "--set", f"rig.slip={turns}", "--set", f"rig.toe_angle={toe}",
-                               "--set", f"rig.carrier_mass={row['rig.carrier_mass']}")
+            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}", "--set", f"rig.slip={turns}",
+                               "--set", f"rig.toe_angle={toe}", "--set", f"rig.carrier_mass={row['rig.carrier_mass']}")
             for k, of in enumerate(("fx", "fy")):
                 self.assertAlmostEqual(told["iso_w"]["force_N"][k], float(row[f"iso_w.force_N.{k}"]),
                                        delta=1.1 * largest[of] + 5.0, msg=(wanted, of))

@@ -55,9 +55,8 @@ class SmallWheel(SystemTest):
         self.assertIn(f"the terrain took {found['substeps_added']} more substeps", done.stderr)
         # It continues bit for bit while it is refined, whatever the threads.
         again = self.folder / "again"
-        for arguments in (("run", self.path, "--threads", "1", "--out",
-                           again, "--set", "run.end=0.0845", "--set", "run.average_from=0.06"),
-                          ("resume", again, "--until", "0.12")):
+        for arguments in (("run", self.path, "--threads", "1", "--out", again, "--set", "run.end=0.0845",
+                           "--set", "run.average_from=0.06"), ("resume", again, "--until", "0.12")):
             done = furrow(*arguments, "--no-plots", cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
         other = summary(again)
@@ -80,13 +79,10 @@ class Failed(SystemTest):
 
     def test_what_no_step_cures_says_how_many_where_and_what_to_change(self):
         run, told = self.fail(self.SOFT)
-        self.assertRegex(told,
-                         r"terrain has contacts that are too hard for its grains at t = .* contacts? (is|are) deeper "
-                         r"than 30 % of a "
-                               r"grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) m; expected "
-                               r"stiffer grains \(about .* Pa in "
-                               r"terrain.young_modulus, which needs a step of at most .* s\), or less load or speed; a "
-                               r"smaller step does not help")
+        self.assertRegex(told, r"terrain has contacts that are too hard for its grains at t = .* contacts? (is|are) "
+                         r"deeper than 30 % of a grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) "
+                         r"m; expected stiffer grains \(about .* Pa in terrain.young_modulus, which needs a step of at "
+                         r"most .* s\), or less load or speed; a smaller step does not help")
         self.assertNotIn("furrow resume", told)
         self.assertIn("a resumed run would fail at the same step; start again with furrow run", told)
         self.assertFalse((run / "summary.json").exists())
@@ -112,9 +108,8 @@ class Failed(SystemTest):
         stopped = summary(run, "summary_failed.json")["failed"]["time_s"]
         last = max(int(entry.name) for entry in (run / "checkpoints").iterdir()) * 1e-4
         self.assertLess(last, stopped)
-        done = furrow("resume", run, "--no-plots", "--set", "run.step=5e-5",
-                      "--set", "terrain.substeps=2", "--until", f"{last + 2e-4:.4f}",
-                      cwd=self.folder)
+        done = furrow("resume", run, "--no-plots", "--set", "run.step=5e-5", "--set", "terrain.substeps=2",
+                      "--until", f"{last + 2e-4:.4f}", cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertFalse((run / "summary_failed.json").exists())
         segment = summary(run)["segments"][-1]

@@ -272,7 +272,6 @@ if __name__ == "__main__":
         sys.exit(77)
     if sys.argv[1:] == ["--short"]:
         sys.argv[1:] = ["SameNumbersOfTheReportsLaw", "RigidTire.test_from_a_checkpoint_whose_step_has_a_frame",
-                        "Refused",
-                        "Faults.test_a_command_that_liggghts_refuses_on_all_ranks",
+                        "Refused", "Faults.test_a_command_that_liggghts_refuses_on_all_ranks",
                         "Faults.test_a_file_that_one_rank_misses"]
     main()

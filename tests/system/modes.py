@@ -19,9 +19,8 @@ class Modes(SystemTest):
         return done
 
     def test_folder_holds_frequencies_shapes_and_pictures(self):
-        done = self.run_modes("hmmwv_lumped.json", "--elements-circumference",
-                              "24", "--elements-width", "6", "--orders", "3",
-                              "--count", "2", "--out", "out")
+        done = self.run_modes("hmmwv_lumped.json", "--elements-circumference", "24", "--elements-width", "6",
+                              "--orders", "3", "--count", "2", "--out", "out")
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), "out")
         self.assertRegex(done.stderr, r"furrow: lowest frequency [\d.]+ Hz, of order \d\n")

@@ -58,9 +58,8 @@ def on_terminal(*arguments, cwd, columns=100, env=None, program=PROGRAM):
     """Runs the program to its end on a terminal of this width; the exit code and what it printed, both streams."""
     ours, terminal = pty.openpty()
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-    process = subprocess.Popen([program, *map(str, arguments)], cwd=cwd,
-                               stdin=subprocess.DEVNULL, stdout=terminal, stderr=terminal,
-                               env={**os.environ, "TERM": "xterm", **(env or {})})
+    process = subprocess.Popen([program, *map(str, arguments)], cwd=cwd, stdin=subprocess.DEVNULL, stdout=terminal,
+                               stderr=terminal, env={**os.environ, "TERM": "xterm", **(env or {})})
     os.close(terminal)
     printed = b""
     try:

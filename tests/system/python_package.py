@@ -209,9 +209,8 @@ class Package(SystemTest):
         self.assertEqual(doctest.testmod(units).failed, 0)
         if not importlib.util.find_spec("mypy"):
             self.skipTest("no mypy")
-        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file",
-                               "mypy.ini", "--cache-dir", self.folder / "cache", "furrow"],
-                              cwd=ROOT / "scripts" / "python", text=True, capture_output=True)
+        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file", "mypy.ini", "--cache-dir", self.folder
+                               / "cache", "furrow"], cwd=ROOT / "scripts" / "python", text=True, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stdout)
 
 

@@ -60,9 +60,8 @@ class Quiet(SystemTest):
         shares = [int(share) for share in re.findall(r"furrow: plotting (\d+) %", text)]
         self.assertGreater(len(shares), 1, text)
         self.assertEqual(shares, sorted(shares))
-        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py",
-                               "--out", "more", "--progress", "out"], cwd=self.folder,
-                              text=True, capture_output=True)
+        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py", "--out", "more",
+                               "--progress", "out"], cwd=self.folder, text=True, capture_output=True)
         shares = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("progress ")]
         self.assertEqual((len(shares), shares[0], shares), (6, 0.0, sorted(shares)), done)
         self.assertRegex(text, r"plotting \d+ %   \d+:\d\d left")
@@ -96,9 +95,8 @@ class Quiet(SystemTest):
                          ("results/aligator_planar-modes-001\n", "results/aligator_planar-modes-002\n"))
 
     def test_suspensions(self):
-        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json",
-                                   "--points", "3", "--no-plots", says=False),
-                         ("results/rover-kc-001\n", "results/rover-kc-002\n"))
+        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json", "--points", "3",
+                                   "--no-plots", says=False), ("results/rover-kc-001\n", "results/rover-kc-002\n"))
 
     def test_benchmarks(self):
         loud, quiet = map(json.loads, self.both("bench", "tire", "--elements-circumference",

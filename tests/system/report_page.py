@@ -64,10 +64,9 @@ def known_run(folder, count=FRAMES, grains=GRAINS, shake=0.0):
     """A run of known contents; the positions of its grains by frame. `shake`: how far every grain moves at random
     between frames, m, which no packing makes small."""
     (folder / "frames").mkdir(parents=True)
-    (folder / "scenario.json").write_text(json.dumps({
-        "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2},
-        "run": {"end": 1.5, "average_from": 0.1},
-        "expected": {"drawbar_pull": 100.0, "drawbar_pull_spread": 5.0}}))
+    (folder / "scenario.json").write_text(json.dumps({"description": "</script><img src=x onerror=alert(1)>",
+                                                      "rig": {"slip": 0.2}, "run": {"end": 1.5, "average_from": 0.1},
+                                                      "expected": {"drawbar_pull": 100.0, "drawbar_pull_spread": 5.0}}))
     (folder / "summary.json").write_text(json.dumps({
         "scenario": "known", "slip": 0.2, "simulated_s": 0.25, "net_terrain_force_N": [100.0, 0.0, 4000.0],
         "terrain_engine": "dem",
@@ -293,9 +292,8 @@ class Page(SystemTest):
         self.assertEqual(charts["note"], "Whiskers: standard error of each run.")
         self.assertEqual([line["label"] for line in charts["charts"][0]["lines"]], ["terrain.cohesion = 40000 Pa"])
         (table,) = blocks_of(about, "table")
-        self.assertEqual(table["columns"][3:],
-                         ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N", "drawbar pull standard error, N",
-                          "drawbar pull steady"])
+        self.assertEqual(table["columns"][3:], ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N",
+                                                "drawbar pull standard error, N", "drawbar pull steady"])
         self.assertEqual(table["rows"][0][4:], ["40000", "120", "4", "true"])
 
     def test_all_values_of_a_pressed_tire_have_units(self):
@@ -336,9 +334,8 @@ class Page(SystemTest):
         self.assertEqual(list(head[:3]), [1, self.positions[-1].nbytes, 0])
         again = furrow("report", self.run_folder, "--vtk", out, "--quiet", cwd=self.folder)
         self.assertEqual(again.returncode, 2)
-        self.assertEqual(again.stderr,
-                         f"furrow: error: command line: key '--vtk': {out} exists and is not an empty folder, expected "
-                         f"a new one\n")
+        self.assertEqual(again.stderr, f"furrow: error: command line: key '--vtk': {out} exists and is not an empty "
+                         "folder, expected a new one\n")
         damaged = self.run_folder / "frames" / "terrain_000001.h5"
         damaged.write_bytes(b"")
         done = furrow("report", self.run_folder, "--vtk", self.folder / "part", cwd=self.folder)
@@ -423,10 +420,9 @@ class OwnFiles(SystemTest):
                 for name, to in (("scene.png", "precious"), ("report.html", "nowhere")):
                     (folder / name).unlink(missing_ok=True)
                     (folder / name).symlink_to(self.folder / to)
-                made = self.report(*arguments,
-                                   told=[f"no {name}: the file of that name in this folder is a link, which furrow "
-                                         f"does not follow"
-                                         for name in ("scene.png", "report.html")])
+                made = self.report(*arguments, told=[f"no {name}: the file of that name in this folder is a link, "
+                                                     "which furrow does not follow" for name in ("scene.png",
+                                                                                                 "report.html")])
                 self.assertEqual(made, ["ranks.png"])
                 self.assertTrue((folder / "scene.png").is_symlink() and (folder / "report.html").is_symlink())
                 self.assertEqual((self.folder / "precious").read_text(), "precious")

@@ -45,9 +45,8 @@ class RingRuns(SystemTest):
         path = write_scenario(self.folder, hard, "stand.json")
         told, _ = self.run_of("sticks", hard)
         slides, _ = self.run_of("slides", {**hard, "tire": {**ring, "friction": 0.0}})
-        done = furrow("press", path, "--out", self.folder / "press", "--deflection",
-                      "0.03", "--load", told["vertical_load_N"],
-                      cwd=self.folder)
+        done = furrow("press", path, "--out", self.folder / "press", "--deflection", "0.03",
+                      "--load", told["vertical_load_N"], cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         pressed = json.loads((self.folder / "press/summary.json").read_text())["deflection_m"]
         self.assertAlmostEqual(slides["tire_deflection_m"] / pressed, 1.0, delta=0.01)
@@ -86,9 +85,8 @@ class RingRuns(SystemTest):
 
     def test_a_load_beyond_the_model_ends_the_run(self):
         path = write_scenario(self.folder, {**ROLLING, "terrain": GROUNDS["rigid"]})
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "out",
-                      "--set", "rig.carrier_mass=6000", "--set",
-                      "rig.touchdown_damping=0", "--set", "rig.drop_height=0.2", cwd=self.folder)
+        done = furrow("run", path, "--no-plots", "--out", self.folder / "out", "--set", "rig.carrier_mass=6000",
+                      "--set", "rig.touchdown_damping=0", "--set", "rig.drop_height=0.2", cwd=self.folder)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertRegex(done.stderr,
                          r"tire 0 was pressed (further than a flexible ring is meant for|to its rim) at t = ")

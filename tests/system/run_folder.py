@@ -320,9 +320,8 @@ class Killed(CheckpointTest):
                 _, err = other.communicate(timeout=60)
                 self.assertEqual(other.returncode, 2, err)
                 waits, error = err.splitlines()
-                self.assertRegex(waits,
-                                 r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; waiting for "
-                                 r"up to 10 s")
+                self.assertRegex(waits, r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; "
+                                 r"waiting for up to 10 s")
                 self.assertRegex(error, rf"^furrow: error: .*out: .*process {os.getpid()} \(")
 
 

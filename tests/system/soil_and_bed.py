@@ -189,9 +189,8 @@ class Soil(WithCache):
         run = self.work / "run"
         run.mkdir()
         (run / "scenario.json").write_text("{}")
-        (run / "summary.json").write_text(json.dumps({"format_version": 1,
-                                                      "tire_radius_m": 0.4673, "tread_width_m": 0.25,
-                                                      "vertical_load_N": 4609, "slip": 0.3}))
+        (run / "summary.json").write_text(json.dumps({"format_version": 1, "tire_radius_m": 0.4673,
+                                                      "tread_width_m": 0.25, "vertical_load_N": 4609, "slip": 0.3}))
         (self.work / "soil.json").write_text(json.dumps({
             "format_version": 1, "k_c": 15.6e3, "k_phi": 245e3, "n": 0.395,
             "cohesion_Pa": 6.9e3, "friction_angle_deg": 26.8,

@@ -200,8 +200,7 @@ class Sweep(SystemTest):
         whole = furrow("sweep", study, "--out", "whole", cwd=self.folder)
         self.assertEqual(whole.returncode, 0, whole.stderr)
         hashes = [{path.parent.name: json.loads(path.read_text())["state_hash"]
-                   for path in self.folder.glob(f"{name}/runs/*/summary.json")}
-                  for name in ("after", "whole")]
+                   for path in self.folder.glob(f"{name}/runs/*/summary.json")} for name in ("after", "whole")]
         self.assertEqual(*hashes)
         self.assertEqual(len(hashes[0]), 2)
 

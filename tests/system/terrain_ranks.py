@@ -86,9 +86,8 @@ class TerrainRanks(CheckpointTest):
             with self.subTest(ranks):
                 other = self.folder / f"of {ranks}"
                 self.program("run", self.path, "--out", other, "--set", f"terrain.ranks={ranks}", "--no-plots")
-                self.same_as_whole(run=other,
-                                   leave_out=["scenario.json", "summary.json", "checkpoints/*", "checkpoints/*/*",
-                                              "results.h5"])
+                self.same_as_whole(run=other, leave_out=["scenario.json", "summary.json", "checkpoints/*",
+                                                         "checkpoints/*/*", "results.h5"])
                 self.assertEqual(summary(other)["drawbar_pull_N"], summary(self.whole)["drawbar_pull_N"])
 
     def test_each_is_in_the_summary_and_has_a_part_of_the_checkpoint(self):

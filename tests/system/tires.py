@@ -19,14 +19,12 @@ HARD = {
     "output": {"series_interval": 1e-3, "frame_interval": 0},
     "checkpoint": {"at_end": False},
 }
-ROLLING = {"rig.angular_speed": 8.56, "rig.slip": 0.05, "rig.ramp": 0.05,
-           "rig.touchdown_time": 0.1, "terrain.ground_stiffness": 5e7,
-           "terrain.ground_shear_stiffness": 2e7, "terrain.ground_damping": 1e4}
+ROLLING = {"rig.angular_speed": 8.56, "rig.slip": 0.05, "rig.ramp": 0.05, "rig.touchdown_time": 0.1,
+           "terrain.ground_stiffness": 5e7, "terrain.ground_shear_stiffness": 2e7, "terrain.ground_damping": 1e4}
 DROP = {"rig.drop_height": 0.3, "rig.touchdown_damping": 0, "terrain.ground_stiffness": 5e7,
         "terrain.ground_damping": 1e4}
-GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 20e3,
-          "terrain.layers": 4, "terrain.length": 1.2,
-          "terrain.width": 0.5}
+GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 20e3, "terrain.layers": 4,
+          "terrain.length": 1.2, "terrain.width": 0.5}
 
 
 class TireTest(SystemTest):
@@ -89,13 +87,10 @@ class Load(TireTest):
         self.assertLess(abs(summary["net_terrain_force_N"][2] / summary["vertical_load_N"] - 1), 0.05)
 
     def test_the_rim_stops_the_run(self):
-        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000,
-                            "rig.drop_height": 0.1, "rig.touchdown_damping": 0,
-                            "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3,
-                            "run.step": 2e-4, "run.end": 1.0},
-                           r"tire 0 reached its rim at t = [\d.]+ s, step \d+: clearance -[\d.e-]+ m at the node of "
-                           r"column \d+, "
-                           r"row \d+ .*try a higher pressure")
+        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000, "rig.drop_height": 0.1,
+                            "rig.touchdown_damping": 0, "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3,
+                            "run.step": 2e-4, "run.end": 1.0}, r"tire 0 reached its rim at t = [\d.]+ s, step \d+: "
+                           r"clearance -[\d.e-]+ m at the node of column \d+, row \d+ .*try a higher pressure")
         time = float(re.search(r"t = ([\d.]+)", error)[1])
         self.assertGreater(time, math.sqrt(2 * 0.1 / 9.81))
 
@@ -129,9 +124,8 @@ class Pressure(TireTest):
         self.assertLess(abs(low["accounts"]["energy"]["residual_share"]), 0.05)
 
     def test_a_run_with_a_schedule_goes_on_bit_for_bit(self):
-        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]],
-                    "run.end": 0.06, "run.average_from": 0.02,
-                    "checkpoint.at_end": True}
+        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]], "run.end": 0.06,
+                    "run.average_from": 0.02, "checkpoint.at_end": True}
         whole, _ = self.ends_well(settings)
         (self.folder / "out").rename(self.folder / "whole")
         self.ends_well({**settings, "run.end": 0.03})

@@ -59,12 +59,11 @@ def series(seed=1, **shape):
         wheels.append({"time_s": time, "slip": slip, "sinkage_m": sinkage, "sinkage_in_rut_m": in_rut,
                        "force_z_N": vertical, "iso_force_x_N": net, "iso_force_y_N": zero, "iso_force_z_N": vertical,
                        "tractive_effort_N": net + (700.0 if rear else 900.0),
-                       "terrain_resistance_N": (700.0 if rear else 900.0) + zero,
-                       "spindle_torque_Nm": (net + 900.0) * RADIUS, "speed_m_per_s": speed,
-                       "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
-                       "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way,
-                       "axle_height_m": height, "lowest_point_m": SURFACE - sinkage,
-                       "sinkage_kinematic_m": SURFACE - (height - RADIUS), "suspension_travel_m": zero})
+                       "terrain_resistance_N": (700.0 if rear else 900.0) + zero, "spindle_torque_Nm": (net + 900.0)
+                       * RADIUS, "speed_m_per_s": speed, "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
+                       "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way, "axle_height_m": height,
+                       "lowest_point_m": SURFACE - sinkage, "sinkage_kinematic_m": SURFACE - (height - RADIUS),
+                       "suspension_travel_m": zero})
     return vehicle, wheels
 
 
@@ -241,9 +240,8 @@ class Report(SystemTest):
         done = furrow("report", folder, cwd=self.folder, timeout=600)
         self.assertEqual(done.returncode, 0, done.stderr)
         names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
-        self.assertEqual(names, {"vehicle.png", "wheel_forces.png", "wheel_motion.png",
-                                 "front_and_rear.png", "gear.png", "ranks.png",
-                                 "scene.png", "report.html"})
+        self.assertEqual(names, {"vehicle.png", "wheel_forces.png", "wheel_motion.png", "front_and_rear.png",
+                                 "gear.png", "ranks.png", "scene.png", "report.html"})
         for name in names - {"report.html"}:
             self.assertEqual((folder / name).read_bytes()[:4], b"\x89PNG")
         self.assertIn("no path.png: the driver follows no path", done.stderr)

@@ -84,17 +84,15 @@ class Vehicles(SystemTest):
             axle["wheel"]["tire"] = str(ROOT / "tire/data" / axle["wheel"]["tire"])
         (self.folder / "top_heavy.json").write_text(json.dumps(top_heavy))
         told = self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json",
-                           "--set", "rig.driver=null",
-                           "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65", "--set", "run.step=5e-4",
-                           "--set", "run.end=2", "--set", "run.average_from=0.5")
+                           "--set", "rig.driver=null", "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65",
+                           "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "run.average_from=0.5")
         self.assertIn("s, before 2 s: the vehicle has turned over", told.stderr)
         self.assertEqual(self.summary()["end_reason"], "overturned")
         self.assertLess(self.summary()["end_time_s"], 1.9)
 
     def test_grains_on_a_slope_carry_the_car_and_its_momentum_closes(self):
-        coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3",
-                  "--set", "terrain.length=6", "--set", "rig.driver=null",
-                  "--set", "rig.start=3", "--set", "tire.contact_tangent=false"]
+        coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3", "--set", "terrain.length=6",
+                  "--set", "rig.driver=null", "--set", "rig.start=3", "--set", "tire.contact_tangent=false"]
         self.run_it("hmmwv_small.json", *QUICK, *coarse, "--set", "rig.slope=0.1", "--set", "run.end=1.2",
                     "--set", "run.average_from=0.8", "--set", "run.step=2e-4")
         wheels = [self.table(f"wheel{k}") for k in range(4)]
@@ -131,8 +129,7 @@ class Vehicles(SystemTest):
         done = furrow("resume", self.folder / "out", "--until", "0.04", "--no-plots", cwd=self.folder, timeout=300)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn(f"key 'rig.vehicle': '{self.folder / 'mine.json'}' was changed since the run began, expected the "
-                      f"file that it "
-                      "was computed with", done.stderr)
+                      "file that it was computed with", done.stderr)
 
     def test_every_shipped_scenario_of_a_vehicle_is_valid(self):
         names = [path.name for path in (ROOT / "rigs").glob("*.json")

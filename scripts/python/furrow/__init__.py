@@ -23,12 +23,10 @@ from .runs import Run
 from .studies import Study
 from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
-__all__ = [
-    "BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError",
-    "GrainFrame", "InputOutputError", "Kinematics",
-    "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "ProgramFault",
-    "RankLost", "Run", "Soil", "Stopped", "Study",
-    "TireFrame", "calibrate", "kc", "modes", "open", "plots", "press", "resume", "run", "soil", "sweep"]
+__all__ = ["BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError", "GrainFrame", "InputOutputError",
+           "Kinematics", "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "ProgramFault",
+           "RankLost", "Run", "Soil", "Stopped", "Study", "TireFrame", "calibrate", "kc", "modes", "open", "plots",
+           "press", "resume", "run", "soil", "sweep"]
 
 
 def __getattr__(name: str) -> ModuleType:

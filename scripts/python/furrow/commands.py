@@ -116,9 +116,8 @@ def press(scenario: File | Content, *, out: File | None = None, overwrite: bool 
     return opened
 
 
-def modes(tire: File, *, out: File | None = None, overwrite: bool = False,
-          orders: int | None = None, count: int | None = None,
-          pressure: float | None = None, plots: bool = False, progress: bool = True) -> Modes:
+def modes(tire: File, *, out: File | None = None, overwrite: bool = False, orders: int | None = None,
+          count: int | None = None, pressure: float | None = None, plots: bool = False, progress: bool = True) -> Modes:
     """Computes the natural frequencies of a tire on a rim at rest and opens them.
 
     tire       a tire file, as given or one that comes with the program
@@ -133,9 +132,8 @@ def modes(tire: File, *, out: File | None = None, overwrite: bool = False,
     return opened
 
 
-def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False,
-       travel: float | None = None, points: int | None = None,
-       plots: bool = False, progress: bool = True) -> Kinematics:
+def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False, travel: float | None = None,
+       points: int | None = None, plots: bool = False, progress: bool = True) -> Kinematics:
     """Moves the suspensions of a vehicle and opens what was tabulated.
 
     vehicle   a vehicle file, as given or one that comes with the program

@@ -2,10 +2,9 @@
 from __future__ import annotations
 
 # As results.h5 has them, longest first.
-ENDINGS = {
-    "kg_m_per_s": "kg m/s", "rad_per_s": "rad/s", "m_per_s2": "m/s2", "m_per_s": "m/s",
-    "m_s": "m/s", "rpm": "1/min", "N_per_m": "N/m",
-    "rad": "rad", "Nm": "N m", "Ns": "N s", "Pa": "Pa", "kg": "kg", "s": "s", "m": "m", "N": "N", "J": "J", "W": "W"}
+ENDINGS = {"kg_m_per_s": "kg m/s", "rad_per_s": "rad/s", "m_per_s2": "m/s2", "m_per_s": "m/s", "m_s": "m/s",
+           "rpm": "1/min", "N_per_m": "N/m", "rad": "rad", "Nm": "N m", "Ns": "N s", "Pa": "Pa", "kg": "kg", "s": "s",
+           "m": "m", "N": "N", "J": "J", "W": "W"}
 
 
 def _ending(name: str) -> str | None:

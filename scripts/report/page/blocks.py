@@ -23,8 +23,7 @@ def cards(items):
 def table(columns, rows, note="", marked=(), only_marked=""):
     """Rows of texts. With `only_marked` (the words beside a box to tick) the marked rows can be shown alone."""
     return {"type": "table", "columns": columns, "rows": [[printable(cell) for cell in row] for row in rows],
-            "note": note,
-            "marked": list(marked), "only_marked": only_marked}
+            "note": note, "marked": list(marked), "only_marked": only_marked}
 
 
 def bars(rows, note=""):

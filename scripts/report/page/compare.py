@@ -56,9 +56,8 @@ def results(runs, arrays):
     if missing:
         made.append(blocks.text(f"Without a summary (failed, stopped or still running): {', '.join(missing)}.", "warn"))
     if items:
-        made.append(blocks.charts(items,
-                                  "Whiskers: 95 % interval of each run's own mean. It does not cover the scatter "
-                                  "between beds."))
+        made.append(blocks.charts(items, "Whiskers: 95 % interval of each run's own mean. It does not cover the "
+                                  "scatter between beds."))
     return {"id": "answer", "title": "Results", "blocks": made}
 
 

@@ -17,10 +17,9 @@ LONG = {"position_m", "distance_m", "path_distance_m", "x_m", "y_m", "z_m",
 # Names whose own words would be hard to understand.
 WORDS = {"simulated_s": "simulated time", "wall_s": "wall time", "settle_wall_s": "wall time for the bed",
          "wall_s_per_simulated_s": "wall time per simulated second", "cpu_s": "processor time",
-         "compute_s": "computing",
-         "communicate_s": "communicating", "wait_s": "waiting", "step_s": "step", "cpu": "processor", "z_m": "height",
-         "contacts_tire": "contacts of the tire", "active_share": "share of grains awake",
-         "active_share_mean": "share of grains awake, mean",
+         "compute_s": "computing", "communicate_s": "communicating", "wait_s": "waiting", "step_s": "step",
+         "cpu": "processor", "z_m": "height", "contacts_tire": "contacts of the tire",
+         "active_share": "share of grains awake", "active_share_mean": "share of grains awake, mean",
          "sinkage_kinematic_m": "kinematic sinkage"}
 
 

@@ -104,9 +104,8 @@ def press_answer(run):
             items.append(blocks.card(f"footprint {naming(key)[0]}", value, unit))
     made = [blocks.cards(items)]
     if is_number(values.get("deflection_m")) and is_number(values.get("load_N")):
-        made.insert(0,
-                    blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by "
-                                f"{1e3 * values['deflection_m']:.4g} mm.", "lead"))
+        made.insert(0, blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by "
+                                   f"{1e3 * values['deflection_m']:.4g} mm.", "lead"))
     if isinstance(values.get("statically_stable"), bool):
         made.append(blocks.text(*stability(values)))
     return {"id": "answer", "title": "Result", "blocks": made}
@@ -196,6 +195,5 @@ def motion(run, arrays, name):
 
 def kinematics(page, arrays, run, sections):
     page["title"] = f"{run.values.get('vehicle', '')} · suspensions"
-    sections(page, [(name, lambda name=name: motion(run, arrays, name))
-                    for name in ("parallel", "opposite", "steering") if name in run.motions]
-             + [("all values", lambda: provenance(run.values))])
+    sections(page, [(name, lambda name=name: motion(run, arrays, name)) for name in ("parallel", "opposite", "steering")
+                    if name in run.motions] + [("all values", lambda: provenance(run.values))])

@@ -6,16 +6,13 @@ import base64
 import pathlib
 import zlib
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .frames import Frame, GrainFrame, TireFrame
-
-if TYPE_CHECKING:
-    from .runs import Run
 
 TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64"}
 Array = NDArray[Any]
@@ -80,9 +77,3 @@ def write_kinds(folder: pathlib.Path, kinds: Mapping[str, Iterable[Frame]]) -> p
     for kind, frames in kinds.items():
         write_kind(folder, kind, frames)
     return folder
-
-
-def write_run(run: Run, folder: pathlib.Path) -> pathlib.Path:
-    """All frames of a run."""
-    wheels = range(max(1, sum(name.startswith("wheel") for name in run.subjects)))
-    return write_kinds(folder, {**{f"tire{wheel}": run.tire(wheel) for wheel in wheels}, "terrain": run.grains})

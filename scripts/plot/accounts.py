@@ -74,10 +74,8 @@ def over_time(run, axis):
     if "residual_J" in series:
         axis.plot(time, series["residual_J"], color=RED, lw=1.3, label="residual: none of them")
     mark_window(axis, run)
-    axis.set_xlim(0.0, max(time[-1], 1e-12))
-    axis.set_xlabel("time, s")
-    axis.set_ylabel("since the start, J")
-    axis.set_title("Work put in = stored + lost + residual")
+    axis.set(xlim=(0.0, max(time[-1], 1e-12)), xlabel="time, s", ylabel="since the start, J",
+             title="Work put in = stored + lost + residual")
     axis.legend(loc="upper left", fontsize=8)
 
 
@@ -108,8 +106,7 @@ def energy(run):
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     over_time(run, left)
     bars(right, rows, "J")
-    right.set_xlabel("over the whole run, J")
-    right.set_title("Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
+    right.set(xlabel="over the whole run, J", title="Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
     return figure
 
 
@@ -130,6 +127,5 @@ def momentum(run):
         if not rows:
             raise Missing("the account of momentum is empty")
         bars(axis, rows, "N s")
-        axis.set_xlabel("momentum, N s")
-        axis.set_title(name)
+        axis.set(xlabel="momentum, N s", title=name)
     return figure

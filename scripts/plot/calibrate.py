@@ -7,9 +7,9 @@ import numpy as np
 from .run_data import Missing, check_types, read_object
 from .soil import COLOURS
 from .style import GREY, RED
+from .units import naming
 
 COLUMNS = 3  # panels side by side
-SCALES = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "Pa": ("kPa", 1e-3), "Nm": ("N m", 1.0)}
 
 
 class Calibration:
@@ -50,12 +50,9 @@ class Calibration:
 
 
 def quantity(name):
-    """(words, unit, factor) of a column such as deflection_m."""
-    words, found, unit = str(name).rpartition("_")
-    if not found:
-        return str(name), "", 1.0
-    shown, factor = SCALES.get(unit, (unit, 1.0))
-    return words.replace("_", " "), shown, factor
+    """(words, unit, factor) of a column such as deflection_m; forces are in kN."""
+    words, unit, factor = naming(str(name))
+    return (words, "kN", 1e-3) if unit == "N" else (words, unit, factor)
 
 
 def panels_of(targets):

@@ -95,6 +95,5 @@ def grid(v, rows, columns, height, width=None, **options):
                                 squeeze=False, **options)
     figure.suptitle(v.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     for axis in axes[-1]:
-        axis.set_xlabel("time, s")
-        axis.set_xlim(0.0, v.time[-1])
+        axis.set(xlabel="time, s", xlim=(0.0, v.time[-1]))
     return figure, axes

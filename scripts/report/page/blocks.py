@@ -2,8 +2,8 @@
 from plot.digits import digits, with_error
 from plot.run_data import printable
 from plot.student import student
+from plot.units import is_number, naming
 
-from .names import is_number, naming
 
 
 def text(words, kind="plain"):

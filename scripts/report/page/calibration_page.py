@@ -2,9 +2,9 @@
 import numpy as np
 
 from plot.calibrate import quantity
+from plot.units import is_number
 
 from . import blocks
-from .names import is_number
 
 MOST_LINES = 40  # of one chart
 

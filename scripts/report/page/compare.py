@@ -3,9 +3,9 @@ import numpy as np
 
 from plot.digits import digits
 from plot.run_data import Missing
+from plot.units import is_number, naming
 
 from . import blocks, curves, run_page, scenario
-from .names import is_number, naming
 
 KEYS = (("drawbar_pull_N", "drawbar pull"), ("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth"),
         ("drawbar_coefficient", "pull over load"),

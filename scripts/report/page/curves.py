@@ -2,10 +2,10 @@
 import numpy as np
 
 from plot.run_data import Missing
+from plot.units import naming
 
 from . import blocks
 from .blobs import thin
-from .names import naming
 
 MOST_WHEELS = 16  # in one plot
 NOISE = 1e-9  # a column that never exceeds it shows nothing but rounding

@@ -2,10 +2,10 @@
 import numpy as np
 
 from plot.run_data import Missing
+from plot.units import is_number
 
 from . import blocks
 from .frames import pack
-from .names import is_number
 
 
 def chassis(run, times, arrays):

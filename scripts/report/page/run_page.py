@@ -5,9 +5,9 @@ from plot import events
 from plot.digits import digits
 from plot.run_data import Missing, printable
 from plot.vehicle_run import VehicleRun
+from plot.units import is_number, naming
 
 from . import blocks, curves, ground, scenario
-from .names import is_number, naming
 
 # Keys of a wheel that become cards: (key, its standard error, how many independent values, what it is).
 CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),

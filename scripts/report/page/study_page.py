@@ -6,9 +6,9 @@ import numpy as np
 from plot import sweep as studies
 from plot.digits import with_error
 from plot.run_data import Missing
+from plot.units import naming
 
 from . import blocks
-from .names import naming
 from .scenario import unit_of
 
 PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"),

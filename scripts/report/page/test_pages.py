@@ -4,9 +4,9 @@ import numpy as np
 from plot import kinematics as suspensions
 from plot.run_data import Missing
 from plot.soil import runs
+from plot.units import is_number, naming
 
 from . import blocks, scenario
-from .names import is_number, naming
 
 # Soil values: key, words, unit, factor.
 SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 1e-3), ("n", "sinkage exponent n", "", 1.0),

@@ -1,14 +1,12 @@
 """What the tests of checkpoints share: a run of a second, the same run made to fail at a named point, and
 comparisons."""
-import csv
-import json
 import os
 import pathlib
 import shutil
 import sys
 import tempfile
 
-from program import ROOT, SystemTest, changed, furrow, start, survivors, wait_for, write_scenario
+from program import ROOT, SystemTest, changed, furrow, read_json, rows_of, survivors, wait_for, write_scenario
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
 from compare_runs import differences  # noqa: E402
@@ -31,13 +29,12 @@ def steps(run):
 
 
 def summary(run):
-    return json.loads((pathlib.Path(run) / "summary.json").read_text())
+    return read_json(pathlib.Path(run) / "summary.json")
 
 
 def table(run):
     """The lines of the series."""
-    with open(pathlib.Path(run) / "timeseries.csv", newline="") as file:
-        return list(csv.DictReader(file))
+    return rows_of(pathlib.Path(run) / "timeseries.csv")
 
 
 class CheckpointTest(SystemTest):
@@ -60,8 +57,7 @@ class CheckpointTest(SystemTest):
         self.mark = self.folder / "fired"
 
     def program(self, *arguments, code=0, **options):
-        done = furrow(*arguments, cwd=self.folder, program=FAULTY, **options)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow(*arguments, program=FAULTY, **options, code=code)
         self.no_process_left()
         return done
 
@@ -76,9 +72,8 @@ class CheckpointTest(SystemTest):
 
     def start_waiting(self, point, rank, count, run=None, env=()):
         """A run that waits at the point until self.mark is removed."""
-        process = start("run", self.path, "--out", run or self.run_folder, "--no-plots", cwd=self.folder,
-                        program=FAULTY, env={**self.fault(point, rank, count, "wait"), **dict(env)})
-        self.addCleanup(process.kill)
+        process = self.start("run", self.path, "--out", run or self.run_folder, "--no-plots", program=FAULTY,
+                             env={**self.fault(point, rank, count, "wait"), **dict(env)})
         wait_for(lambda: self.mark.exists() or process.poll() is not None, 150, "the fault fires")
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
         return process

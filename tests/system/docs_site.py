@@ -7,7 +7,6 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import unittest
 import urllib.parse
 
 from program import PROGRAM, ROOT, SystemTest, main

@@ -1,18 +1,14 @@
 #!/usr/bin/python3
 """HDF5 files and results of strangers: no memory beyond the file's size, no other file, one message; and summaries,
 frames and height fields of any content before `furrow report`."""
-import json
 import os
-import pathlib
 import resource
 import subprocess
-import sys
-import unittest
 
 import h5py
 import numpy as np
 
-from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, write_scenario
+from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, write_json, write_scenario
 
 ENOUGH = 2 << 30  # bytes of address space; a bomb asks for more
 REPORT = ROOT / "scripts" / "report.py"
@@ -47,8 +43,7 @@ class Beds(SystemTest):
         with self.made() as file:
             file.create_dataset("position", data=np.array([[0.1, 0.0, 0.05], [0.3, 0.0, 0.05]]),
                                 compression="gzip", shuffle=True)
-        done = furrow("validate", self.scenario, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("validate", self.scenario)
 
     def test_declared_huge_checksum(self):
         with self.made() as file:
@@ -115,7 +110,7 @@ class Reports(SystemTest):
         super().setUp()
         self.run = self.folder / "run"
         (self.run / "frames").mkdir(parents=True)
-        (self.run / "scenario.json").write_text(json.dumps(changed()))
+        write_json(self.run / "scenario.json", changed())
         self.summary({})
 
     def summary(self, values):
@@ -123,7 +118,7 @@ class Reports(SystemTest):
                  "vertical_load_N": 4600.0,
                  "drawbar_pull_N": {"mean": 100.0, "sem": 5.0, "from_s": 0.02, "to_s": 0.05, "steady": True},
                  "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1}
-        (self.run / "summary.json").write_text(json.dumps({**usual, **values}))
+        write_json(self.run / "summary.json", {**usual, **values})
 
     def report(self, *arguments):
         return subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments],
@@ -158,7 +153,7 @@ class Reports(SystemTest):
     def test_the_command_says_once_why_there_are_no_plots(self):
         self.summary({"drawbar_pull_N": 3})
         (self.folder / "empty").mkdir()
-        (self.folder / "empty" / "scenario.json").write_text(json.dumps(changed()))
+        write_json(self.folder / "empty" / "scenario.json", changed())
         taken = self.folder / "taken"
         taken.mkdir()
         (taken / ".furrow-run").write_text("furrow-run 1\n")
@@ -168,8 +163,7 @@ class Reports(SystemTest):
                                     ([self.folder / "empty"], "holds nothing to plot"),
                                     ([self.folder / "empty", self.run, "--out", "both"], "holds no results of a run")):
             with self.subTest(arguments):
-                done = furrow("report", *arguments, cwd=self.folder)
-                self.assertEqual((done.returncode, done.stdout), (5, ""), done.stderr)
+                done = self.furrow("report", *arguments, code=5, prints="")
                 self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
                 self.assertIn(expected, done.stderr)
         self.summary({})

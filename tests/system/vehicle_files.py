@@ -4,13 +4,13 @@ import csv
 import io
 import json
 
-from program import ROOT, SystemTest, furrow, main, start
+from program import ROOT, SystemTest, furrow, main, read_json, write_json
 
 DATA = ROOT / "vehicle" / "data"
 
 
 def shipped(name):
-    return json.loads((DATA / name).read_text())
+    return read_json(DATA / name)
 
 
 def changed(name, *changes):
@@ -140,9 +140,7 @@ class Wrong(SystemTest):
     def refused(self, command, text, message):
         path = self.folder / "wrong.json"
         path.write_text(text if isinstance(text, str) else json.dumps(text))
-        done = furrow(command, path, cwd=self.folder, timeout=60)
-        self.assertEqual(done.returncode, 2, f"{done.stdout}{done.stderr}")
-        self.assertEqual(done.stdout, "")
+        done = self.furrow(command, path, timeout=60, code=2, prints="")
         lines = [line for line in done.stderr.splitlines() if line.startswith("furrow: error: ")]
         self.assertEqual(len(lines), 1, done.stderr)
         self.assertIn(message, lines[0])
@@ -162,30 +160,19 @@ class Wrong(SystemTest):
         for more, word in ((("--travel", "-1"), "--travel"), (("--travel", "0.5"), "axle 'front'"),
                            (("--points", "2"), "--points"),
                            (("--csv", "--json"), "--csv"), (("--csv", "--out", "x"), "--out")):
-            done = furrow("kc", "rover.json", *more, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(word, done.stderr)
-        done = furrow("kc", "none.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("key 'VEHICLE': 'none.json' does not exist, expected a file at that place or in", done.stderr)
-        done = furrow("kc", ROOT / "rigs" / "hmmwv_rigid.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("hmmwv_rigid.json: is a scenario, expected the file of a vehicle: its rig.vehicle is "
-                      "'hmmwv.json'", done.stderr)
-        done = furrow("run", "hmmwv.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("hmmwv.json: is a vehicle, expected a scenario (the key rig.vehicle of a scenario takes "
-                      "vehicles)", done.stderr)
-        done = furrow("validate", "hmmwv_small.json", "--set", "rig.vehicle=none.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
+            self.furrow("kc", "rover.json", *more, code=2, says=word)
+        self.furrow("kc", "none.json", code=2,
+                    says="key 'VEHICLE': 'none.json' does not exist, expected a file at that place or in")
+        self.furrow("kc", ROOT / "rigs" / "hmmwv_rigid.json", code=2, says="hmmwv_rigid.json: is a scenario, expected "
+                    "the file of a vehicle: its rig.vehicle is 'hmmwv.json'")
+        self.furrow("run", "hmmwv.json", code=2, says="hmmwv.json: is a vehicle, expected a scenario (the key "
+                    "rig.vehicle of a scenario takes vehicles)")
+        done = self.furrow("validate", "hmmwv_small.json", "--set", "rig.vehicle=none.json", code=2)
         places = done.stderr.split("expected a file at one of: ")[1].strip().split(", ")
         self.assertEqual(len(places), len(set(places)), places)
-        done = furrow("kc", ROOT / "rigs" / "first_look.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("first_look.json: is a scenario, expected the file of a vehicle\n", done.stderr)
-        done = furrow("validate", "rover.json", "--set", "run.end=1", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("--set", done.stderr)
+        self.furrow("kc", ROOT / "rigs" / "first_look.json", code=2,
+                    says="first_look.json: is a scenario, expected the file of a vehicle\n")
+        self.furrow("validate", "rover.json", "--set", "run.end=1", code=2, says="--set")
         self.assertEqual([], list(self.folder.iterdir()))
 
 
@@ -199,30 +186,22 @@ class Unlikely(SystemTest):
                  "key 'chassis.inertia': gives a radius of gyration of 0.0269 m between wheels "
                                                        "that are 2.78 m apart: another unit?")):
             with self.subTest(where):
-                path = self.folder / "odd.json"
-                path.write_text(json.dumps(changed("buggy.json", (where, value))))
-                done = furrow("validate", path, cwd=self.folder, timeout=300)
-                self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertIn(f"furrow: warning: {path}: {message}", done.stderr)
-                scenario = self.folder / "run.json"
-                scenario.write_text(json.dumps({"rig": {"type": "vehicle", "vehicle": "odd.json"},
-                                                "terrain": {"engine": "rigid"}}))
-                done = furrow("validate", scenario, cwd=self.folder, timeout=300)
-                self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertIn(f"furrow: warning: {scenario}: key 'rig.vehicle': is {path}, whose "
-                              f"{message.replace(': ', ' ', 1)}", done.stderr)
+                path = write_json(self.folder / "odd.json", changed("buggy.json", (where, value)))
+                self.furrow("validate", path, timeout=300, says=f"furrow: warning: {path}: {message}")
+                scenario = write_json(self.folder / "run.json", {"rig": {"type": "vehicle", "vehicle": "odd.json"},
+                                                "terrain": {"engine": "rigid"}})
+                self.furrow("validate", scenario, timeout=300, says=f"furrow: warning: {scenario}: key 'rig.vehicle': "
+                            f"is {path}, whose {message.replace(': ', ' ', 1)}")
         for path in DATA.glob("*.json"):
             if "schema" not in path.name:
                 # also where a scenario's name is similar
-                done = furrow("validate", path.name, cwd=self.folder, timeout=300)
-                self.assertEqual(done.returncode, 0, done.stderr)
+                done = self.furrow("validate", path.name, timeout=300)
                 self.assertNotIn("warning", done.stderr)
 
 
 class Stands(SystemTest):
     def page(self, name):
-        done = furrow("validate", name, "--json", cwd=self.folder, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("validate", name, "--json", timeout=300)
         return json.loads(done.stdout)
 
     def test_hmmwv(self):
@@ -239,8 +218,7 @@ class Stands(SystemTest):
             self.assertGreater(wheel["shock"]["to_shortest_m"], 0.0)
         modes = {mode["name"]: mode["frequency_Hz"] for mode in page["modes"]}
         self.assertTrue(0.5 < modes["heave"] < 4 and 0.5 < modes["pitch"] < 4, modes)
-        text = furrow("validate", DATA / "hmmwv.json", cwd=self.folder, timeout=300)
-        self.assertEqual(text.returncode, 0, text.stderr)
+        text = self.furrow("validate", DATA / "hmmwv.json", timeout=300)
         self.assertIn("19, 100 rows, 14 degrees of freedom", text.stdout)
         self.assertIn("front left, spring", text.stdout)
 
@@ -253,8 +231,7 @@ class Stands(SystemTest):
 
 class Kinematics(SystemTest):
     def test_folder_with_table_figures_and_plots(self):
-        done = furrow("kc", "buggy.json", "--out", "out", "--points", "5", cwd=self.folder, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("kc", "buggy.json", "--out", "out", "--points", "5", timeout=300)
         self.assertNotIn("warning", done.stderr)  # what keeps plots from being made is one
         self.assertEqual(done.stdout.strip(), "out")
         out = self.folder / "out"
@@ -263,7 +240,7 @@ class Kinematics(SystemTest):
         self.assertEqual(len(rows), (2 + 2 + 1) * 2 * 5)
         drawn = next(row for row in rows if row["motion"] == "parallel" and abs(float(row["travel_m"])) < 1e-9)
         self.assertAlmostEqual(float(drawn["camber_rad"]), -0.5 * 3.14159265 / 180, delta=1e-6)
-        summary = json.loads((out / "summary.json").read_text())
+        summary = read_json(out / "summary.json")
         self.assertEqual(summary["vehicle"], "Buggy")
         self.assertEqual(len(summary["as_drawn"]), 4)
         self.assertEqual(summary["at_rest"]["axles"], ["front", "rear"])
@@ -277,11 +254,10 @@ class Kinematics(SystemTest):
 
     def test_a_long_sweep_tells_how_far_it_is_and_stops_on_a_signal(self):
         furrow("kc", "buggy.json", "--csv", "--points", "3", cwd=self.folder, timeout=300)
-        done = start("kc", "buggy.json", "--points", "1001", cwd=self.folder)
+        done = self.start("kc", "buggy.json", "--points", "1001")
         self.assertIn("moving the suspensions", done.stderr.readline())
         done.terminate()
-        _, said = done.communicate(timeout=60)
-        self.assertEqual(done.returncode, 75, said)
+        self.ended(done, 75)
         self.assertFalse((self.folder / "results").exists())
 
     def test_a_damaged_cache_is_made_anew(self):
@@ -297,11 +273,10 @@ class Kinematics(SystemTest):
         self.assertEqual(kept[0].read_bytes(), whole)
 
     def test_a_signal_stops_it_while_tires_are_pressed(self):
-        done = start("kc", "hmmwv.json", cwd=self.folder, env={"XDG_CACHE_HOME": str(self.folder / "cache")})
+        done = self.start("kc", "hmmwv.json", env={"XDG_CACHE_HOME": str(self.folder / "cache")})
         self.assertIn("tires", done.stderr.readline())
         done.terminate()
-        _, said = done.communicate(timeout=60)
-        self.assertEqual(done.returncode, 75, said)
+        self.ended(done, 75)
         self.assertFalse((self.folder / "results").exists())
 
 

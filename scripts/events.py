@@ -7,7 +7,6 @@ usage: events.py DIR [--from T] [--to T] [--json]
 Exit codes: 0 done, 2 the window holds no means, 5 a file could not be read.
 """
 import argparse
-import csv
 import json
 import math
 import pathlib
@@ -16,7 +15,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from plot import axles, events, gear_balance  # noqa: E402
-from plot.run_data import Missing, Run, printable  # noqa: E402
+from plot.run_data import PROBLEMS, Missing, Run, in_words, printable  # noqa: E402
 from plot.vehicle_run import VehicleRun  # noqa: E402
 
 
@@ -97,11 +96,8 @@ def main():
     options = parser.parse_args()
     try:
         return tell(options)
-    except (OSError, ValueError, Missing) as error:
-        print(f"furrow: error: {printable(options.directory)}: {printable(error)}", file=sys.stderr)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, csv.Error, RuntimeError) as error:
-        print(f"furrow: error: {printable(options.directory)}: a file in it is damaged: {printable(repr(error))}",
-              file=sys.stderr)
+    except PROBLEMS as error:
+        print(f"furrow: error: {printable(options.directory)}: {in_words(error)}", file=sys.stderr)
     return 5
 
 

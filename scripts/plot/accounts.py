@@ -3,8 +3,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import digits
-from .run_data import Damaged, Missing, check_types
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window
+from .run_data import Missing
+from .style import BLUE, GREY, ORANGE, PURPLE, RED, mark_window
 
 # Entries of accounts.energy, in J.
 WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along", "guide_work": "rails and steering",
@@ -33,25 +33,18 @@ def account(run, name):
     accounts = run.told.get("accounts")
     if not accounts:
         raise Missing(f"{run.told_in} has no accounts")
-    where = f"{run.told_in}: key 'accounts'"
-    check_types(accounts, where, objects=("energy", "momentum"))
     found = accounts.get(name)
     if not found:
         raise Missing(f"{run.told_in} has no account of {name}")
-    check_types(found, f"{where}: key '{name}'", numbers=("residual_share", "turnover", "largest", "bound"),
-                flags=("closes",))
     return found
 
 
-def entries(found, file):
+def entries(found):
     """(label, value, colour) of what is large enough for a bar; the residual always."""
-    where = f"{file}: key 'accounts': key 'energy'"
-    check_types(found, where, numbers=("residual",), objects=("work", "stored", "lost"))
     least = LEAST_SHARE * abs(found.get("turnover") or 0.0)
     rows = []
     for group, labels, colour in GROUPS:
         values = found.get(group) or {}
-        check_types(values, f"{where}: key '{group}'", numbers=list(values))
         rows += [(f"{label} ({'in' if group == 'work' else group})", float(values[key]), colour) for key,
                  label in labels.items() if values.get(key) is not None and abs(values[key]) > least]
     return rows + [("residual", float(found.get("residual") or 0.0), RED)]
@@ -101,7 +94,7 @@ def bars(axis, rows, unit):
 
 def energy(run):
     found = account(run, "energy")
-    rows = entries(found, run.told_in)
+    rows = entries(found)
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6))
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     over_time(run, left)
@@ -121,8 +114,6 @@ def momentum(run):
             vector = found.get(key)
             if vector is None:
                 continue
-            if not (isinstance(vector, list) and len(vector) == 3 and all(isinstance(v, (int, float)) for v in vector)):
-                raise Damaged(f"{run.told_in}: key 'accounts': key 'momentum': key '{key}': expected 3 numbers")
             rows.append((label, float(vector[i]), RED if key == "residual" else PURPLE if key in CHANGES else BLUE))
         if not rows:
             raise Missing("the account of momentum is empty")

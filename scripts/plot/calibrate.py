@@ -4,7 +4,7 @@ import csv
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing, check_types, read_object
+from .run_data import Missing, read_object
 from .soil import COLOURS
 from .style import GREY, RED
 from .units import naming
@@ -18,9 +18,6 @@ class Calibration:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "calibration.json")
-        check_types(self.values, "calibration.json", texts=("study", "calibrate", "start", "result"),
-                    objects=("parameters", "fitted", "held_out", "identifiability"),
-                    lists=("targets", "held_out_targets", "warnings", "starts"))
 
     def title(self, figure, what):
         figure.suptitle(f"{self.values.get('study', self.directory.name)} · {self.values.get('calibrate', '')} · "

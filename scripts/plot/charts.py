@@ -140,8 +140,7 @@ def unknowns(run, node):
     wheels = run.told.get("wheels") or [run.told]
     number = node.removeprefix("tire ")
     if node.startswith("tire ") and number.isdigit() and int(number) < len(wheels):
-        found = wheels[int(number)].get("tire_coordinates") if isinstance(wheels[int(number)], dict) else None
-        if isinstance(found, (int, float)) and found > 0:
+        if found := wheels[int(number)].get("tire_coordinates"):
             return f", {found:,.0f} coordinates"
     return ""
 
@@ -154,7 +153,6 @@ def ranks(run):
     names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "") + unknowns(run, r["node"])
              + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
     compute = np.array([r["compute_s"] for r in table])
-    # runs before it was counted have it in computing
     communicate = np.array([r.get("communicate_s", 0.0) for r in table])
     wait = np.array([r["wait_s"] for r in table])
     position = np.arange(len(table))

@@ -218,11 +218,10 @@ def path_events(v):
 
 
 def end_event(v):
-    section = v.run.scenario.get("run") or {}
-    end = section.get("end") if isinstance(section, dict) else None
+    end = (v.run.scenario.get("run") or {}).get("end")
     last = v.time[-1]
     interval = float(np.median(np.diff(v.time))) if len(v.time) > 1 else 0.0
-    early = isinstance(end, (int, float)) and last < end - 1.5 * interval
+    early = end is not None and last < end - 1.5 * interval
     distance = v["distance_m"][-1]
     yield Event(last, f"ends before run.end = {end:g} s" if early else "end", "vehicle", distance, "m",
                 "last line; value: distance driven")

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import check_types, read_object
+from .run_data import read_object
 from .soil import Soil
 from .style import BLUE, GREY, ORANGE
 
@@ -13,11 +13,6 @@ class Press(Soil):
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"),
-                    objects=("footprint", "sticking_stiffness"),
-                    numbers=("deflection_m", "load_N", "secant_stiffness_N_per_m"))
-        check_types(self.values.get("footprint") or {}, "summary.json: key 'footprint'",
-                    numbers=("force_N", "length_m", "width_m", "mean_pressure_Pa"))
 
     def title(self, figure, what):
         figure.suptitle(f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing, check_types, read_object
+from .run_data import Damaged, Missing, read_object
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
@@ -14,12 +14,6 @@ class Soil:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "soil.json")
-        check_types(self.values, "soil.json", texts=("scenario",), objects=("grains", "standard_error"),
-                    flags=("quick",))
-        for key in ("grains", "standard_error"):
-            values = self.values.get(key) or {}
-            check_types(values, f"soil.json: key '{key}'",
-                        numbers=[name for name in values if key != "grains" or name.endswith(("_m", "_Pa"))])
 
     def table(self, name):
         """The columns of a CSV file as arrays."""
@@ -31,7 +25,7 @@ class Soil:
             rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
             return dict(zip(lines[0].split(","), rows.T))
         except (IndexError, ValueError) as error:
-            raise ValueError(f"{name} holds something that is no number: {error}") from error
+            raise Damaged(f"{name} holds something that is no number: {error}") from error
 
     def text(self, name, factor=1.0, form=".3g"):
         """value ± standard error."""

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import with_error
-from .run_data import Damaged, Missing, check_types, read_dataset, read_object
+from .run_data import Damaged, Missing, read_dataset, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
@@ -19,8 +19,6 @@ class Sweep:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "sweep.json")
-        check_types(self.values, "sweep.json", texts=("study", "description"),
-                    objects=("plot", "beds"), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
             table = csv.DictReader(line for line in file if not line.startswith("#"))
             rows = list(table)

@@ -2,7 +2,6 @@
 import numpy as np
 
 from plot.run_data import Missing
-from plot.units import is_number
 
 from . import blocks
 from .frames import pack
@@ -19,10 +18,7 @@ def chassis(run, times, arrays):
 
 def profile(run):
     """The profile of hard ground, [[x, z], …] in m; empty without one."""
-    terrain = run.scenario.get("terrain")
-    points = terrain.get("profile") if isinstance(terrain, dict) else None
-    return points if isinstance(points, list) and all(isinstance(point, list) and len(point) == 2
-                                                      and all(map(is_number, point)) for point in points) else []
+    return (run.scenario.get("terrain") or {}).get("profile") or []
 
 
 def meshes(packing, arrays):

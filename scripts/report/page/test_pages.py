@@ -1,7 +1,6 @@
 """The pages of soil tests, of a pressed tire, of its frequencies and of a vehicle's suspensions."""
 import numpy as np
 
-from plot import kinematics as suspensions
 from plot.run_data import Missing
 from plot.soil import runs
 from plot.units import is_number, naming

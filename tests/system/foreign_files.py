@@ -139,7 +139,7 @@ class Reports(SystemTest):
                                   "summary.json: key 'drawbar_pull_N': key 'mean': is \"much\", expected a number"),
                                  ({"drawbar_pull_N": {"mean": 1.0}}, "lacks from_s and to_s"),
                                  ({"drawbar_pull_N": {"mean": 10 ** 400}}, "expected a number"),
-                                 ({"wheels": [3]}, "key 'wheels.0': expected an object"),
+                                 ({"wheels": [3]}, "key 'wheels.0': is 3, expected an object"),
                                  ({"wheels": 3}, "key 'wheels': is 3, expected a list"),
                                  ({"slip": [1]}, "key 'slip': is [1], expected a number"),
                                  ({"scenario": {}}, "key 'scenario': is {}, expected a text"),
@@ -200,10 +200,6 @@ class Reports(SystemTest):
         tell(lambda file, name: file.create_dataset(name, shape=(10 ** 6, 10 ** 6), dtype="f8", chunks=(1, 1024)),
              "results.h5: the dataset 'terrain/height_before' is said to have 1000000000000 numbers, but 0 bytes are "
              "stored")
-        tell(lambda file, name: file.create_dataset(name, shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)]),
-             "results.h5: the dataset 'terrain/height_before' is stored in another file")
-        tell(lambda file, name: file.__setitem__(name, h5py.SoftLink("/x")),
-             "results.h5: the dataset 'terrain/height_before' is a link")
         tell(lambda file, name: file.__setitem__(name, ["a", "b"]),
              "results.h5: the dataset 'terrain/height_before' holds no plain numbers")
         tell(lambda file, name: file.__setitem__(name, [1.0, 2.0]), "results.h5 holds no height field")

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import pty
+import re
 import signal
 import struct
 import subprocess
@@ -41,6 +42,29 @@ def changed(**sections):
         else:
             scenario[name] = values
     return scenario
+
+
+def with_keys(document, changes):
+    """A copy in which keys such as "rig.slip" or "axles[0].wheel" have other values; ... removes the key."""
+    document = copy.deepcopy(document)
+    for key, value in changes.items():
+        place = document
+        *way, last = [int(part) if part.isdigit() else part for part in re.findall(r"\w+", key)]
+        for part in way:
+            place = place[part]
+        if value is ...:
+            del place[last]
+        elif isinstance(place, list) and last == len(place):
+            place.append(value)
+        else:
+            place[last] = value
+    return document
+
+
+def message_of(changes, words):
+    """What the message for a document with these changes holds: the first key before the words, unless they begin with
+    an ellipsis."""
+    return words[2:] if words.startswith("… ") else f"key '{next(iter(changes))}': {words}"
 
 
 def write_scenario(folder, scenario=None, name="small.json"):

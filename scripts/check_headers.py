@@ -14,14 +14,11 @@ import re
 import sys
 
 ALGORITHMS = ("adjacent_find all_of any_of binary_search clamp copy copy_if copy_n count count_if equal equal_range "
-              "fill fill_n find "
-              "find_first_of find_if find_if_not for_each generate includes inplace_merge is_permutation is_sorted "
-              "lexicographical_compare lower_bound max max_element merge min min_element minmax minmax_element "
-              "mismatch next_permutation "
-              "none_of nth_element partial_sort partition partition_point remove_copy remove_if replace replace_if "
-              "reverse rotate sample "
-              "search set_difference set_intersection set_union shuffle sort stable_partition stable_sort swap_ranges "
-              "transform unique "
+              "fill fill_n find find_first_of find_if find_if_not for_each generate includes inplace_merge "
+              "is_permutation is_sorted lexicographical_compare lower_bound max max_element merge min min_element "
+              "minmax minmax_element mismatch next_permutation none_of nth_element partial_sort partition "
+              "partition_point remove_copy remove_if replace replace_if reverse rotate sample search set_difference "
+              "set_intersection set_union shuffle sort stable_partition stable_sort swap_ranges transform unique "
               "upper_bound").split()
 # What a source uses that includes the header.
 NAMES = {

@@ -7,7 +7,6 @@ usage: events.py DIR [--from T] [--to T] [--json]
 Exit codes: 0 done, 2 the window holds no means, 5 a file could not be read.
 """
 import argparse
-import csv
 import json
 import math
 import pathlib
@@ -16,7 +15,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from plot import axles, events, gear_balance  # noqa: E402
-from plot.run_data import Missing, Run, printable  # noqa: E402
+from plot.run_data import PROBLEMS, Missing, Run, in_words, printable  # noqa: E402
 from plot.vehicle_run import VehicleRun  # noqa: E402
 
 
@@ -47,19 +46,17 @@ def as_json(v, found, compared, balance):
         for name, note in zip(names, row.notes):
             if note:
                 means[row.what][name]["leaves_out"] = note
-    return {"events": [{"time_s": e.time, "event": e.what, "of": e.subject,
-                        "value": number(float(e.value)), "unit": e.unit,
-                        "threshold": e.threshold} for e in found],
-            "weight_N": v.weight,
+    return {"events": [{"time_s": e.time, "event": e.what, "of": e.subject, "value": number(float(e.value)),
+                        "unit": e.unit, "threshold": e.threshold} for e in found], "weight_N": v.weight,
             "axles": {"from_s": compared.begin, "to_s": compared.end, "window": compared.chosen,
-                      "steady": not compared.unsteady,
-                      "unsteady_because": compared.unsteady, "share_in_ruts": dict(zip(names, compared.in_ruts)),
-                      "means": means},
-            "gear_balance": balance and {
-                "shift_wheel_speed_m_per_s": balance.shift_speed, "limit_over_weight": number(balance.limit),
-                "throttle": balance.throttle, "largest_wheel_speed_m_per_s": balance.reached, "at_s": balance.time,
-                "gross_traction_over_weight": balance.gross, "torque_over_radius_and_weight": balance.torque,
-                "changed": balance.changed, "verdict": balance.verdict}}
+                      "steady": not compared.unsteady, "unsteady_because": compared.unsteady,
+                      "share_in_ruts": dict(zip(names, compared.in_ruts)), "means": means},
+            "gear_balance": balance and {"shift_wheel_speed_m_per_s": balance.shift_speed,
+                                         "limit_over_weight": number(balance.limit), "throttle": balance.throttle,
+                                         "largest_wheel_speed_m_per_s": balance.reached, "at_s": balance.time,
+                                         "gross_traction_over_weight": balance.gross,
+                                         "torque_over_radius_and_weight": balance.torque, "changed": balance.changed,
+                                         "verdict": balance.verdict}}
 
 
 def tell(options):
@@ -67,8 +64,7 @@ def tell(options):
     for name, value in (("--from", options.begin), ("--to", options.end)):
         if value is not None and not 0.0 <= value <= v.time[-1]:
             print(f"furrow: error: command line: key '{name}': is {value:g} s, expected 0 to {v.time[-1]:g} s, the end "
-                  f"of the series",
-                  file=sys.stderr)
+                  "of the series", file=sys.stderr)
             return 2
     found = events.events(v)
     try:
@@ -100,11 +96,8 @@ def main():
     options = parser.parse_args()
     try:
         return tell(options)
-    except (OSError, ValueError, Missing) as error:
-        print(f"furrow: error: {printable(options.directory)}: {printable(error)}", file=sys.stderr)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, csv.Error, RuntimeError) as error:
-        print(f"furrow: error: {printable(options.directory)}: a file in it is damaged: {printable(repr(error))}",
-              file=sys.stderr)
+    except PROBLEMS as error:
+        print(f"furrow: error: {printable(options.directory)}: {in_words(error)}", file=sys.stderr)
     return 5
 
 

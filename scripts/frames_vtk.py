@@ -8,26 +8,18 @@ files of a kind by time. scripts/python/paraview_run.py shows such a folder in P
 Exit codes: 0 files were written, 2 FOLDER is not new or the run has no frames, 5 a file could not be read or written.
 """
 import argparse
-import importlib
 import pathlib
 import sys
-import types
 
-PACKAGE = pathlib.Path(__file__).resolve().parent / "python" / "furrow"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-
-def module(name):
-    """A module of the package `furrow`, without its __init__: that needs pandas and xarray, and frames do not."""
-    if "furrow" not in sys.modules:
-        sys.modules["furrow"] = package = types.ModuleType("furrow")
-        package.__path__ = [str(PACKAGE)]
-    return importlib.import_module(f"furrow.{name}")
+from plot import frames, vtk  # noqa: E402
+from plot.run_data import Run  # noqa: E402
 
 
 def kinds_of(directory):
     """{"tire0": frames, …, "terrain": frames} of what the folder holds."""
-    frames, run = module("frames"), module("_scripts").run_data.Run(directory)
-    found, wheel = {}, 0
+    run, found, wheel = Run(directory), {}, 0
     while files := run.frames(f"tire{wheel}"):
         found[f"tire{wheel}"] = frames.Frames(frames.TireFrame, files)
         wheel += 1
@@ -81,7 +73,7 @@ def main():
         if not kinds:
             return fail(f"{arguments.directory}: has no frames, expected a run with output.frame_interval above 0", 2)
         taken = Taken(kinds, arguments.progress)
-        module("vtk").write_kinds(out, taken.kinds)
+        vtk.write_kinds(out, taken.kinds)
     except (OSError, RuntimeError, ValueError) as error:  # h5py's errors for a damaged file are among them
         if taken:
             remove_files(out, taken.kinds)

@@ -10,7 +10,6 @@ Every plot is made from what the directory holds; a plot whose data are missing 
 says so. Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
 """
 import argparse
-import csv
 import functools
 import io
 import json
@@ -26,12 +25,11 @@ matplotlib.use("Agg")
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
 
 # noqa: E402
-from plot import (accounts, calibrate, charts, ground, kinematics, modes,
-                  press, ride, scene, soil, sweep, vehicle_ground, vehicle_plots,
-                  vehicle_run, vehicle_scene, wheels)
+from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep,
+                  vehicle_ground, vehicle_plots, vehicle_run, vehicle_scene, wheels)
 from plot.digits import with_error  # noqa: E402
 from plot.own_files import may_write, remove_own, write_whole  # noqa: E402
-from plot.run_data import Damaged, Missing, Run, printable, why_no_folder  # noqa: E402
+from plot.run_data import PROBLEMS, Damaged, Missing, Run, in_words, printable, why_no_folder  # noqa: E402
 
 
 quiet = False  # set by --quiet
@@ -44,41 +42,44 @@ def vehicle_of(run):
 
 def of_vehicle(plot):
     """A plot of a vehicle's run, for `Run`."""
-    return lambda run: plot(vehicle_of(run))
+    return functools.wraps(plot)(lambda run: plot(vehicle_of(run)))
 
 
-PLOTS = {
-    "pull_slip_sinkage": charts.pull_slip_sinkage,
-    "forces": charts.forces,
-    "rut": ground.rut,
-    "ranks": charts.ranks,
-    "energy": accounts.energy,
-    "momentum": accounts.momentum,
-    "scene": scene.scene,
-}
+def named(*plots):
+    return {plot.__name__: plot for plot in plots}
+
+
+# Plots of the folders of a command, by the names of their files.
+ACCOUNTS = (charts.ranks, accounts.energy, accounts.momentum)
+PLOTS = {**named(charts.pull_slip_sinkage, charts.forces, ground.rut, *ACCOUNTS), "scene": scene.scene}
 RIDE_PLOTS = {**PLOTS, "ride": ride.ride}
-VEHICLE_PLOTS = {
-    "vehicle": of_vehicle(vehicle_plots.vehicle),
-    "wheel_forces": of_vehicle(wheels.wheel_forces),
-    "wheel_motion": of_vehicle(wheels.wheel_motion),
-    "front_and_rear": of_vehicle(wheels.front_and_rear),
-    "path": of_vehicle(vehicle_plots.path),
-    "gear": of_vehicle(vehicle_plots.gear),
-    "rut": of_vehicle(vehicle_ground.rut),
-    "ranks": charts.ranks,
-    "energy": accounts.energy,
-    "momentum": accounts.momentum,
-    "scene": of_vehicle(vehicle_scene.vehicle_scene),
-}
-CURVE_PLOTS = {"curve": sweep.curve}
-SWEEP_PLOTS = {**CURVE_PLOTS, "passes": sweep.passes, "rut_along": sweep.rut_along}
-BEDS_PLOTS = {"beds": sweep.beds}
-SOIL_PLOTS = {"plate": soil.plate, "shear": soil.shear, "cone": soil.cone, "repose": soil.repose}
-KINEMATICS_PLOTS = {"parallel": kinematics.parallel, "opposite": kinematics.opposite, "steering": kinematics.steering}
-MODES_PLOTS = {"frequencies": modes.frequencies, "mode_shapes": modes.mode_shapes, "mode_sections": modes.mode_sections}
-CALIBRATION_PLOTS = {"fit": calibrate.fit, "residual": calibrate.residual}
+VEHICLE_PLOTS = {**named(*map(of_vehicle, (vehicle_plots.vehicle, wheels.wheel_forces, wheels.wheel_motion,
+                                           wheels.front_and_rear, vehicle_plots.path, vehicle_plots.gear,
+                                           vehicle_ground.rut)), *ACCOUNTS),
+                 "scene": of_vehicle(vehicle_scene.vehicle_scene)}
+CURVE_PLOTS, BEDS_PLOTS = named(sweep.curve), named(sweep.beds)
+SWEEP_PLOTS = named(sweep.curve, sweep.passes, sweep.rut_along)
+OTHER_PLOTS = {calibrate.Calibration: named(calibrate.fit, calibrate.residual),
+               soil.Soil: named(soil.plate, soil.shear, soil.cone, soil.repose),
+               press.Press: named(press.load_deflection, press.footprint),
+               modes.Modes: named(modes.frequencies, modes.mode_shapes, modes.mode_sections),
+               kinematics.Kinematics: named(kinematics.parallel, kinematics.opposite, kinematics.steering)}
+# The file that tells a kind of folder; any other one is that of a run.
+KINDS = {"calibration.json": calibrate.Calibration, "soil.json": soil.Soil, "sweep.json": sweep.Sweep,
+         "press.csv": press.Press, "modes.csv": modes.Modes, "kinematics.csv": kinematics.Kinematics}
 WORK = {"scene": 20, "page": 10}  # of most plots: 1; the shares of the progress follow from it
-PRESS_PLOTS = {"load_deflection": press.load_deflection, "footprint": press.footprint}
+
+
+def opened(directory):
+    return next((kind for name, kind in KINDS.items() if (directory / name).is_file()), Run)(directory)
+
+
+def plots_of(run):
+    if isinstance(run, Run):
+        return VEHICLE_PLOTS if run.has_vehicle else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS
+    if isinstance(run, sweep.Sweep):
+        return BEDS_PLOTS if run.values.get("beds") else SWEEP_PLOTS if run.values.get("passes") else CURVE_PLOTS
+    return OTHER_PLOTS[type(run)]
 
 
 def note(text):
@@ -114,108 +115,80 @@ def words(run):
         note(f"this pull is NOT STEADY: {reasons}")
 
 
+def fail(subject, what):
+    print(f"furrow: error: {printable(subject)}: {what}", file=sys.stderr)
+    return 5
+
+
+def draw(plot, run, out, name):
+    """Makes one picture. @returns whether it was written; None: there is none"""
+    try:
+        figure = plot(run)
+    except Missing as reason:
+        note(f"no {name}: {reason}")
+        return remove_own(out, name)
+    except PROBLEMS as error:
+        return print(f"report: no {name}: {in_words(error)}", file=sys.stderr)
+    picture = io.BytesIO()
+    if write := may_write(out, name):
+        figure.savefig(picture, format="png", dpi=130)
+        write_whole(out / name, picture.getvalue())
+    matplotlib.pyplot.close(figure)
+    return write
+
+
 def main():
     parser = argparse.ArgumentParser(description="Plots of a run as PNG files.")
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", choices=RIDE_PLOTS
-                        | VEHICLE_PLOTS | SOIL_PLOTS | PRESS_PLOTS | MODES_PLOTS | KINEMATICS_PLOTS
-                        | SWEEP_PLOTS | BEDS_PLOTS | CALIBRATION_PLOTS, help="this plot only; may be repeated")
+    parser.add_argument("--only", action="append", help="this plot only; may be repeated", choices={
+        name for plots in (RIDE_PLOTS, VEHICLE_PLOTS, SWEEP_PLOTS, BEDS_PLOTS, *OTHER_PLOTS.values()) for name in plots})
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     parser.add_argument("--progress", action="store_true",
                         help="print the share that is done, 'progress 0.25', before each plot")
     arguments = parser.parse_args()
     global quiet
     quiet = arguments.quiet
+    directory, out = arguments.directory, arguments.out or arguments.directory
     if arguments.others:
         import page
-        return page.compare([arguments.directory, *arguments.others], arguments.out or pathlib.Path("."), may_write)
-    out = arguments.out or arguments.directory
+        return page.compare([directory, *arguments.others], arguments.out or pathlib.Path("."), may_write)
     try:
-        of_soil = (arguments.directory / "soil.json").is_file()
-        of_sweep = (arguments.directory / "sweep.json").is_file()
-        of_press = (arguments.directory / "press.csv").is_file()
-        of_modes = (arguments.directory / "modes.csv").is_file()
-        of_kinematics = (arguments.directory / "kinematics.csv").is_file()
-        of_calibration = (arguments.directory / "calibration.json").is_file()
-        of = (calibrate.Calibration if of_calibration else soil.Soil if of_soil
-              else sweep.Sweep if of_sweep else press.Press if of_press
-              else modes.Modes if of_modes else kinematics.Kinematics if of_kinematics else Run)
-        run = of(arguments.directory)
-    except (OSError, ValueError) as error:
-        print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
-        return 5
-    except (AttributeError, LookupError, TypeError, csv.Error) as error:
-        print(f"furrow: error: {arguments.directory}: a file in it is damaged: {printable(repr(error))}",
-              file=sys.stderr)
-        return 5
+        run = opened(directory)
+    except PROBLEMS as error:
+        return fail(directory, in_words(error))
     if why := why_no_folder(out):
-        print(f"furrow: error: {printable(out)}: {why}", file=sys.stderr)
-        return 5
-    written, in_the_way = [], []
-    of_beds = of_sweep and run.values.get("beds")
-    plots = (CALIBRATION_PLOTS if of_calibration else SOIL_PLOTS if of_soil
-             else BEDS_PLOTS if of_beds else SWEEP_PLOTS if of_sweep and run.values.get("passes")
-             else CURVE_PLOTS if of_sweep else PRESS_PLOTS if of_press
-             else MODES_PLOTS if of_modes else KINEMATICS_PLOTS if of_kinematics else VEHICLE_PLOTS if run.has_vehicle
-             else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS)
+        return fail(out, why)
+    plots, written, in_the_way = plots_of(run), [], False
     names = [*(arguments.only or plots), "page"]
     for k, name in enumerate(names[:-1]):
         if arguments.progress:
             tell_share(names, k)
         try:
-            figure = plots[name](run)
-        except Missing as reason:
-            note(f"no {name}.png: {reason}")
-            remove_own(out, f"{name}.png")
-            continue
-        except Damaged as error:
-            print(f"report: no {name}.png: {printable(error)}", file=sys.stderr)
-            continue
-        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-            print(f"report: no {name}.png: {printable(repr(error))}", file=sys.stderr)
-            continue
-        except MemoryError:
-            print(f"report: no {name}.png: there is not enough memory for it", file=sys.stderr)
-            continue
-        except (OSError, RuntimeError) as error:  # h5py's errors for a damaged file
-            print(f"report: no {name}.png: a file in {arguments.directory} is damaged: {printable(error)}",
-                  file=sys.stderr)
-            continue
-        try:
-            write = may_write(out, f"{name}.png")
-            if write:
-                picture = io.BytesIO()
-                figure.savefig(picture, format="png", dpi=130)
-                write_whole(out / f"{name}.png", picture.getvalue())
+            made = draw(plots[name], run, out, f"{name}.png")
         except OSError as error:
-            print(f"furrow: error: {out / (name + '.png')}: {error}", file=sys.stderr)
-            return 5
-        matplotlib.pyplot.close(figure)
-        (written if write else in_the_way).append(f"{name}.png")
-    if not (of_calibration or of_soil or of_sweep or of_press or of_modes or of_kinematics):
+            return fail(out / f"{name}.png", error)
+        written += [f"{name}.png"] if made else []
+        in_the_way |= made is False
+    if isinstance(run, Run):
         try:
             words(run)
         except Damaged as error:
-            print(f"furrow: error: {arguments.directory}: {printable(error)}", file=sys.stderr)
-            return 5
-    if (written or in_the_way or (arguments.directory / "summary_failed.json").is_file()) and not arguments.only:
+            return fail(directory, in_words(error))
+    if (written or in_the_way or (directory / "summary_failed.json").is_file()) and not arguments.only:
         if arguments.progress:
             tell_share(names, len(names) - 1)
         import page
         written += page.write(out, [run], may_write)
     print(json.dumps(written))
-    if not written and in_the_way:
-        print(f"furrow: error: {printable(out)}: no plot was written, as other files have their names, expected "
-              f"another folder",
-              file=sys.stderr)
-    elif not written:
-        before = arguments.directory / ".furrow-before"
-        hint = f"; {before} holds earlier results, which 'furrow resume' brings back" if before.is_dir() else ""
-        print(f"furrow: error: {printable(arguments.directory)}: holds nothing to plot{printable(hint)}",
-              file=sys.stderr)
-    return 0 if written else 5
+    if written:
+        return 0
+    if in_the_way:
+        return fail(out, "no plot was written, as other files have their names, expected another folder")
+    before = directory / ".furrow-before"
+    hint = f"; {before} holds earlier results, which 'furrow resume' brings back" if before.is_dir() else ""
+    return fail(directory, f"holds nothing to plot{printable(hint)}")
 
 
 if __name__ == "__main__":

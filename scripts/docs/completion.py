@@ -18,11 +18,10 @@ import help_text
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # What an argument or the value of an option is, beyond the words that its description lists.
 KINDS = {"SCENARIO": "list:scenarios", "validate SCENARIO": "list:scenarios vehicles calibrations",
-         "STUDY": "list:studies", "calibrate STUDY": "list:calibrations",
-         "VEHICLE": "list:vehicles", "--tire": "list:tires",
-         "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder",
-         "OTHERS": "folder", "--out": "folder", "--vtk": "folder",
-         "KEY": "key", "--set": "setting", "--profile": "file", "--bed": "file", "--save-bed": "file"}
+         "STUDY": "list:studies", "calibrate STUDY": "list:calibrations", "VEHICLE": "list:vehicles",
+         "--tire": "list:tires", "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder",
+         "OTHERS": "folder", "--out": "folder", "--vtk": "folder", "KEY": "key", "--set": "setting",
+         "--profile": "file", "--bed": "file", "--save-bed": "file"}
 
 
 def value_of(command, entry):
@@ -126,9 +125,8 @@ def quoted(text):
 def zsh_action(kind):
     """What _arguments calls to complete a value."""
     what, _, rest = kind.partition(":")
-    return {"words": f"({rest})", "list": f"_furrow_list {rest}", "folder": "_files -/",
-            "file": "_files", "key": "_furrow_keys",
-            "setting": "_furrow_keys -S=", "free": " "}[what]
+    return {"words": f"({rest})", "list": f"_furrow_list {rest}", "folder": "_files -/", "file": "_files",
+            "key": "_furrow_keys", "setting": "_furrow_keys -S=", "free": " "}[what]
 
 
 def zsh_text(text):
@@ -199,9 +197,8 @@ def fish_value(command, entry):
 
 
 def fish(program):
-    lines = ["# Completion of furrow for fish, made from its help.",
-             "function __furrow_list; for kind in $argv; furrow list $kind; end 2>/dev/null | awk '/^  [^ ]/ {print "
-             "$1}'; end",
+    lines = ["# Completion of furrow for fish, made from its help.", "function __furrow_list; for kind in $argv; "
+             "furrow list $kind; end 2>/dev/null | awk '/^  [^ ]/ {print $1}'; end",
              "function __furrow_keys; furrow explain 2>/dev/null | awk '/^[^ ]/ {print $1}'; end",
              "complete -c furrow -f"]
     for command in program.commands:

@@ -27,10 +27,8 @@ def dark_for_dark_browsers(sheet):
     text = sheet.read_text()
     colours = DARK.search(text)
     if colours and "prefers-color-scheme" not in text:
-        sheet.write_text(text
-                         + '\n@media not print { @media (prefers-color-scheme: dark) {\n  '
-                           'body:not([data-theme="light"]) '
-                         + colours[1]
+        sheet.write_text(text + '\n@media not print { @media (prefers-color-scheme: dark) {\n  '
+                         'body:not([data-theme="light"]) ' + colours[1]
                          + '\n  html body:not([data-theme="light"]) .only-light { display: none !important; }\n'
                          + '  body:not([data-theme="light"]) .only-dark { display: block !important; } } }\n')
 

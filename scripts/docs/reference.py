@@ -100,9 +100,8 @@ class Schema:
 def section_pages(schema):
     """The page of scenario keys: one table for every section."""
     text = ("# Scenario keys\n\nEvery key of a scenario, made from its schema. SI units, angles in radians. `furrow "
-            "explain KEY` "
-            "prints the same. [Writing a scenario](../rigs/README.md#writing-one) explains how the sections fit "
-            "together.\n")
+            "explain KEY` prints the same. [Writing a scenario](../rigs/README.md#writing-one) explains how the "
+            "sections fit together.\n")
     plain = []
     for name, entry in schema.content["properties"].items():
         entry = schema.resolved(entry)
@@ -146,9 +145,8 @@ def file_page(title, lead, schema):
             refers = "".join(f" [{ref.rsplit('/', 1)[1]}](#{ref.rsplit('/', 1)[1]})" for ref in refs
                              if schema.content["definitions"][ref.rsplit("/", 1)[1]].get("properties"))
             child = schema.resolved(child)
-            rows.append([code(key), "yes" if key in required else "",
-                         code(shown(child["default"])) if "default" in child else "",
-                         bounds(child) + refers, sentence(child)])
+            rows.append([code(key), "yes" if key in required else "", code(shown(child["default"]))
+                         if "default" in child else "", bounds(child) + refers, sentence(child)])
         text += f"\n## {name}\n\n{sentence(entry)}\n\n" + table(["key", "required", "default", "allowed", "meaning"],
                                                                 rows)
     return text
@@ -185,10 +183,8 @@ def without_unit(text, unit):
 
 def columns_page(root):
     text = ("# Result columns\n\nThe columns of the time series, made from the lists of fields in the sources. "
-            "`results.h5` holds "
-            "the same tables. [Signs](../rigs/README.md#signs) defines axes and signs; `columns` of `summary.json` has "
-            "the mean of "
-            "every column over the averaging window, or the last value of a sum.\n")
+            "`results.h5` holds the same tables. [Signs](../rigs/README.md#signs) defines axes and signs; `columns` of "
+            "`summary.json` has the mean of every column over the averaging window, or the last value of a sum.\n")
     for path, struct, heading, where in TABLES:
         rows = [[code(name), cell(unit), kind, cell(without_unit(meaning, unit))]
                 for name, unit, kind, meaning in columns((root / path).read_text(), struct)]

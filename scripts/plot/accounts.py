@@ -3,27 +3,22 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import digits
-from .run_data import Damaged, Missing, check_types
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window
+from .run_data import Missing
+from .style import BLUE, GREY, ORANGE, PURPLE, RED, mark_window
 
 # Entries of accounts.energy, in J.
-WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along",
-        "guide_work": "rails and steering",
+WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along", "guide_work": "rails and steering",
         "wall_work": "walls"}
 STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation",
-          "terrain_potential": "grains: height",
-          "terrain_elastic_normal": "grains: normal springs",
-          "terrain_elastic_tangential": "grains: tangential springs",
-          "terrain_cohesion": "grains: cohesion", "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain",
-          "tire_pressure": "tires: air", "tire_potential": "tires: height",
-          "rig_kinetic_and_potential": "rig: motion and height"}
+          "terrain_potential": "grains: height", "terrain_elastic_normal": "grains: normal springs",
+          "terrain_elastic_tangential": "grains: tangential springs", "terrain_cohesion": "grains: cohesion",
+          "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain", "tire_pressure": "tires: air",
+          "tire_potential": "tires: height", "rig_kinetic_and_potential": "rig: motion and height"}
 LOST = {"sliding_loss": "sliding", "normal_damping_loss": "normal damping",
-        "tangential_damping_loss": "tangential damping",
-        "rolling_loss": "rolling", "opening_loss": "contacts that open",
-        "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
+        "tangential_damping_loss": "tangential damping", "rolling_loss": "rolling",
+        "opening_loss": "contacts that open", "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
         "tire_numerical_loss": "tires: numerical", "tire_solver_loss": "tires: solver",
-        "damper_loss": "touch-down damper",
-        "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
+        "damper_loss": "touch-down damper", "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
 GROUPS = (("work", WORK, BLUE), ("stored", STORED, PURPLE), ("lost", LOST, ORANGE))
 LEAST_SHARE = 1e-3  # of what is turned over: smaller entries have no bar
 
@@ -38,28 +33,20 @@ def account(run, name):
     accounts = run.told.get("accounts")
     if not accounts:
         raise Missing(f"{run.told_in} has no accounts")
-    where = f"{run.told_in}: key 'accounts'"
-    check_types(accounts, where, objects=("energy", "momentum"))
     found = accounts.get(name)
     if not found:
         raise Missing(f"{run.told_in} has no account of {name}")
-    check_types(found, f"{where}: key '{name}'", numbers=("residual_share", "turnover", "largest", "bound"),
-                flags=("closes",))
     return found
 
 
-def entries(found, file):
+def entries(found):
     """(label, value, colour) of what is large enough for a bar; the residual always."""
-    where = f"{file}: key 'accounts': key 'energy'"
-    check_types(found, where, numbers=("residual",), objects=("work", "stored", "lost"))
     least = LEAST_SHARE * abs(found.get("turnover") or 0.0)
     rows = []
     for group, labels, colour in GROUPS:
         values = found.get(group) or {}
-        check_types(values, f"{where}: key '{group}'", numbers=list(values))
         rows += [(f"{label} ({'in' if group == 'work' else group})", float(values[key]), colour) for key,
-                 label in labels.items()
-                 if values.get(key) is not None and abs(values[key]) > least]
+                 label in labels.items() if values.get(key) is not None and abs(values[key]) > least]
     return rows + [("residual", float(found.get("residual") or 0.0), RED)]
 
 
@@ -80,10 +67,8 @@ def over_time(run, axis):
     if "residual_J" in series:
         axis.plot(time, series["residual_J"], color=RED, lw=1.3, label="residual: none of them")
     mark_window(axis, run)
-    axis.set_xlim(0.0, max(time[-1], 1e-12))
-    axis.set_xlabel("time, s")
-    axis.set_ylabel("since the start, J")
-    axis.set_title("Work put in = stored + lost + residual")
+    axis.set(xlim=(0.0, max(time[-1], 1e-12)), xlabel="time, s", ylabel="since the start, J",
+             title="Work put in = stored + lost + residual")
     axis.legend(loc="upper left", fontsize=8)
 
 
@@ -109,13 +94,12 @@ def bars(axis, rows, unit):
 
 def energy(run):
     found = account(run, "energy")
-    rows = entries(found, run.told_in)
+    rows = entries(found)
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6))
     figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     over_time(run, left)
     bars(right, rows, "J")
-    right.set_xlabel("over the whole run, J")
-    right.set_title("Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
+    right.set(xlabel="over the whole run, J", title="Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
     return figure
 
 
@@ -130,12 +114,9 @@ def momentum(run):
             vector = found.get(key)
             if vector is None:
                 continue
-            if not (isinstance(vector, list) and len(vector) == 3 and all(isinstance(v, (int, float)) for v in vector)):
-                raise Damaged(f"{run.told_in}: key 'accounts': key 'momentum': key '{key}': expected 3 numbers")
             rows.append((label, float(vector[i]), RED if key == "residual" else PURPLE if key in CHANGES else BLUE))
         if not rows:
             raise Missing("the account of momentum is empty")
         bars(axis, rows, "N s")
-        axis.set_xlabel("momentum, N s")
-        axis.set_title(name)
+        axis.set(xlabel="momentum, N s", title=name)
     return figure

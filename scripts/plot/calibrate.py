@@ -4,12 +4,12 @@ import csv
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing, check_types, read_object
+from .run_data import Missing, read_object
 from .soil import COLOURS
 from .style import GREY, RED
+from .units import naming
 
 COLUMNS = 3  # panels side by side
-SCALES = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "Pa": ("kPa", 1e-3), "Nm": ("N m", 1.0)}
 
 
 class Calibration:
@@ -18,9 +18,6 @@ class Calibration:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "calibration.json")
-        check_types(self.values, "calibration.json", texts=("study", "calibrate", "start", "result"),
-                    objects=("parameters", "fitted", "held_out", "identifiability"),
-                    lists=("targets", "held_out_targets", "warnings", "starts"))
 
     def title(self, figure, what):
         figure.suptitle(f"{self.values.get('study', self.directory.name)} · {self.values.get('calibrate', '')} · "
@@ -50,12 +47,9 @@ class Calibration:
 
 
 def quantity(name):
-    """(words, unit, factor) of a column such as deflection_m."""
-    words, found, unit = str(name).rpartition("_")
-    if not found:
-        return str(name), "", 1.0
-    shown, factor = SCALES.get(unit, (unit, 1.0))
-    return words.replace("_", " "), shown, factor
+    """(words, unit, factor) of a column such as deflection_m; forces are in kN."""
+    words, unit, factor = naming(str(name))
+    return (words, "kN", 1e-3) if unit == "N" else (words, unit, factor)
 
 
 def panels_of(targets):
@@ -109,8 +103,7 @@ def fit_of_figures(axis, target, colour):
         axis.vlines(place + 0.15, *(factor * np.array(spans).T), color=GREY, lw=1.0, alpha=0.6, label="all evaluations")
     errors = [factor * (figure.get("standard_error") or 0.0) for figure in told]
     axis.errorbar(place + 0.15, factor * target["model"], errors if len(errors) == len(place) and any(errors) else None,
-                  fmt="_", ms=10,
-                  capsize=3, color=RED, label="model, held out" if target["held_out"] else "model")
+                  fmt="_", ms=10, capsize=3, color=RED, label="model, held out" if target["held_out"] else "model")
     axis.set(ylabel=target["y_name"] if single else label_of(target["y_name"]))
 
 
@@ -124,9 +117,8 @@ def fit(run):
                 fit_of_figures(axis, target, colour)
                 continue
             axis.plot(x_factor * target["x"], y_factor * target["data"], "o", ms=3.5, color=colour)
-            axis.plot(x_factor * target["x"], y_factor * target["model"],
-                      "--" if target["held_out"] else "-", color=colour,
-                      label=f"{target['name']} ({target.get('what', '')})")
+            axis.plot(x_factor * target["x"], y_factor * target["model"], "--" if target["held_out"] else "-",
+                      color=colour, label=f"{target['name']} ({target.get('what', '')})")
         if alone:
             axis.set_title(alone)
         else:

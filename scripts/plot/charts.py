@@ -69,20 +69,17 @@ def pull_slip_sinkage(run):
     theory = run.soil_estimate.get("drawbar_pull_N")
     if theory is not None:
         error = run.soil_estimate.get("drawbar_pull_standard_error_N")
-        top.axhline(theory, color=ORANGE, ls="--", lw=1.5,
-                    label=f"soil theory for a rigid wheel, furrow soil's parameters: "
-                    f"{with_error(theory, error) if error is not None else digits(theory)} N")
+        top.axhline(theory, color=ORANGE, ls="--", lw=1.5, label="soil theory for a rigid wheel, furrow soil's "
+                    f"parameters: {with_error(theory, error) if error is not None else digits(theory)} N")
     top.axhline(0.0, color="black", lw=0.8)
     settled_limits(top, run, *([pull] if theory is None else [pull, np.full_like(pull, theory)]))
-    top.set_ylabel("drawbar pull, N")
-    top.set_title("Drawbar pull: positive when the tire pulls the rig along")
+    top.set(ylabel="drawbar pull, N", title="Drawbar pull: positive when the tire pulls the rig along")
     top.legend(loc="upper right", ncol=1)
 
     middle.plot(time, run.column("slip"), color=GREEN)
     middle.set_ylim(min(-0.05, 1.1 * np.nanmin(run.series["slip"])), max(1.05, 1.05 * np.nanmax(run.series["slip"])))
     mark_window(middle, run)
-    middle.set_ylabel("slip, –")
-    middle.set_title("Slip: 1 − v/(ω R), R undeformed radius; positive when driven")
+    middle.set(ylabel="slip, –", title="Slip: 1 − v/(ω R), R undeformed radius; positive when driven")
 
     bottom.plot(time, 1e3 * run.column("sinkage_m"), color=BLUE, label="lowest point of the tire")
     if "sinkage_kinematic_m" in run.series:
@@ -91,11 +88,9 @@ def pull_slip_sinkage(run):
     bottom.axhline(0.0, color="black", lw=0.8)
     mark_window(bottom, run)
     bottom.invert_yaxis()
-    bottom.set_ylabel("sinkage, mm")
-    bottom.set_title("Sinkage below the undisturbed surface: positive down")
+    bottom.set(ylabel="sinkage, mm", title="Sinkage below the undisturbed surface: positive down")
     bottom.legend(loc="upper right")
-    bottom.set_xlabel("time, s")
-    bottom.set_xlim(0.0, time[-1])
+    bottom.set(xlabel="time, s", xlim=(0.0, time[-1]))
     return figure
 
 
@@ -120,8 +115,7 @@ def forces(run):
     middle.axhline(0.0, color="black", lw=0.8)
     if shown:
         settled_limits(middle, run, *[values for values, _, _ in shown])
-    middle.set_ylabel("force, N")
-    middle.set_title("Forces on the tire along the direction of travel: positive forward")
+    middle.set(ylabel="force, N", title="Forces on the tire along the direction of travel: positive forward")
 
     noisy(bottom, time, run.column("spindle_torque_Nm"), PURPLE, "drive torque on the spindle")
     radius = run.number("tire_radius_m")
@@ -130,10 +124,8 @@ def forces(run):
         if mean is not None:
             bottom.plot(time, mean, color=GREEN, ls="--", lw=1.2, label="tractive effort × undeformed radius")
     settled_limits(bottom, run, run.series["spindle_torque_Nm"])
-    bottom.set_ylabel("torque, N m")
-    bottom.set_title("Spindle torque: positive when it drives the wheel forward")
-    bottom.set_xlabel("time, s")
-    bottom.set_xlim(0.0, time[-1])
+    bottom.set(ylabel="torque, N m", title="Spindle torque: positive when it drives the wheel forward",
+               xlabel="time, s", xlim=(0.0, time[-1]))
     for axis in (top, middle, bottom):
         mark_window(axis, run)
         axis.legend(loc="upper right")
@@ -148,8 +140,7 @@ def unknowns(run, node):
     wheels = run.told.get("wheels") or [run.told]
     number = node.removeprefix("tire ")
     if node.startswith("tire ") and number.isdigit() and int(number) < len(wheels):
-        found = wheels[int(number)].get("tire_coordinates") if isinstance(wheels[int(number)], dict) else None
-        if isinstance(found, (int, float)) and found > 0:
+        if found := wheels[int(number)].get("tire_coordinates"):
             return f", {found:,.0f} coordinates"
     return ""
 
@@ -162,7 +153,6 @@ def ranks(run):
     names = [f"rank {r['rank']}: {r['node']}" + (f" ({r['kind']})" if r.get("kind") else "") + unknowns(run, r["node"])
              + f", {r['threads']} thread{'s' if r['threads'] != 1 else ''}" for r in table]
     compute = np.array([r["compute_s"] for r in table])
-    # runs before it was counted have it in computing
     communicate = np.array([r.get("communicate_s", 0.0) for r in table])
     wait = np.array([r["wait_s"] for r in table])
     position = np.arange(len(table))
@@ -178,8 +168,7 @@ def ranks(run):
     axis.set_yticks(position, names)
     axis.invert_yaxis()
     axis.grid(axis="y", visible=False)
-    axis.set_xlim(0.0, 1.3 * longest)
-    axis.set_xlabel("wall time of the stepping loop, s")
+    axis.set(xlim=(0.0, 1.3 * longest), xlabel="wall time of the stepping loop, s")
     per_second = run.told.get("wall_s_per_simulated_s")
     axis.set_title(f"{run.title}\nTime that each rank computes and waits"
                    + (f" · {per_second:.1f} s of wall time per simulated second" if per_second else ""))

@@ -147,8 +147,7 @@ def in_rut(wheel):
 def rut_events(v, touched):
     met = meetings(v, touched)
     for following, leading, at in met:
-        yield Event(v.time[at], "reaches the place of touch-down", following.name,
-                    following["position_m"][at], "m",
+        yield Event(v.time[at], "reaches the place of touch-down", following.name, following["position_m"][at], "m",
                     "position at or beyond that of the wheel before it when that touched down")
         begin = first(in_rut(following))
         if begin is not None:
@@ -192,8 +191,7 @@ def pitch_events(v, met):
         yield Event(v.time[here], "pitch changes" if seen_it else "pitch changes (not above its noise)",
                     f"{v.axles[following.axle]} axle", math.degrees(change[here]), "°",
                     f"steepest within {PITCH_SEARCH[0]:g} to {PITCH_SEARCH[1]:g} s of the axle's meeting; value: mean "
-                    f"of "
-                    f"{PITCH_SPAN:g} s after less that before, nose down positive; elsewhere "
+                    f"of {PITCH_SPAN:g} s after less that before, nose down positive; elsewhere "
                     f"{math.degrees(noise):.2g}° (rms)")
 
 
@@ -220,11 +218,10 @@ def path_events(v):
 
 
 def end_event(v):
-    section = v.run.scenario.get("run") or {}
-    end = section.get("end") if isinstance(section, dict) else None
+    end = (v.run.scenario.get("run") or {}).get("end")
     last = v.time[-1]
     interval = float(np.median(np.diff(v.time))) if len(v.time) > 1 else 0.0
-    early = isinstance(end, (int, float)) and last < end - 1.5 * interval
+    early = end is not None and last < end - 1.5 * interval
     distance = v["distance_m"][-1]
     yield Event(last, f"ends before run.end = {end:g} s" if early else "end", "vehicle", distance, "m",
                 "last line; value: distance driven")

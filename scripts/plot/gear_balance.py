@@ -80,7 +80,7 @@ def to_wheels(driveline, shaft, seen=()):
 def driveline(v):
     """Of the vehicle's file; Missing where it has no engine with converter and gearbox."""
     found = v.data.get("driveline")
-    if not isinstance(found, dict) or not all(found.get(key) for key in ("engine", "converter", "gearbox")):
+    if not found or not all(found.get(key) for key in ("engine", "converter", "gearbox")):
         raise Missing("the vehicle's file is not found or has no engine with converter and gearbox")
     gearbox = found["gearbox"]
     if len(gearbox["ratios"]) < 2 or gearbox["in"] != found["converter"]["out"]:

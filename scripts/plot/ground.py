@@ -61,11 +61,9 @@ def top_view(figure, axis, field, depth, start, end, sign, tread, lateral, windo
     axis.plot(end, lateral, ">" if sign > 0 else "<", color="black", ms=9,
               label="axle at the end, in direction of travel")
     if tread:
-        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread),
-                                     window[1] - window[0], tread, fill=False, lw=1.4,
-                                     label="tread width, where the rut is measured"))
-    axis.set_xlabel("x, m")
-    axis.set_ylabel("y, m (left of +x)")
+        axis.add_patch(plt.Rectangle((window[0], lateral - 0.5 * tread), window[1] - window[0], tread, fill=False,
+                                     lw=1.4, label="tread width, where the rut is measured"))
+    axis.set(xlabel="x, m", ylabel="y, m (left of +x)")
     axis.set_title("Seen from above (medians over 3 × 3 cells)", pad=24)
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=3, borderaxespad=0.2, fontsize=8)
 
@@ -86,8 +84,7 @@ def across(axis, run, field, depth, end, tread, lateral, window):
     if measured is not None and width is not None:
         axis.axhline(-500.0 * measured, color=RED, ls=":", lw=1.2,
                      label=f"width at half depth {digits(1e3 * width)} mm")
-    axis.set_xlabel("y, mm")
-    axis.set_ylabel("height change, mm")
+    axis.set(xlabel="y, mm", ylabel="height change, mm")
     axis.margins(y=0.25)
     if axis.get_legend_handles_labels()[0]:
         axis.legend(loc="lower right", fontsize=8)
@@ -103,8 +100,6 @@ def along(axis, before, after, start, end, sign, tread, lateral, window):
     axis.annotate("axle at the end", (end, 1.0), xycoords=("data", "axes fraction"), fontsize=8.5,
                   xytext=(3 if sign > 0 else -3, -10), textcoords="offset points", ha="left" if sign > 0 else "right")
     axis.axvspan(*window, color=RED, alpha=0.10, lw=0, label="where the rut is measured")
-    axis.set_xlabel("x, m")
-    axis.set_ylabel("surface height z, mm")
-    axis.set_title("Along, mean over the middle half of the tread width")
+    axis.set(xlabel="x, m", ylabel="surface height z, mm", title="Along, mean over the middle half of the tread width")
     axis.margins(y=0.25)
     axis.legend(loc="best", fontsize=8)

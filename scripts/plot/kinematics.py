@@ -4,7 +4,7 @@ import csv
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Damaged, Missing, check_types, read_object
+from .run_data import Damaged, Missing, read_object
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY]
@@ -35,7 +35,6 @@ class Kinematics:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("vehicle",), objects=("at_rest",))
         with open(directory / "kinematics.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.motions = {}
@@ -53,7 +52,7 @@ class Kinematics:
     def rest(self):
         """{wheel: travel at rest, m}"""
         wheels = (self.values.get("at_rest") or {}).get("wheels") or []
-        return {wheel.get("name"): wheel.get("travel_m") for wheel in wheels if isinstance(wheel, dict)}
+        return {wheel["name"]: wheel["travel_m"] for wheel in wheels}
 
 
 def draw(run, motion, against, panels, columns, what):
@@ -76,7 +75,7 @@ def draw(run, motion, against, panels, columns, what):
         axis.set_title(title)
         if against is TRAVEL:
             for wheel, travel in run.rest().items():
-                if isinstance(travel, (int, float)) and wheel in places:
+                if wheel in places:
                     axis.axvline(1e3 * travel, color=GREY, lw=0.6)
     for axis in list(axes.flat)[len(shown):]:
         axis.set_visible(False)
@@ -87,10 +86,9 @@ def draw(run, motion, against, panels, columns, what):
 
 
 def parallel(run):
-    return draw(run, "parallel", TRAVEL, [CAMBER, TOE, CASTER, KINGPIN,
-                                          HALF_TRACK, SCRUB, TRAIL, ROLL_CENTER, ANTI_DIVE,
-                                          SPRING_RATIO, SHOCK_RATIO, WHEEL_RATE],
-                4, "both wheels of an axle lifted alike (grey: at rest)")
+    return draw(run, "parallel", TRAVEL, [CAMBER, TOE, CASTER, KINGPIN, HALF_TRACK, SCRUB, TRAIL, ROLL_CENTER,
+                                          ANTI_DIVE, SPRING_RATIO, SHOCK_RATIO, WHEEL_RATE], 4,
+                "both wheels of an axle lifted alike (grey: at rest)")
 
 
 def opposite(run):

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing, check_types, read_object
+from .run_data import Missing, read_object
 from .soil import COLOURS, Soil
 from .style import BLUE, GREY, RED
 
@@ -18,8 +18,6 @@ class Modes(Soil):
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("tire", "details"),
-                    numbers=("pressure_Pa", "mass_kg"), flags=("stable",))
 
     def title(self, figure, what):
         figure.suptitle(f"{self.values.get('tire', self.directory.name)} · {what}",

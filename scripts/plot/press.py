@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import check_types, read_object
+from .run_data import read_object
 from .soil import Soil
 from .style import BLUE, GREY, ORANGE
 
@@ -13,11 +13,6 @@ class Press(Soil):
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "summary.json")
-        check_types(self.values, "summary.json", texts=("scenario", "tire", "obstacle"),
-                    objects=("footprint", "sticking_stiffness"),
-                    numbers=("deflection_m", "load_N", "secant_stiffness_N_per_m"))
-        check_types(self.values.get("footprint") or {}, "summary.json: key 'footprint'",
-                    numbers=("force_N", "length_m", "width_m", "mean_pressure_Pa"))
 
     def title(self, figure, what):
         figure.suptitle(f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",
@@ -44,9 +39,8 @@ def centre_line(run, axis, table, values):
     """Of a tire without points across."""
     axis.plot(1e3 * table["x_m"], 1e-3 * table["pressure_Pa"], ".-", color=BLUE)
     axis.set_ylim(bottom=0.0)
-    axis.set(xlabel="along, mm", ylabel="pressure along the centre line, kPa",
-             title=f"{1e-3 * values['force_N']:.3g} kN: {1e3 * values['length_m']:.0f} mm long, "
-                   f"mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
+    axis.set(xlabel="along, mm", ylabel="pressure along the centre line, kPa", title=f"{1e-3 * values['force_N']:.3g} "
+             f"kN: {1e3 * values['length_m']:.0f} mm long, mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
 
 
 def footprint(run):
@@ -61,8 +55,7 @@ def footprint(run):
                           cmap="viridis", vmin=0, vmax=1e-3 * np.max(table["pressure_Pa"], initial=1.0))
     figure.colorbar(points, label="kPa")
     axis.set_aspect("equal")
-    axis.set(xlabel="across, mm", ylabel="along, mm",
-             title=f"{1e-3 * values['force_N']:.3g} kN: {1e3 * values['length_m']:.0f} × {1e3 * values['width_m']:.0f} "
-                   f"mm, "
-                   f"mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
+    axis.set(xlabel="across, mm", ylabel="along, mm", title=f"{1e-3 * values['force_N']:.3g} kN: "
+             f"{1e3 * values['length_m']:.0f} × {1e3 * values['width_m']:.0f} mm, mean "
+             f"{1e-3 * values['mean_pressure_Pa']:.0f} kPa")
     return figure

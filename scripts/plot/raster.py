@@ -152,8 +152,7 @@ class Buffers:
         dx, dy = np.roll(x, -2, 1) - np.roll(x, -1, 1), np.roll(y, -2, 1) - np.roll(y, -1, 1)
         x1, y1 = np.roll(x, -1, 1), np.roll(y, -1, 1)
         weight = [((py + 0.5 - y1[:, k, None]) * dx[:, k, None] - (px + 0.5 - x1[:, k, None]) * dy[:, k, None])
-                  / area[:, None]
-                  for k in range(3)]
+                  / area[:, None] for k in range(3)]
         inside = (np.min(weight, axis=0) >= 0.0) & (px < camera.width) & (py < camera.height)
         which, _ = np.nonzero(inside)
         if not len(which):

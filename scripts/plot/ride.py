@@ -43,8 +43,7 @@ def ride(run):
         axis.plot(time, weighted(time, acceleration), color=colour, lw=1.0,
                   label=f"weighted by $W_k$, rms {digits(values['weighted_rms'])} m/s²: "
                         f"{in_words(values['weighted_rms'])}")
-        axis.set_ylabel("vertical acceleration (m/s²)")
-        axis.set_xlabel("time (s)")
+        axis.set(ylabel="vertical acceleration (m/s²)", xlabel="time (s)")
         axis.legend(loc="upper right", fontsize=8,
                     title=f"MTVV {digits(values['mtvv'])} m/s², VDV {digits(values['vdv'])} m/s$^{{1.75}}$, "
                     f"crest {digits(values['crest'])} (ISO 2631-1)", title_fontsize=8)
@@ -53,7 +52,6 @@ def ride(run):
         axes[-1].loglog(frequency[low], power[low], color=colour, lw=0.9, alpha=0.5, label=where)
         axes[-1].loglog(frequency[low], power[low] * np.abs(weighting(frequency[low])) ** 2, color=colour, lw=1.2,
                         label=f"{where}, weighted by $W_k$")
-    axes[-1].set_ylabel("density (m²/s⁴/Hz)")
-    axes[-1].set_xlabel("frequency (Hz)")
+    axes[-1].set(ylabel="density (m²/s⁴/Hz)", xlabel="frequency (Hz)")
     axes[-1].legend(fontsize=8)
     return figure

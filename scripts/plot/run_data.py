@@ -1,7 +1,7 @@
 """What a run directory holds, read as far as it exists."""
+import csv
 import functools
 import json
-import os
 import pathlib
 import re
 
@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from .digits import digits
+from .units import is_number
 
 
 class Missing(Exception):
@@ -19,14 +20,36 @@ class Damaged(ValueError):
     """A file in the run directory does not hold what it should."""
 
 
+# What damaged files may lead to.
+PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError,
+            csv.Error, Missing)
 RATIO = 64  # that datasets are compressed by, at most
 LARGEST = 64 << 20  # bytes of a JSON file
-LARGEST_NUMBER = 10 ** 300  # beyond it no float can be made of a whole number
+
+# Types of the keys that plots read: an object of keys, a list of such objects, or the type itself.
+SCENARIO = {"rig": {"travel_sign": float, "lateral": float, "vehicle": str, "wheels": [{"lateral": float}]},
+            "run": {"average_from": float, "end": float}, "terrain": {"engine": str}}
+PULL = {"mean": float, "sem": float, "from_s": float, "to_s": float, "steady": bool, "unsteady_because": list}
+SUMMARY = {"scenario": str, "terrain_engine": str, "law": str, "slip": float, "vertical_load_N": float,
+           "travel_sign": float, "drawbar_coefficient": float, "tread_width_m": float, "rut_depth_m": float,
+           "rut_width_m": float, "surface_height_m": float, "sinkage_m": float, "grains": float,
+           "bed_clearance_m": float, "net_terrain_force_N": list, "ranks": list, "failed": dict,
+           "drawbar_pull_N": PULL, "accounts": {"energy": dict, "momentum": dict}}
+NAMES = {str: "a text", float: "a number", dict: "an object", bool: "true or false", list: "a list"}
 
 
 def printable(text):
     """One line that a terminal only shows."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in str(text))
+
+
+def in_words(error):
+    """What is wrong with results, of an error of PROBLEMS: one line."""
+    if isinstance(error, (Damaged, Missing)) or getattr(error, "errno", None):
+        return printable(error)
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for it"
+    return printable(f"a file in it is damaged: {error!r}")[:300]
 
 
 def why_no_folder(folder):
@@ -53,42 +76,34 @@ def read_object(path):
     return content
 
 
-def check_types(content, name, texts=(), numbers=(), objects=(), flags=(), lists=()):
+def check_types(content, kinds, where):
     """Values of other types than these keys have, null aside, are errors that name the key."""
-    kinds = ((texts, str, "a text"), (numbers, (int, float), "a number"), (objects, dict, "an object"),
-             (flags, bool, "true or false"), (lists, list, "a list"))
-    for keys, kind, expected in kinds:
-        for key in keys:
-            value = content.get(key)
-            right = value is None or (isinstance(value, kind) and (kind is bool or not isinstance(value, bool)))
-            if not right or (isinstance(value, int) and abs(value) > LARGEST_NUMBER):
-                raise Damaged(f"{name}: key '{key}': is {printable(json.dumps(value))[:60]}, expected {expected}")
+    for key, kind in kinds.items():
+        value, name = content.get(key), NAMES[kind if isinstance(kind, type) else type(kind)]
+        if value is None:
+            continue
+        if not (is_number(value) if kind is float else isinstance(value, kind if isinstance(kind, type) else type(kind))):
+            raise Damaged(f"{where}: key '{key}': is {printable(json.dumps(value))[:60]}, expected {name}")
+        if isinstance(kind, dict):
+            check_types(value, kind, f"{where}: key '{key}'")
+        elif isinstance(kind, list):
+            for k, item in enumerate(value):
+                check_types({f"{key}.{k}": item}, {f"{key}.{k}": kind[0]}, where)
 
 
 def read_dataset(file, name):
-    """All numbers of an HDF5 dataset. Nothing that the file says of itself is believed: they must be in this very
-    file, and be no larger than what is stored of them."""
+    """All numbers of an HDF5 dataset, which is not read where it is larger than what is stored of it."""
     what = f"{pathlib.Path(file.filename).name}: the dataset '{name}'"
-    group = file
-    for part in name.split("/"):
-        if not isinstance(group, h5py.Group) or part not in group:
-            raise Damaged(f"{what} is missing")
-        if not isinstance(group.get(part, getlink=True), h5py.HardLink):
-            raise Damaged(f"{what} is a link, expected the numbers themselves in this file")
-        group = group[part]
-    if not isinstance(group, h5py.Dataset):
-        raise Damaged(f"{what} is a group, expected numbers")
-    if group.external or group.is_virtual:
-        raise Damaged(f"{what} is stored in another file, expected the numbers themselves in this file")
-    if group.dtype.kind not in "iuf":
+    found = file.get(name)
+    if not isinstance(found, h5py.Dataset):
+        raise Damaged(f"{what} is missing")
+    if found.dtype.kind not in "iuf":
         raise Damaged(f"{what} holds no plain numbers")
-    stored = group.id.get_storage_size()
-    most = stored * (RATIO if group.id.get_create_plist().get_nfilters() else 1)
-    if stored > os.path.getsize(file.filename) or group.size * group.dtype.itemsize > most:
-        raise Damaged(f"{what} is said to have {group.size} numbers, but {stored} bytes are stored: it was never "
-                      f"written, "
-                      "or the file is cut short or damaged")
-    return group[()]
+    stored = found.id.get_storage_size()
+    if found.size * found.dtype.itemsize > stored * (RATIO if found.id.get_create_plist().get_nfilters() else 1):
+        raise Damaged(f"{what} is said to have {found.size} numbers, but {stored} bytes are stored: it was never "
+                      "written, or the file is cut short or damaged")
+    return found[()]
 
 
 def table(file, name, columns):
@@ -96,16 +111,8 @@ def table(file, name, columns):
     values = read_dataset(file, name)
     if (values.ndim != 1) if columns == 0 else (values.ndim != 2 or values.shape[1] != columns):
         raise Damaged(f"{pathlib.Path(file.filename).name}: the dataset '{name}' has the shape {values.shape}, "
-                      f"expected "
-                      + (f"N × {columns}" if columns else "N numbers"))
+                      "expected " + (f"N × {columns}" if columns else "N numbers"))
     return values
-
-
-# Keys of summary.json that plots read.
-NUMBERS = ("slip", "vertical_load_N", "travel_sign", "drawbar_coefficient",
-           "tread_width_m", "rut_depth_m", "rut_width_m",
-           "surface_height_m", "sinkage_m", "grains", "bed_clearance_m")
-OBJECTS = ("drawbar_pull_N", "accounts")
 
 
 class HeightField:
@@ -123,10 +130,11 @@ class HeightField:
 class Run:
     def __init__(self, directory):
         if not directory.is_dir():
-            raise OSError("is not a directory")
+            raise Damaged("is not a directory")
         self.directory = directory
         self.summary = self._summary("summary.json")
         self.scenario = self._json("scenario.json")
+        check_types(self.scenario, SCENARIO, "scenario.json")
         self.soil_estimate = self._json("soil_estimate.json")
         self.series = self._read_series()
 
@@ -151,21 +159,10 @@ class Run:
 
     def _summary(self, name):
         """Of several wheels, wheel 0's keys stand beside those of the run, as they do of a single one."""
-        if not (self.directory / name).exists():
-            return {}
         summary = self._json(name)
-        check_types(summary, name, lists=("wheels",))
-        wheels = summary.get("wheels") or [{}]
-        if not isinstance(wheels[0], dict):
-            raise Damaged(f"{name}: key 'wheels.0': expected an object")
-        summary = {**wheels[0], **summary}
-        check_types(summary, name, texts=("scenario", "terrain_engine", "law"),
-                    numbers=NUMBERS, objects=OBJECTS + ("failed",),
-                    lists=("net_terrain_force_N", "ranks"))
-        pull = summary.get("drawbar_pull_N") or {}
-        check_types(pull, name + ": key 'drawbar_pull_N'", numbers=("mean", "sem", "from_s", "to_s"), flags=("steady",),
-                    lists=("unsteady_because",))
-        check_types(summary.get("accounts") or {}, name + ": key 'accounts'", objects=("energy", "momentum"))
+        check_types(summary, {"wheels": [{}]}, name)
+        summary = {**(summary.get("wheels") or [{}])[0], **summary}
+        check_types(summary, SUMMARY, name)
         return summary
 
     def _read_series(self):
@@ -186,7 +183,7 @@ class Run:
         try:
             return dict(zip(names, np.array(rows, dtype=float).T))
         except ValueError as error:
-            raise ValueError(f"{path.name} holds something that is no number: {error}") from error
+            raise Damaged(f"{path.name} holds something that is no number: {error}") from error
 
     def column(self, name):
         if name not in self.series:
@@ -220,8 +217,7 @@ class Run:
 
     @property
     def travel_sign(self):
-        rig = self.rig
-        return float(rig.get("travel_sign", self.number("travel_sign", 1.0)) or 1.0)
+        return float(self.rig.get("travel_sign") or self.number("travel_sign") or 1.0)
 
     @property
     def lateral(self):
@@ -230,29 +226,18 @@ class Run:
 
     @property
     def rig(self):
-        rig = self.scenario.get("rig") or {}
-        if not isinstance(rig, dict):
-            raise Damaged("scenario.json: key 'rig': expected an object")
-        check_types(rig, "scenario.json: key 'rig'", numbers=("travel_sign",), lists=("wheels",))
-        return rig
+        return self.scenario.get("rig") or {}
 
     @property
     def wheels(self):
         """Entries of rig.wheels."""
-        wheels = self.rig.get("wheels") or []
-        for wheel in wheels:
-            if not isinstance(wheel, dict):
-                raise Damaged("scenario.json: key 'rig.wheels': expected objects")
-            check_types(wheel, "scenario.json: key 'rig.wheels'", numbers=("lateral",))
-        return wheels
+        return self.rig.get("wheels") or []
 
     @property
     def wheel_names(self):
         """What a vehicle's file calls its wheels, "front_left"; empty where the summary has none."""
-        entries = self.told.get("wheels") or []
-        names = [entry.get("name") for entry in entries if isinstance(entry, dict)]
-        told = len(names) == len(entries) and all(isinstance(name, str) for name in names)
-        return [printable(name) for name in names] if told else []
+        names = [wheel.get("name") for wheel in self.told.get("wheels") or []]
+        return [printable(name) for name in names] if all(isinstance(name, str) for name in names) else []
 
     @property
     def measured(self):
@@ -276,7 +261,7 @@ class Run:
     def title(self):
         name = self.summary.get("scenario") or self.directory.name
         what = [name]
-        if isinstance(self.rig.get("vehicle"), str):
+        if self.rig.get("vehicle"):
             what.append(self.rig["vehicle"].removesuffix(".json"))
         if "terrain_engine" in self.summary:
             engine = self.summary["terrain_engine"]
@@ -287,9 +272,8 @@ class Run:
             what.append(f"slip {self.number('slip'):g}")
         if self.number("vertical_load_N") is not None and not self.has_vehicle:
             what.append(f"load {digits(self.number('vertical_load_N'))} N")
-        wheels = len(self.wheels)
-        if wheels > 1:
-            what.append(f"wheel 0 of {wheels}")
+        if len(self.wheels) > 1:
+            what.append(f"wheel 0 of {len(self.wheels)}")
         if self.scenario and not self.summary:
             what.append("ended by an error" if (self.directory / "summary_failed.json").exists()
                         else "stopped before its end")

@@ -193,8 +193,7 @@ def scene(run):
     figure = plt.figure(figsize=(WIDTH / 130, (HEIGHT + 60) / 130), layout="none")
     axis = figure.add_axes([0, 0, 1, HEIGHT / (HEIGHT + 60)])
     axis.imshow(image, interpolation="none", aspect="auto", extent=(0, WIDTH, HEIGHT, 0))
-    axis.set_xlim(0, WIDTH)
-    axis.set_ylim(HEIGHT, 0)
+    axis.set(xlim=(0, WIDTH), ylim=(HEIGHT, 0))
     axis.axis("off")
     figure.text(0.015, 1 - 30 / (HEIGHT + 60), run.title, fontsize=12, fontweight="bold", va="center")
     annotate(axis, run, time, camera, centre, sign, ground, scale)
@@ -202,8 +201,7 @@ def scene(run):
         bar = figure.add_axes([0.72, 0.075, 0.25, 0.018])
         map_ = mpl.colors.LinearSegmentedColormap.from_list("soil", np.array(SOIL) ** (1 / 2.2))
         colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span / scale, 1e3 * span / scale),
-                                                          map_), cax=bar,
-                                    orientation="horizontal")
+                                                          map_), cax=bar, orientation="horizontal")
         colourbar.set_label("height of grains about the undisturbed surface, mm", fontsize=9)
         colourbar.ax.tick_params(labelsize=8)
     return figure

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Missing, check_types, read_object
+from .run_data import Damaged, Missing, read_object
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
@@ -14,12 +14,6 @@ class Soil:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "soil.json")
-        check_types(self.values, "soil.json", texts=("scenario",), objects=("grains", "standard_error"),
-                    flags=("quick",))
-        for key in ("grains", "standard_error"):
-            values = self.values.get(key) or {}
-            check_types(values, f"soil.json: key '{key}'",
-                        numbers=[name for name in values if key != "grains" or name.endswith(("_m", "_Pa"))])
 
     def table(self, name):
         """The columns of a CSV file as arrays."""
@@ -31,7 +25,7 @@ class Soil:
             rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
             return dict(zip(lines[0].split(","), rows.T))
         except (IndexError, ValueError) as error:
-            raise ValueError(f"{name} holds something that is no number: {error}") from error
+            raise Damaged(f"{name} holds something that is no number: {error}") from error
 
     def text(self, name, factor=1.0, form=".3g"):
         """value ± standard error."""
@@ -71,13 +65,9 @@ def plate(soil):
         if n is not None:
             axis.plot(1e3 * z, 1e-3 * (k_c / width + k_phi) * z**n, color=COLOURS[i % len(COLOURS)], lw=2.2,
                       label=f"strip {1e3 * width:g} mm wide")
-    axis.set_xlim(0.0)
-    axis.set_ylim(0.0)
-    axis.set_xlabel("sinkage below the mean surface, mm")
-    axis.set_ylabel("pressure, kPa")
-    axis.set_title("Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, "
-                   f"n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²",
-                   fontsize=9)
+    axis.set(xlim=0.0, ylim=0.0, xlabel="sinkage below the mean surface, mm", ylabel="pressure, kPa")
+    axis.set_title(f"Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} "
+                   f"kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²", fontsize=9)
     axis.legend(loc="upper left")
     return figure
 
@@ -98,11 +88,8 @@ def shear(soil):
         tau, travel = (np.mean([t[name] for t in near]) for name in ("tau_max_Pa", "janosi_K_m"))
         left.plot(1e3 * j, 1e-3 * tau * -np.expm1(-j / travel), color=COLOURS[i % len(COLOURS)], lw=2.2,
                   label=f"normal stress {1e-3 * load:g} kPa")
-    left.set_xlim(0.0)
-    left.set_ylim(0.0)
-    left.set_xlabel("travel of the upper plate, mm")
-    left.set_ylabel("shear stress, kPa")
-    left.set_title(f"Thin: each bed. Thick: τ_max (1 − exp(−j/K)), K {soil.text('janosi_K_m', 1e3)} mm")
+    left.set(xlim=0.0, ylim=0.0, xlabel="travel of the upper plate, mm", ylabel="shear stress, kPa",
+             title=f"Thin: each bed. Thick: τ_max (1 − exp(−j/K)), K {soil.text('janosi_K_m', 1e3)} mm")
     left.legend(loc="upper left")
     sigma = 1e-3 * np.array([t["normal_stress_Pa"] for t in tests])
     right.plot(sigma, [1e-3 * t["tau_max_Pa"] for t in tests], "o", color=BLUE, label="fitted τ_max")
@@ -112,10 +99,8 @@ def shear(soil):
     if c is not None and len(sigma):
         x = np.linspace(0.0, 1.05 * sigma.max(), 2)
         right.plot(x, 1e-3 * c + x * np.tan(np.radians(phi)), color=BLUE, label="c + σ tan φ")
-    right.set_xlim(0.0)
-    right.set_ylim(0.0)
-    right.set_xlabel("normal stress, kPa")
-    right.set_title(f"c {soil.text('cohesion_Pa', 1e-3)} kPa, φ {soil.text('friction_angle_deg')}°")
+    right.set(xlim=0.0, ylim=0.0, xlabel="normal stress, kPa",
+              title=f"c {soil.text('cohesion_Pa', 1e-3)} kPa, φ {soil.text('friction_angle_deg')}°")
     right.legend(loc="upper left")
     return figure
 
@@ -131,12 +116,10 @@ def cone(soil):
                      label="cone index: mean over this depth")
         axis.legend(loc="lower right")
     axis.invert_yaxis()
-    axis.set_xlim(0.0)
-    axis.set_xlabel("force over base area, kPa")
-    axis.set_ylabel("depth of the cone's base, mm")
-    axis.set_title(f"30° cone, base {1e3 * about.get('base_diameter_m', np.nan):g} mm "
-                   f"({about.get('base_diameter_grains', np.nan):g} grains): cone index "
-                   f"{soil.text('cone_index_Pa', 1e-3)} kPa")
+    axis.set(xlim=0.0, xlabel="force over base area, kPa", ylabel="depth of the cone's base, mm",
+             title=f"30° cone, base {1e3 * about.get('base_diameter_m', np.nan):g} mm "
+             f"({about.get('base_diameter_grains', np.nan):g} grains): cone index {soil.text('cone_index_Pa', 1e-3)} "
+             "kPa")
     return figure
 
 
@@ -154,11 +137,7 @@ def repose(soil):
         labelled.add(label)
     _, first = next(runs(table, "seed", "cohesion_Pa"))
     axis.plot(table["x_m"][first], table["height_before_m"][first], color=GREY, lw=1.0, ls="--", label="before")
-    axis.set_aspect("equal")
-    axis.set_xlim(0.0)
-    axis.set_ylim(0.0)
-    axis.set_xlabel("x, m")
-    axis.set_ylabel("height, m")
-    axis.set_title("Surface after half of the bed was taken away")
+    axis.set(aspect="equal", xlim=0.0, ylim=0.0, xlabel="x, m", ylabel="height, m",
+             title="Surface after half of the bed was taken away")
     axis.legend(loc="upper right")
     return figure

@@ -5,12 +5,13 @@ import matplotlib.pyplot as plt
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 PURPLE, SKY, GREY = "#CC79A7", "#56B4E9", "#777777"
 
-plt.rcParams.update({
+LOOK = {
     "font.size": 10, "axes.titlesize": 10.5, "axes.titlelocation": "left", "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "grid.color": "#e2e2e2", "grid.linewidth": 0.8,
     "axes.axisbelow": True, "legend.frameon": False, "legend.fontsize": 9, "lines.linewidth": 1.4,
     "figure.constrained_layout.use": True,
-})
+}
+plt.rcParams.update(LOOK)
 
 
 def panels(run, rows, height, **options):

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import with_error
-from .run_data import Damaged, Missing, check_types, read_dataset, read_object
+from .run_data import Damaged, Missing, read_dataset, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 
@@ -19,8 +19,6 @@ class Sweep:
     def __init__(self, directory):
         self.directory = directory
         self.values = read_object(directory / "sweep.json")
-        check_types(self.values, "sweep.json", texts=("study", "description"),
-                    objects=("plot", "beds"), lists=("results",))
         with open(directory / "sweep.csv", newline="", encoding="utf-8") as file:
             table = csv.DictReader(line for line in file if not line.startswith("#"))
             rows = list(table)
@@ -133,8 +131,7 @@ def curve(sweep):
         open_points(axis, x, y, which, COLOURS[i % len(COLOURS)])
     axis.axhline(0.0, color=GREY, lw=0.8)
     mark_failed(axis, sweep)
-    axis.set_xlabel(plot["x"])
-    axis.set_ylabel(plot["y"] + bar_meaning(plot))
+    axis.set(xlabel=plot["x"], ylabel=plot["y"] + bar_meaning(plot))
     axis.set_title(sweep.title(), loc="left", fontweight="bold")
     if any(groups) or sweep.failed:
         axis.legend()
@@ -207,8 +204,7 @@ def rut_lines(sweep, axis, where, profile):
             lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after - undisturbed))
         for n, of_runs in sorted(lines.items()):
             axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)],
-                      alpha=0.35 + 0.65 * n / len(lines),
-                      lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label
+                      alpha=0.35 + 0.65 * n / len(lines), lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label
                       else f"{label}, pass 1 (thin) to {n}" if n == max(lines) else None)
     axis.axhline(0.0, color=GREY, lw=0.8)
 
@@ -219,8 +215,8 @@ def profiles(sweep, axis):
         middle = (x > x[0] + 0.35 * (x[-1] - x[0])) & (x < x[0] + 0.65 * (x[-1] - x[0]))
         return np.nanmean(change[middle], axis=0)
     rut_lines(sweep, axis, lambda x, y: 1e3 * y, across)
-    axis.set_xlabel("y across the bed, mm (mean over the middle 30 % of its length)")
-    axis.set_ylabel("height above the undisturbed surface, mm")
+    axis.set(xlabel="y across the bed, mm (mean over the middle 30 % of its length)",
+             ylabel="height above the undisturbed surface, mm")
     axis.legend(fontsize=8)
 
 
@@ -232,8 +228,7 @@ def rut_along(sweep):
         tread = np.abs(y - summary["lateral_m"]) < 0.25 * summary["tread_width_m"]
         return np.nanmean(change[:, tread], axis=1)
     rut_lines(sweep, axis, lambda x, y: x, along)
-    axis.set_xlabel("x along the bed, m")
-    axis.set_ylabel("height above the undisturbed surface, mm")
+    axis.set(xlabel="x along the bed, m", ylabel="height above the undisturbed surface, mm")
     axis.set_title(f"{sweep.title()} · middle half of the tread", loc="left", fontweight="bold")
     axis.legend(fontsize=8)
     return figure
@@ -265,8 +260,7 @@ def beds(sweep):
         if math.isfinite(half):
             axis.axhspan(mean - half, mean + half, color=ORANGE, alpha=0.2, lw=0)
         axis.set_xticks(at)
-        axis.set_xlabel("bed")
-        axis.set_ylabel(f"{what}, {unit}")
+        axis.set(xlabel="bed", ylabel=f"{what}, {unit}")
         axis.legend(fontsize=8, loc="upper left")
         axis.margins(y=0.35)
     lost = f" · {len(sweep.failed)} failed" if sweep.failed else ""

@@ -56,8 +56,7 @@ def top_view(figure, axis, v, field, depth):
         axis.plot(x[-1], y[-1], "o", color=colour, mec="black", ms=6,
                   label=f"{v.axles[wheel.axle]} wheels at the end; dotted: their path"
                   if wheel.side == "left" else None)
-    axis.set_xlabel("x, m")
-    axis.set_ylabel("y, m (left of +x)")
+    axis.set(xlabel="x, m", ylabel="y, m (left of +x)")
     axis.set_title("Seen from above (medians over 3 × 3 cells)", pad=24)
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=len(v.axles), borderaxespad=0.2, fontsize=8)
 
@@ -77,9 +76,8 @@ def across(axis, v, field, depth):
     for _, place in v.places[:2]:
         axis.axvline(place, color=GREY, ls=":", lw=0.9)
     axis.axhline(0.0, color=GREY, lw=1.0)
-    axis.set_xlabel("left of the vehicle's middle, m (dotted: middle of the front tires)")
-    axis.set_ylabel("height change, mm")
-    axis.set_title(f"Across, mean over {NEAREST * radius:.2f} to {FARTHEST * radius:.2f} m behind an axle")
+    axis.set(xlabel="left of the vehicle's middle, m (dotted: middle of the front tires)", ylabel="height change, mm",
+             title=f"Across, mean over {NEAREST * radius:.2f} to {FARTHEST * radius:.2f} m behind an axle")
     axis.margins(y=0.2)
     axis.legend(loc="best", fontsize=8)
 
@@ -107,9 +105,8 @@ def along(axis, v, field, depth):
         axis.axvline(place, color="black", lw=0.8, ls=":")
         axis.annotate(what, (place, 0.0), xycoords=("data", "axes fraction"), rotation=90, fontsize=7.5, xytext=(-1, 3),
                       textcoords="offset points", va="bottom", ha="right")
-    axis.set_xlabel("distance along the path of the front wheels from their start, m")
-    axis.set_ylabel("height change, mm")
-    axis.set_title(f"Along the way of the front wheels, means over {0.5 * radius:.2g} m")
+    axis.set(xlabel="distance along the path of the front wheels from their start, m", ylabel="height change, mm",
+             title=f"Along the way of the front wheels, means over {0.5 * radius:.2g} m")
     axis.margins(y=0.2)
     axis.legend(loc="best", fontsize=8)
 

@@ -16,14 +16,12 @@ HEATS = {"drive_work_J": "engine and motors give", "converter_heat_J": "converte
 def place(axis, v):
     axis.plot(v.time, v["x_m"] - v["x_m"][0], color=BLUE, label="x − x at the start")
     axis.plot(v.time, v["y_m"] - v["y_m"][0], color=ORANGE, label="y − y at the start")
-    axis.set_ylabel("distance, m")
-    axis.set_title("Displacement of the vehicle's origin")
+    axis.set(ylabel="distance, m", title="Displacement of the vehicle's origin")
 
 
 def height(axis, v):
     axis.plot(v.time, 1e3 * (v["z_m"] - v.wheels[0].surface), color=BLUE, label="origin above the undisturbed surface")
-    axis.set_ylabel("height, mm")
-    axis.set_title("Height")
+    axis.set(ylabel="height, mm", title="Height")
 
 
 def speeds(axis, v):
@@ -37,15 +35,13 @@ def speeds(axis, v):
     if "target_speed_m_per_s" in v and v["target_speed_m_per_s"].any():
         axis.plot(v.time, v["target_speed_m_per_s"], color=GREEN, ls="--", lw=1.0, label="target")
     limits(axis, v, [v["speed_m_s"], *curves])
-    axis.set_ylabel("speed, m/s")
-    axis.set_title("Speed, and circumferential speed of the wheels (mean of 50 ms)")
+    axis.set(ylabel="speed, m/s", title="Speed, and circumferential speed of the wheels (mean of 50 ms)")
 
 
 def angles(axis, v):
     axis.plot(v.time, np.degrees(v["pitch_rad"]), color=BLUE, label="pitch, nose down positive")
     axis.plot(v.time, np.degrees(v["roll_rad"]), color=ORANGE, label="roll, right side down positive")
-    axis.set_ylabel("angle, °")
-    axis.set_title("Pitch and roll")
+    axis.set(ylabel="angle, °", title="Pitch and roll")
 
 
 def engine(axis, v):
@@ -69,9 +65,7 @@ def engine(axis, v):
 def inputs(axis, v):
     for name, colour in (("throttle", GREEN), ("brake", RED), ("steering", BLUE)):
         axis.plot(v.time, v[name], color=colour, label=name + (", left positive" if name == "steering" else ""))
-    axis.set_ylim(min(-0.05, 1.1 * v["steering"].min()), 1.1)
-    axis.set_ylabel("input, –")
-    axis.set_title("The driver's inputs")
+    axis.set(ylim=(min(-0.05, 1.1 * v["steering"].min()), 1.1), ylabel="input, –", title="The driver's inputs")
 
 
 def powers(axis, v):
@@ -83,8 +77,7 @@ def powers(axis, v):
         axis.plot(v.time, values, color=colour, label=label)
         curves.append(values)
     limits(axis, v, curves)
-    axis.set_ylabel("power, kW")
-    axis.set_title("Power (mean of 50 ms)")
+    axis.set(ylabel="power, kW", title="Power (mean of 50 ms)")
 
 
 def heats(axis, v):
@@ -92,8 +85,7 @@ def heats(axis, v):
     for (name, label), colour in zip(HEATS.items(), (PURPLE, ORANGE, GREEN, GREY, RED, BLUE, SKY)):
         if name in v and np.abs(v[name]).max() > 1e-3 * largest:
             axis.plot(v.time, 1e-3 * v[name], color=colour, label=label)
-    axis.set_ylabel("kJ since the start")
-    axis.set_title("Work of the drive, and heat of the parts that dissipate it")
+    axis.set(ylabel="kJ since the start", title="Work of the drive, and heat of the parts that dissipate it")
 
 
 def vehicle(v):
@@ -133,18 +125,15 @@ def path(v):
     above.plot(x, y, color=RED, ls="--", lw=1.2, label="path: middle of the axle that follows it, less its error")
     wide = np.ptp(v["x_m"]) > 6.0 * max(np.ptp(v["y_m"]) + np.ptp([left for _, left in v.places]), 1e-9)
     above.set_aspect("auto" if wide else "equal", adjustable="datalim")
-    above.set_xlabel("x, m")
-    above.set_ylabel("y, m" + (" (stretched)" if wide else ""))
-    above.set_title("Seen from above")
+    above.set(xlabel="x, m", ylabel="y, m" + (" (stretched)" if wide else ""), title="Seen from above")
     above.legend(loc="best", fontsize=8, ncol=2)
     for axis, values, unit, title in ((error, v["cross_track_error_m"],
                                        "m", "Error across the path: left of it positive"),
                                       (heading, np.degrees(v["heading_error_rad"]), "°", "Error of the heading")):
         axis.plot(v["path_distance_m"], values, color=BLUE)
         axis.axhline(0.0, color="black", lw=0.6)
-        axis.set_ylabel(f"error, {unit}")
-        axis.set_title(f"{title} (largest {np.abs(values).max():.3g} {unit}, rms {np.sqrt(np.mean(values ** 2)):.3g} "
-                       f"{unit})")
+        axis.set(ylabel=f"error, {unit}", title=f"{title} (largest {np.abs(values).max():.3g} {unit}, rms "
+                 f"{np.sqrt(np.mean(values ** 2)):.3g} {unit})")
     heading.set_xlabel("distance along the path, m")
     return figure
 
@@ -170,10 +159,8 @@ def gear(v):
     axis.plot(found.reached, found.gross, "o", color=GREEN,
               label=f"largest wheel speed {found.reached:.2f} m/s: {found.gross:.3f}")
     axis.axhline(0.0, color="black", lw=0.6)
-    axis.set_ylim(min(0.0, 1.1 * np.nanmin(np.where(driving, gross, 0.0))), 1.15 * max(max(given), 0.2))
-    axis.set_xlim(0.0, wheel[-1])
-    axis.set_xlabel("circumferential speed of the wheels ω R, m/s (mean of 100 ms)")
-    axis.set_ylabel("share of the weight")
-    axis.set_title(f"{v.title}\nWhat a change of gear needs: {found.verdict}")
+    axis.set(ylim=(min(0.0, 1.1 * np.nanmin(np.where(driving, gross, 0.0))), 1.15 * max(max(given), 0.2)),
+             xlim=(0.0, wheel[-1]), xlabel="circumferential speed of the wheels ω R, m/s (mean of 100 ms)",
+             ylabel="share of the weight", title=f"{v.title}\nWhat a change of gear needs: {found.verdict}")
     axis.legend(loc="upper right", fontsize=8.5)
     return figure

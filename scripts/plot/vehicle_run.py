@@ -1,6 +1,5 @@
 """A vehicle's run: the tables of vehicle and wheels on one clock, with the wheels' names and places."""
 import functools
-import json
 import pathlib
 
 import h5py
@@ -8,6 +7,7 @@ import numpy as np
 
 from .digits import digits
 from .run_data import Damaged, Missing, read_object, table
+from .units import is_number
 
 DATA = pathlib.Path(__file__).resolve().parents[2] / "vehicle" / "data"
 ROLES = {1: ["front"], 2: ["front", "rear"], 3: ["front", "middle", "rear"]}
@@ -122,8 +122,7 @@ class VehicleRun:
 
     @property
     def hard_ground(self):
-        terrain = self.run.scenario.get("terrain")
-        return (self.run.told.get("terrain_engine") or (isinstance(terrain, dict) and terrain.get("engine"))) == "rigid"
+        return (self.run.told.get("terrain_engine") or (self.run.scenario.get("terrain") or {}).get("engine")) == "rigid"
 
     def of_axle(self, axle):
         return [wheel for wheel in self.wheels if wheel.axle == axle]
@@ -131,18 +130,14 @@ class VehicleRun:
     @property
     def window(self):
         """(from, to) over which the run averages, s; None before it begins."""
-        section = self.run.scenario.get("run") or {}
-        begin = section.get("average_from") if isinstance(section, dict) else None
-        if isinstance(begin, bool) or not isinstance(begin, (int, float)) or not begin < self.time[-1]:
-            return None
-        return float(begin), float(self.time[-1])
+        begin = (self.run.scenario.get("run") or {}).get("average_from")
+        return None if begin is None or not begin < self.time[-1] else (float(begin), float(self.time[-1]))
 
     @functools.cached_property
     def loads(self):
         """Weight on each wheel at rest, N. A run without a summary has their mean over the last half instead."""
-        entries = self.run.told.get("wheels") or []
-        loads = [entry.get("vertical_load_N") for entry in entries if isinstance(entry, dict)]
-        if len(loads) == len(self.wheels) and all(isinstance(load, (int, float)) and load > 0 for load in loads):
+        loads = [entry.get("vertical_load_N") for entry in self.run.told.get("wheels") or []]
+        if len(loads) == len(self.wheels) and all(is_number(load) and load > 0 for load in loads):
             return [float(load) for load in loads]
         late = self.time >= 0.5 * self.time[-1]
         return [float(np.mean(wheel["force_z_N"][late])) for wheel in self.wheels]
@@ -191,36 +186,25 @@ class VehicleRun:
             tires, time = self.tire_frames(instants[0])
             origin, rotation = self.pose(time)
             return [tuple((0.5 * (vertex.min(0) + vertex.max(0)) - origin) @ rotation[:, :2]) for vertex, _ in tires]
-        entries = self.run.told.get("wheels") or []
-        lateral = [entry.get("lateral_m") for entry in entries if isinstance(entry, dict)]
-        if len(lateral) != len(self.wheels) or not all(isinstance(y, (int, float)) for y in lateral):
+        lateral = [entry.get("lateral_m") for entry in self.run.told.get("wheels") or []]
+        if len(lateral) != len(self.wheels) or not all(map(is_number, lateral)):
             raise Missing("there are no frames and no summary.json: where the wheels are is not known")
         yaw = self["yaw_rad"][0]
         along = np.cos(yaw) * self["x_m"][0] + np.sin(yaw) * self["y_m"][0]
-        rig = self.run.rig.get("lateral")
-        middle = rig if isinstance(rig, (int, float)) else 0.0
+        middle = self.run.rig.get("lateral") or 0.0
         return [(wheel["position_m"][0] - along, y - middle) for wheel, y in zip(self.wheels, lateral)]
 
     def tracks(self):
         """(x, y) of each wheel's centre over the ground against time."""
         yaw = self["yaw_rad"]
-        return [(self["x_m"] + np.cos(yaw) * ahead - np.sin(yaw) * left,
-                 self["y_m"] + np.sin(yaw) * ahead + np.cos(yaw) * left)
-                for ahead, left in self.places]
+        return [(self["x_m"] + np.cos(yaw) * ahead - np.sin(yaw) * left, self["y_m"] + np.sin(yaw) * ahead + np.cos(yaw)
+                 * left) for ahead, left in self.places]
 
     @functools.cached_property
     def data(self):
         """The vehicle's file where the run has it from, or one of those that are shipped; else an empty object."""
-        name = self.run.rig.get("vehicle")
-        if not isinstance(name, str):
-            return {}
-        path = DATA / name  # a file of the user's own has its full name
-        if not path.is_file():
-            return {}
-        try:
-            return read_object(path)
-        except (Damaged, OSError, json.JSONDecodeError):
-            return {}
+        path = DATA / (self.run.rig.get("vehicle") or "")  # a file of the user's own has its full name
+        return read_object(path) if path.is_file() else {}
 
     @property
     def title(self):

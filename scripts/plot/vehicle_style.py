@@ -65,9 +65,8 @@ def mark_events(axis, v, words=False):
             together.append([time, what])
     if words:
         for time, what in together:
-            axis.annotate(what, (time, 0.0), xycoords=("data", "axes fraction"),
-                          rotation=90, fontsize=7.5, color="#444444",
-                          xytext=(-1, 3), textcoords="offset points", ha="right", va="bottom")
+            axis.annotate(what, (time, 0.0), xycoords=("data", "axes fraction"), rotation=90, fontsize=7.5,
+                          color="#444444", xytext=(-1, 3), textcoords="offset points", ha="right", va="bottom")
 
 
 def mark_window(axis, v):
@@ -86,9 +85,8 @@ def steadiness(axis, v):
     except Missing:
         return
     if found.unsteady:
-        axis.text(0.995, 0.02, "NOT STEADY\n" + "\n".join(found.unsteady),
-                  transform=axis.transAxes, ha="right", va="bottom",
-                  color=RED, fontsize=7, zorder=5, bbox={"facecolor": "white", "alpha": 0.7, "lw": 0})
+        axis.text(0.995, 0.02, "NOT STEADY\n" + "\n".join(found.unsteady), transform=axis.transAxes, ha="right",
+                  va="bottom", color=RED, fontsize=7, zorder=5, bbox={"facecolor": "white", "alpha": 0.7, "lw": 0})
 
 
 def grid(v, rows, columns, height, width=None, **options):
@@ -97,6 +95,5 @@ def grid(v, rows, columns, height, width=None, **options):
                                 squeeze=False, **options)
     figure.suptitle(v.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
     for axis in axes[-1]:
-        axis.set_xlabel("time, s")
-        axis.set_xlim(0.0, v.time[-1])
+        axis.set(xlabel="time, s", xlim=(0.0, v.time[-1]))
     return figure, axes

@@ -103,8 +103,7 @@ def front_and_rear(v):
              ("sinkage_m", "sinkage below the undisturbed surface, mm", 1e3, False)]
     figure, axes = plt.subplots(2, 2, figsize=(13, 7.6), sharex=True)
     figure.suptitle(f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the "
-                    f"same soil", fontsize=11,
-                    x=0.01, ha="left", fontweight="bold")
+                    "same soil", fontsize=11, x=0.01, ha="left", fontweight="bold")
     begin = events.first(v.time >= quiet_time(v)) or 0
     for axis, (column, title, factor, total) in zip(axes.flat, shown):
         curves = []

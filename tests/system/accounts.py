@@ -1,10 +1,8 @@
 #!/usr/bin/python3
 """The accounts of a run: they close on grains and on hard ground, better with a smaller step, survive a resume, and are
 told."""
-import csv
-import json
 
-from program import SystemTest, changed, furrow, main, write_scenario
+from program import SystemTest, changed, furrow, main, read_json, rows_of, write_scenario
 
 FLEXIBLE = changed(tire={"rigid": False, "elements_circumference": 30, "elements_width": 6},
                    terrain={"radius": 0.03, "cohesion": 20e3, "layers": 3, "length": 1.4, "width": 0.4},
@@ -16,9 +14,8 @@ FLEXIBLE = changed(tire={"rigid": False, "elements_circumference": 30, "elements
 class Accounts(SystemTest):
     def accounts(self, name, *arguments, scenario=FLEXIBLE):
         path = write_scenario(self.folder, scenario)
-        done = furrow("run", path, "--no-plots", "--out", self.folder / name, *arguments, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.folder / name / "summary.json").read_text())["accounts"], done.stderr
+        done = self.furrow("run", path, "--no-plots", "--out", self.folder / name, *arguments)
+        return read_json(self.folder / name / "summary.json")["accounts"], done.stderr
 
     def check(self, accounts):
         energy, momentum = accounts["energy"], accounts["momentum"]
@@ -39,12 +36,10 @@ class Accounts(SystemTest):
         lost = accounts["energy"]["lost"]
         for entry in ("sliding_loss", "normal_damping_loss", "tire_viscous_loss", "tire_numerical_loss", "damper_loss"):
             self.assertGreater(lost[entry], 0.0, entry)
-        self.assertRegex(told,
-                         r"furrow: accounts: energy residual -?[\d.e+-]+ % of [\d.]+ J turned over, momentum residual "
-                         r"[\d.e-]+ of")
+        self.assertRegex(told, r"furrow: accounts: energy residual -?[\d.e+-]+ % of [\d.]+ J turned over, momentum "
+                         r"residual [\d.e-]+ of")
         self.assertNotIn("does not close", told)
-        with open(self.folder / "run/timeseries_accounts.csv", newline="") as file:
-            last = list(csv.DictReader(file))[-1]
+        last = rows_of(self.folder / "run/timeseries_accounts.csv")[-1]
         self.assertEqual(float(last["residual_J"]), accounts["energy"]["residual"])
         self.assertEqual(float(last["sliding_loss_J"]), lost["sliding_loss"])
         done = furrow("report", self.folder / "run", cwd=self.folder)
@@ -74,18 +69,14 @@ class Accounts(SystemTest):
         self.check(accounts)
         self.assertEqual(len(accounts["energy"]["each_tire"]), 2)
         self.assertAlmostEqual(sum(t["residual"] for t in accounts["energy"]["each_tire"]),
-                               accounts["energy"]["residual_of"]["tires"],
-                               delta=1e-9 * accounts["energy"]["turnover"])
+                               accounts["energy"]["residual_of"]["tires"], delta=1e-9 * accounts["energy"]["turnover"])
 
     def test_a_resumed_run_has_the_same_accounts_bit_for_bit(self):
         whole, _ = self.accounts("whole")
         path = write_scenario(self.folder, dict(FLEXIBLE, checkpoint={"at_end": True}))
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "part",
-                      "--set", "run.end=0.08", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = furrow("resume", self.folder / "part", "--until", "0.12", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        resumed = json.loads((self.folder / "part/summary.json").read_text())["accounts"]
+        self.furrow("run", path, "--no-plots", "--out", self.folder / "part", "--set", "run.end=0.08")
+        self.furrow("resume", self.folder / "part", "--until", "0.12", "--no-plots")
+        resumed = read_json(self.folder / "part/summary.json")["accounts"]
         self.assertEqual(resumed, whole)
         self.assertEqual((self.folder / "part/timeseries_accounts.csv").read_bytes(),
                          (self.folder / "whole/timeseries_accounts.csv").read_bytes())

@@ -1,13 +1,12 @@
 #!/usr/bin/python3
 """`furrow run --seeds N`: one scenario on several beds, their means, and what becomes of those that are not done."""
-import csv
-import json
 import math
 import signal
 import statistics
 import sys
 
-from program import ROOT, SystemTest, changed, furrow, main, start, survivors, wait_for, write_scenario
+from program import (ROOT, SystemTest, changed, furrow, main, read_json, rows_of, survivors, wait_for, write_json,
+                     write_scenario)
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
 from compare_runs import differences  # noqa: E402
@@ -19,12 +18,11 @@ STUDENT = {2: 4.302653, 3: 3.182446}  # 97.5 %
 class Beds(SystemTest):
     def beds(self, *arguments, code=0):
         path = write_scenario(self.folder, changed(output={"frame_interval": 0}))
-        done = furrow("run", path, *arguments, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow("run", path, *arguments, code=code)
         return done
 
     def summary(self, run, name="summary.json"):
-        return json.loads((self.folder / run / name).read_text())
+        return read_json(self.folder / run / name)
 
     def check_means(self, run, names):
         """Against the summaries of the beds themselves."""
@@ -57,8 +55,7 @@ class Beds(SystemTest):
                          [("seed1", 1, True), ("seed2", 2, True), ("seed3", 3, True)])
         self.assertTrue(together["runs"][0]["drawbar_pull_N"]["unsteady_because"])
         self.assertEqual((run / "beds.png").read_bytes()[:4], b"\x89PNG")
-        with open(run / "sweep.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(run / "sweep.csv")
         self.assertEqual([(row["folder"], row["run.seed"], row["state"], row["drawbar_pull_N.steady"]) for row in rows],
                          [(f"seed{k}", str(k), "done", "false") for k in (1, 2, 3)])
 
@@ -77,27 +74,22 @@ class Beds(SystemTest):
                          [".furrow-run", "notes.txt", "seed1", "seed1.log",
                           "seed2", "seed2.log", "summary.json", "sweep.csv", "sweep.json"])
         self.assertEqual([bed["seed"] for bed in self.summary(run)["runs"]], [7, 8])
-        self.assertEqual(json.loads((run / "seed2" / "scenario.json").read_text())["run"]["seed"], 8)
+        self.assertEqual(read_json(run / "seed2" / "scenario.json")["run"]["seed"], 8)
 
     def test_beds_that_were_stopped_go_on(self):
         settings = ["--seeds", "2", "--no-plots", "--set", "run.end=0.2", "--set", "checkpoint.interval=0.01"]
         path = write_scenario(self.folder, changed(output={"frame_interval": 0}))
-        process = start("run", path, "--out", "beds", *settings, cwd=self.folder)
-        self.addCleanup(process.kill)
+        process = self.start("run", path, "--out", "beds", *settings)
         wait_for(lambda: list((self.folder / "beds" / "seed1").glob("checkpoints/0*")), 60, "a checkpoint")
         process.send_signal(signal.SIGTERM)
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, err)
-        self.assertIn("run the same command with --out beds", err)
+        self.ended(process, 75, says="run the same command with --out beds")
         self.assertFalse((self.folder / "beds" / "summary.json").exists())
         self.assertEqual(survivors(self.folder), [])
         done = self.beds("--out", "beds", *settings)
         self.assertIn("run 1 of 2 (run.seed=1) continues", done.stderr)
         self.beds("--out", "whole", *settings)
         self.assertEqual(differences(self.folder / "whole", self.folder / "beds"), [])
-        resumed = furrow("resume", "beds", cwd=self.folder)
-        self.assertEqual(resumed.returncode, 2, resumed.stderr)
-        self.assertIn("holds several runs, expected the folder of one of them", resumed.stderr)
+        self.furrow("resume", "beds", code=2, says="holds several runs, expected the folder of one of them")
 
     def test_means_are_over_the_others_where_a_bed_failed_and_say_so(self):
         (self.folder / "beds").mkdir()
@@ -124,8 +116,8 @@ class Beds(SystemTest):
 
     def test_mistakes_are_told_before_anything_runs(self):
         (self.folder / "bed.csv").write_text("x_m,y_m,z_m\n0.1,0.0,0.1\n")
-        (self.folder / "study.json").write_text(json.dumps({"scenario": "small.json",
-                                                            "list": [{"rig.slip": 0.1}], "set": {"run.end": 0.01}}))
+        write_json(self.folder / "study.json", {"scenario": "small.json",
+                                                            "list": [{"rig.slip": 0.1}], "set": {"run.end": 0.01}})
         for flags, words in ((["--seeds", "0"], "--seeds': is 0, expected 2 to 1000 beds"),
                              (["--seeds", "1"], "--seeds': is 1, expected 2 to 1000 beds"),
                              (["--seeds", "-3"], "--seeds': is -3, expected 2 to 1000 beds"),
@@ -146,12 +138,10 @@ class Beds(SystemTest):
 
     def test_beds_and_studies_keep_to_their_own_folders(self):
         self.beds("--seeds", "2", "--out", "beds", "--no-plots", *SHORT)
-        study = self.folder / "study.json"
-        study.write_text(json.dumps({"scenario": "small.json", "list": [{"rig.slip": 0.1}], "set": {"run.end": 0.03}}))
-        done = furrow("sweep", study, "--out", "beds", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("holds the beds of 'furrow run --seeds'", done.stderr)
-        self.assertEqual(furrow("sweep", study, "--out", "study", cwd=self.folder).returncode, 0)
+        study = write_json(self.folder / "study.json", {"scenario": "small.json", "list": [{"rig.slip": 0.1}],
+                                                        "set": {"run.end": 0.03}})
+        self.furrow("sweep", study, "--out", "beds", code=2, says="holds the beds of 'furrow run --seeds'")
+        self.furrow("sweep", study, "--out", "study")
         self.assertIn("holds a study, expected a new folder or that of beds",
                       self.beds("--seeds", "2", "--out", "study", "--overwrite", code=2).stderr)
         self.assertIn("holds a run", self.beds("--seeds", "2", "--out", "beds/seed1", "--overwrite", code=2).stderr)

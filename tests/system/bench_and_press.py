@@ -2,7 +2,7 @@
 """`furrow bench tire` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
 import json
 
-from program import ROOT, SystemTest, furrow, main, start
+from program import ROOT, SystemTest, furrow, main, read_json, write_json
 
 SCENARIO = {
     "format_version": 1,
@@ -17,8 +17,7 @@ COARSE = ("--elements-circumference", "24", "--elements-width", "6", "--warm",
 
 class Bench(SystemTest):
     def bench(self, *more):
-        done = furrow("bench", "tire", *COARSE, *more, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("bench", "tire", *COARSE, *more)
         return json.loads(done.stdout)
 
     def test_keys_and_same_state_for_any_threads(self):
@@ -38,12 +37,8 @@ class Bench(SystemTest):
         self.assertEqual(self.bench("--tire", "hmmwv_lumped.json")["layers"], 1)
 
     def test_bad_input(self):
-        done = furrow("bench", "tire", "--threads", "0", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--threads", done.stderr)
-        done = furrow("bench", "tire", "--tire", "none.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("none.json", done.stderr)
+        self.furrow("bench", "tire", "--threads", "0", code=2, says="--threads")
+        self.furrow("bench", "tire", "--tire", "none.json", code=2, says="none.json")
 
 
     def test_bad_beds(self):
@@ -52,39 +47,32 @@ class Bench(SystemTest):
         for more, word in ((("--bed", "none.csv"), "none.csv"), (("--bed", bed), "line 3"),
                            (("--law", "glue"), "--law"),
                            (("--bed", bed, "--step", "1e-3"), "stable step")):
-            done = furrow("bench", "grains", *more, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(word, done.stderr)
+            self.furrow("bench", "grains", *more, code=2, says=word)
         bed.write_text("x_m,y_m,z_m\n0.1,-0.1,0.006\n")
         self.assertIn("line 2", furrow("bench", "grains", "--bed", bed, cwd=self.folder).stderr)
 
     def test_a_signal_stops_it(self):
-        bench = start("bench", "tire", *COARSE[:4], "--warm", "1000", cwd=self.folder)
+        bench = self.start("bench", "tire", *COARSE[:4], "--warm", "1000")
         self.assertIn("touching down", bench.stderr.readline())
         bench.terminate()
-        _, said = bench.communicate(timeout=60)
-        self.assertEqual(bench.returncode, 75, said)
-        self.assertIn("signal", said)
+        self.ended(bench, 75, says="signal")
 
 
 class Press(SystemTest):
     def press(self, *more, deflection="0.012", points="4"):
-        path = self.folder / "pressed.json"
-        path.write_text(json.dumps(SCENARIO))
-        return furrow("press", path, "--out", self.folder / "out", "--deflection",
-                      deflection, "--points", points, *more,
-                      cwd=self.folder)
+        path = write_json(self.folder / "pressed.json", SCENARIO)
+        return furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points,
+                      *more, cwd=self.folder)
 
     def test_plate(self):
         # Two rows of nodes or more touch: one alone has no length.
         done = self.press("--load", "2000", "--set", "tire.elements_circumference=60")
-        self.assertRegex(done.stderr,
-                         r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, footprint "
-                         r"\d[\d.]* mm long, [\d.]+ mm wide")
+        self.assertRegex(done.stderr, r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, "
+                         r"footprint \d[\d.]* mm long, [\d.]+ mm wide")
         self.assertEqual(done.returncode, 0, done.stderr)
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), str(out))
-        summary = json.loads((out / "summary.json").read_text())
+        summary = read_json(out / "summary.json")
         self.assertLess(summary["loading_unloading_difference"], 1e-5)
         self.assertLessEqual(summary["max_residual"], 1e-6)
         self.assertTrue(summary["statically_stable"] and summary["stable_while_pressed"])
@@ -108,22 +96,18 @@ class Press(SystemTest):
         done = self.press("--set", "rig.carrier_mass=null", "--set", "rig.load=1500",
                           "--set", "tire.elements_circumference=60")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["load_N"], 1500, delta=1e-6)
+        self.assertAlmostEqual(read_json(self.folder / "out/summary.json")["load_N"], 1500, delta=1e-6)
 
     def test_what_wrinkles_and_what_buckles_on_the_way_is_named(self):
         done = self.press("--set", "tire.file=hmmwv_layered.json", "--set",
                           "tire.elements_circumference=60", "--set", "tire.elements_width=12")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("furrow: warning: this tire wrinkles under its pressure", done.stderr)
-        done = furrow("press", self.folder / "pressed.json", "--out", self.folder / "out",
-                      "--overwrite", "--deflection", "0.02",
-                      "--points", "5", "--load", "1000", "--set", "tire.pressure=70000",
-                      "--set", "tire.elements_circumference=60",
-                      "--set", "tire.elements_width=12", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stderr,
-                         r"furrow: warning: this tire buckles while it is pressed, first on the way to 0\.\d+ m")
-        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.furrow("press", self.folder / "pressed.json", "--out", self.folder / "out", "--overwrite", "--deflection",
+                    "0.02", "--points", "5", "--load", "1000", "--set", "tire.pressure=70000",
+                    "--set", "tire.elements_circumference=60", "--set", "tire.elements_width=12",
+                    matches=r"furrow: warning: this tire buckles while it is pressed, first on the way to 0\.\d+ m")
+        summary = read_json(self.folder / "out/summary.json")
         self.assertEqual((summary["statically_stable"], summary["stable_while_pressed"]), (True, False))
         self.assertLess(summary["director_runout_rad"], 1e-6)
 
@@ -135,23 +119,20 @@ class Press(SystemTest):
     def test_cleat_is_softer_than_a_plate(self):
         done = self.press("--on", "cleat", "--cleat-width", "0.004", "--load", "1e5")
         self.assertEqual(done.returncode, 0, done.stderr)
-        cleat = json.loads((self.folder / "out/summary.json").read_text())
+        cleat = read_json(self.folder / "out/summary.json")
         self.assertIsNone(cleat["deflection_m"])  # the load is not reached
         self.assertLess(cleat["loading_unloading_difference"], 1e-4)
         done = self.press("--overwrite", "--load", "1e5")
-        plate = json.loads((self.folder / "out/summary.json").read_text())
+        plate = read_json(self.folder / "out/summary.json")
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
 
     def test_a_scenario_says_how_its_tire_is_pressed_and_options_override_it(self):
-        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8",
-                  "--points", "2", "--deflection", "0.012",
-                  "--load", "2000")
+        coarse = ("--set", "tire.elements_circumference=48", "--set", "tire.elements_width=8", "--points", "2",
+                  "--deflection", "0.012", "--load", "2000")
         deflections = []
         for more in ((), ("--cleat-width", "0.1"), ("--set", "press.cleat_width=0.1")):
-            done = furrow("press", "cleat_press.json", "--out", self.folder / "out",
-                          "--overwrite", *coarse, *more, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.furrow("press", "cleat_press.json", "--out", self.folder / "out", "--overwrite", *coarse, *more)
+            summary = read_json(self.folder / "out/summary.json")
             self.assertEqual((summary["obstacle"], summary["cleat_width_m"], summary["cleat_height_m"]),
                              ("cleat", 0.1 if more else 0.051, 0.1))
             deflections.append(summary["deflection_m"])
@@ -162,28 +143,23 @@ class Press(SystemTest):
                               ("press.deflection=0.3", "key 'press.deflection': is 0.3 m"),
                               ("press.width=1", "key 'press.width'"),
                               ("press.cleat_width=[0.1]", "key 'press.cleat_width'")):
-            done = furrow("press", "cleat_press.json", "--out", self.folder / "other",
-                          "--set", setting, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("cleat_press.json: " + said, done.stderr)
+            self.furrow("press", "cleat_press.json", "--out", self.folder / "other", "--set", setting, code=2,
+                        says="cleat_press.json: " + said)
         done = furrow("press", "cleat_press.json", "--out", self.folder / "other", "--set", "tire.file=hmmwv_ring.json",
                       "--set", "press.deflection=0.19", cwd=self.folder)
         self.assertIn("cleat_press.json: key 'press.deflection': is 0.19 m, expected at most 0.11", done.stderr)
         self.assertFalse((self.folder / "other").exists())
 
     def test_flexible_ring(self):
-        path = self.folder / "ring.json"
-        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "hmmwv_ring.json"}}))
+        path = write_json(self.folder / "ring.json", {**SCENARIO, "tire": {"file": "hmmwv_ring.json"}})
         deflections, keys = {}, []
         profile = self.folder / "bar.csv"
         profile.write_text("x_m,z_m\n-0.0255,0\n0.0255,0\n")
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.051")),
                            ("profile", ("--on", "profile", "--profile", profile))):
-            done = furrow("press", path, "--out", self.folder / "out",
-                          "--overwrite", "--deflection", "0.03", "--points",
-                          "6", "--load", "8000", *more, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.03",
+                        "--points", "6", "--load", "8000", *more)
+            summary = read_json(self.folder / "out/summary.json")
             self.assertEqual(summary["obstacle"], name)
             self.assertLess(summary["max_residual"], 1e-6)
             self.assertLess(summary["loading_unloading_difference"], 1e-6)
@@ -196,11 +172,10 @@ class Press(SystemTest):
             self.assertIsNone(summary["sticking_stiffness"]["lateral_N_per_m"])
             self.assertAlmostEqual(summary["rim_force_N"][2], 8000, delta=8)
             deflections[name] = summary["deflection_m"]
-        shell = furrow("press", path, "--set", "tire.file=hmmwv_lumped.json", "--set", "tire.elements_circumference=30",
-                       "--set", "tire.elements_width=6", "--deflection", "0.005", "--points", "1", "--load", "100",
-                       "--out", self.folder / "shell", cwd=self.folder)
-        self.assertEqual(shell.returncode, 0, shell.stderr)
-        summary = json.loads((self.folder / "shell/summary.json").read_text())
+        self.furrow("press", path, "--set", "tire.file=hmmwv_lumped.json", "--set", "tire.elements_circumference=30",
+                    "--set", "tire.elements_width=6", "--deflection", "0.005", "--points", "1", "--load", "100",
+                    "--out", self.folder / "shell")
+        summary = read_json(self.folder / "shell/summary.json")
         self.assertEqual(keys[0], sorted(summary) + sorted(summary["sticking_stiffness"])
                          + sorted(summary["footprint"]))
         self.assertIsNone(summary["stiffness_missing_because"])
@@ -210,19 +185,16 @@ class Press(SystemTest):
         self.assertTrue((self.folder / "out/load_deflection.png").exists(), list((self.folder / "out").iterdir()))
 
     def test_planar_tire(self):
-        path = self.folder / "planar.json"
-        path.write_text(json.dumps({**SCENARIO,
-                                    "tire": {"file": "aligator_planar.json", "elements_circumference": 48}}))
+        path = write_json(self.folder / "planar.json", {**SCENARIO,
+                                    "tire": {"file": "aligator_planar.json", "elements_circumference": 48}})
         profile = self.folder / "plate.csv"
         profile.write_text("x_m,z_m\n-1,0\n1,0\n")
         deflections = {}
         for name, more in (("plate", ()), ("cleat", ("--on", "cleat", "--cleat-width", "0.05")),
                            ("profile", ("--on", "profile", "--profile", profile))):
-            done = furrow("press", path, "--out", self.folder / "out",
-                          "--overwrite", "--deflection", "0.08", "--points",
-                          "4", "--load", "15000", *more, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            summary = json.loads((self.folder / "out/summary.json").read_text())
+            self.furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.08",
+                        "--points", "4", "--load", "15000", *more)
+            summary = read_json(self.folder / "out/summary.json")
             self.assertEqual(summary["obstacle"], name)
             self.assertIsNone(summary["pressure_Pa"])
             sticking = summary["sticking_stiffness"]
@@ -236,12 +208,10 @@ class Press(SystemTest):
         self.assertLess(1.2 * deflections["plate"], deflections["cleat"])
         self.assertAlmostEqual(deflections["profile"], deflections["plate"], places=9)
         self.assertTrue((self.folder / "out/load_deflection.png").exists(), list((self.folder / "out").iterdir()))
-        done = furrow("press", path, "--out", self.folder / "other", "--deflection", "0.19", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("key '--deflection': is 0.19 m, expected at most 0.1608 m", done.stderr)
-        done = furrow("press", path, "--out", self.folder / "other", "--camber", "0.05", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("key '--camber': is 0.05 rad, expected 0: a planar tire is alike across its width", done.stderr)
+        self.furrow("press", path, "--out", self.folder / "other", "--deflection", "0.19", code=2,
+                    says="key '--deflection': is 0.19 m, expected at most 0.1608 m")
+        self.furrow("press", path, "--out", self.folder / "other", "--camber", "0.05", code=2,
+                    says="key '--camber': is 0.05 rad, expected 0: a planar tire is alike across its width")
         self.assertFalse((self.folder / "other").exists())
 
     def test_camber_tilts_the_plate(self):
@@ -249,7 +219,7 @@ class Press(SystemTest):
         for angle in ("0.08", "-0.08", "0"):
             done = self.press("--camber", angle, "--overwrite", "--load", "1500")
             self.assertEqual(done.returncode, 0, done.stderr)
-            summary = json.loads((self.folder / "out/summary.json").read_text())
+            summary = read_json(self.folder / "out/summary.json")
             self.assertEqual(summary["camber_rad"], float(angle))
             force[angle], moment[angle] = summary["deflection_m"], summary["rim_moment_Nm"][0]
             self.assertAlmostEqual(summary["rim_force_N"][2], 1500, delta=1.5)
@@ -259,8 +229,7 @@ class Press(SystemTest):
         self.assertAlmostEqual(moment["0.08"], -moment["-0.08"], places=2)
         self.assertLess(moment["0.08"], -1)  # leaning to the right it stands on its right shoulder
         done = self.press("--set", "press.camber=0.08", "--overwrite", "--load", "1500")
-        self.assertAlmostEqual(json.loads((self.folder / "out/summary.json").read_text())["deflection_m"],
-                               force["0.08"], places=12)
+        self.assertAlmostEqual(read_json(self.folder / "out/summary.json")["deflection_m"], force["0.08"], places=12)
         done = self.press("--set", "press.camber=0.02", "--set", "tire.file=hmmwv_ring.json", "--overwrite")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("pressed.json: key 'press.camber': is 0.02 rad, expected 0: a flexible ring is alike across its "
@@ -270,7 +239,7 @@ class Press(SystemTest):
         done = self.press("--load", "5000", deflection="0.2", points="8")
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertRegex(done.stderr, r"furrow: error: the curve ends early: .*; up to 0\.\d+ m it was found")
-        summary = json.loads((self.folder / "out/summary.json").read_text())
+        summary = read_json(self.folder / "out/summary.json")
         self.assertIn("up to", summary["ended_because"])
         lines = (self.folder / "out/press.csv").read_text().splitlines()
         self.assertTrue(2 < len(lines) < 1 + 9, lines)
@@ -280,21 +249,18 @@ class Press(SystemTest):
         done = self.press("--set", "tire.pressure=[[0, 200000], [1, 100000]]", "--load", "1500")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("tire.pressure changes in time: the tire is pressed at that of t = 0, 200000 Pa", done.stderr)
-        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["pressure_Pa"], 200000)
+        self.assertEqual(read_json(self.folder / "out/summary.json")["pressure_Pa"], 200000)
 
     def test_a_static_tire_does_not_run(self):
-        tire = json.loads((ROOT / "tire/data/aligator_planar.json").read_text())
-        (self.folder / "tire.json").write_text(json.dumps({**tire, "integrator": "runge_kutta_4"}))
-        path = self.folder / "static.json"
-        path.write_text(json.dumps({**SCENARIO, "tire": {"file": "tire.json"}}))
+        tire = read_json(ROOT / "tire/data/aligator_planar.json")
+        write_json(self.folder / "tire.json", {**tire, "integrator": "runge_kutta_4"})
+        path = write_json(self.folder / "static.json", {**SCENARIO, "tire": {"file": "tire.json"}})
         for command in ("validate", "run"):
-            done = furrow(command, path, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key 'tire.file': is a planar finite-element tire, whose key 'integrator' is 'runge_kutta_4'",
-                          done.stderr)
+            self.furrow(command, path, code=2,
+                        says="key 'tire.file': is a planar finite-element tire, whose key 'integrator' is "
+                        "'runge_kutta_4'")
             self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json", "tire.json"])
-        done = furrow("validate", path, "--set", "tire.rigid=true", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("validate", path, "--set", "tire.rigid=true")
 
     def test_bad_input(self):
         for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"),

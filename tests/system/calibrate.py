@@ -7,7 +7,7 @@ import struct
 import time
 
 import calibrate_grains
-from program import ROOT, SystemTest, furrow, main, start, wait_for
+from program import ROOT, SystemTest, furrow, main, read_json, rows_of, wait_for, write_json
 
 FILES = {"calibration.json", "evaluations.csv", "fit.csv", "soft_ring_fitted.json"}
 
@@ -16,16 +16,15 @@ class Calibrate(SystemTest):
     """Curves of a ring whose first sidewall coefficient is 1e6 N/m, made by `furrow press`."""
 
     def press(self, tire, name, *words):
-        done = furrow("press", ROOT / "rigs" / "cleat_press.json", "--set",
-                      f"tire.file={tire}", "--set", "tire.elements_circumference=null", "--set",
-                      "tire.elements_width=null", "--points", "8", "--out", name, "--quiet", *words, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("press", ROOT / "rigs" / "cleat_press.json", "--set", f"tire.file={tire}",
+                    "--set", "tire.elements_circumference=null", "--set", "tire.elements_width=null", "--points", "8",
+                    "--out", name, "--quiet", *words)
 
     def curve(self, name, *words):
-        ring = {**json.loads((ROOT / "tire" / "data" / "hmmwv_ring.json").read_text()), "segments": 120}
-        (self.folder / "soft_ring.json").write_text(json.dumps(ring))
+        ring = {**read_json(ROOT / "tire" / "data" / "hmmwv_ring.json"), "segments": 120}
+        write_json(self.folder / "soft_ring.json", ring)
         ring["sidewall"][0] = 1e6
-        (self.folder / "hard_ring.json").write_text(json.dumps(ring))
+        write_json(self.folder / "hard_ring.json", ring)
         if not (self.folder / name).exists():
             self.press(self.folder / "hard_ring.json", name, *words)
         return f"{name}/press.csv"
@@ -38,19 +37,18 @@ class Calibrate(SystemTest):
                               "name": "cleat", "on": "cleat",
                               "cleat_width": 0.051, "weight": 2}],
                  "held_out": [{"data": "plate/press.csv", "name": "again", "on": "plate"}], "starts": 3, **more}
-        (self.folder / name).write_text(json.dumps(study))
+        write_json(self.folder / name, study)
         return name
 
     def text(self, folder):
         return {name: (self.folder / folder / name).read_bytes() for name in FILES}
 
     def test_earlier_results_come_back_where_nothing_is_evaluated(self):
-        self.assertEqual(furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.furrow("calibrate", self.study(), "--out", "out", "--no-plots")
         before = self.text("out")
-        (self.folder / "grains.json").write_text(json.dumps(calibrate_grains.CalibrateGrains.STUDY))
+        write_json(self.folder / "grains.json", calibrate_grains.CalibrateGrains.STUDY)
         for number in (signal.SIGTERM, signal.SIGKILL):
-            process = start("calibrate", "grains.json", "--out", "out", "--overwrite", cwd=self.folder)
-            self.addCleanup(process.kill)
+            process = self.start("calibrate", "grains.json", "--out", "out", "--overwrite")
             wait_for(lambda: all((self.folder / "out" / name).exists()
                                  for name in (".furrow-before/evaluations.csv", "evaluations.csv")), 60,
                      "they are set aside")
@@ -60,31 +58,28 @@ class Calibrate(SystemTest):
                 self.assertEqual(process.returncode, 75, err)
                 self.assertIn("out holds the earlier results again", err)
                 self.assertEqual(self.text("out"), before)
-        done = furrow("calibrate", "grains.json", "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
+        self.furrow("calibrate", "grains.json", "--out", "out", code=2)
         self.assertEqual(self.text("out"), before)
 
     def test_the_result_is_a_tire_with_the_errors_of_its_parameters(self):
-        done = furrow("calibrate", self.study(), "--out", "out", cwd=self.folder)
-        self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)
-        self.assertRegex(done.stderr, r"furrow: sidewall_1 1000000 ± \S+ N/m\n")
+        done = self.furrow("calibrate", self.study(), "--out", "out", matches=r"furrow: sidewall_1 1000000 ± \S+ N/m\n",
+                           prints="out\n")
         self.assertRegex(done.stderr,
                          r"furrow: predicted again \(plate\): R² 1\.0000, largest error \S+ N, \S+ % of the peak\n")
         out = self.folder / "out"
         self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"},
                          FILES | {"fit.png", "residual.png", "report.html"})
-        result = json.loads((out / "calibration.json").read_text())
+        result = read_json(out / "calibration.json")
         stiff = result["parameters"]["sidewall_1"]
         self.assertAlmostEqual(stiff["value"] / 1e6, 1, delta=1e-4)
         self.assertLessEqual(stiff["interval_95"][0], stiff["value"])
         self.assertEqual([target["name"] for target in result["targets"]], ["plate", "cleat"])
         self.assertGreater(result["fitted"]["r_squared"], 0.9999)
         self.assertEqual(len(result["starts"]), 3)
-        with open(out / "fit.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(out / "fit.csv")
         self.assertEqual(len(rows), 24)
         self.assertEqual(rows[0]["set"], "fitted")
-        fitted = json.loads((out / "soft_ring_fitted.json").read_text())
+        fitted = read_json(out / "soft_ring_fitted.json")
         self.assertEqual(fitted["sidewall"][0], stiff["value"])
         self.assertIn("furrow calibrate", fitted["source"])
         self.press(out / "soft_ring_fitted.json", "again", "--on", "plate")
@@ -92,36 +87,33 @@ class Calibrate(SystemTest):
             pressed = [float(row["force_N"]) for row in csv.DictReader(file) if row["unloading"] == "0"][1:]
         for force, row in zip(pressed, [row for row in rows if row["target"] == "plate"], strict=True):
             self.assertAlmostEqual(force / float(row["model"]), 1, delta=1e-9)
-        done = furrow("report", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("report", "out")
 
     def test_a_table_is_told_in_one_line_for_each_quantity(self):
         study = {"calibrate": "handling", "start": "handling_start.tir",
                  "parameters": {"PKX1": {"lower": 5, "upper": 60}},
                  "targets": [{"data": "sweep_lumped.csv", "of": of} for of in ("fx", "mz", "fy", "mx", "my")],
                  "starts": 1}
-        (self.folder / "handling.json").write_text(json.dumps(study))
-        done = furrow("calibrate", "handling.json", "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        write_json(self.folder / "handling.json", study)
+        done = self.furrow("calibrate", "handling.json", "--out", "out")
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: fitted ")]
         self.assertEqual(len(told), 5, done.stderr)
         self.assertRegex(told[0],
                          r"fitted sweep_lumped_fx \(fx of 41 rows\): R² -?\S+, largest error \S+ N, \S+ % of the peak$")
-        self.assertRegex(told[1],
-                         r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of the "
-                         r"peak$")
+        self.assertRegex(told[1], r"fitted sweep_lumped_mz \(mz of 41 rows\): R² -?\S+, largest error \S+ Nm, \S+ % of "
+                         r"the peak$")
         for plot in ("fit.png", "residual.png"):  # five panels in two rows
             wide, high = struct.unpack(">II", (self.folder / "out" / plot).read_bytes()[16:24])
             self.assertTrue(2 < wide / high < 3, (plot, wide, high))
 
     def test_it_continues_to_the_same_bits_after_signals_and_damage(self):
         study = self.study()
-        self.assertEqual(furrow("calibrate", study, "--out", "once", "--no-plots", cwd=self.folder).returncode, 0)
+        self.furrow("calibrate", study, "--out", "once", "--no-plots")
         expected = self.text("once")
         table = expected["evaluations.csv"]
         stops = 0
         for wait in (0.0, 0.05, 0.2):
-            process = start("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder)
+            process = self.start("calibrate", study, "--out", "often", "--no-plots")
             wait_for(lambda: (self.folder / "often" / "evaluations.csv").exists() or process.poll() is not None,
                      60, "the table")
             time.sleep(wait)
@@ -133,42 +125,34 @@ class Calibrate(SystemTest):
             self.assertIn("run the same command to continue", err)
             stops += 1
         self.assertGreater(stops, 0)
-        done = furrow("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("calibrate", study, "--out", "often", "--no-plots")
         self.assertEqual(self.text("often"), expected)
         # Cut in the middle of a line, as a full disk or kill −9 leaves it.
         (self.folder / "often" / "evaluations.csv").write_bytes(table[: len(table) // 2])
         (self.folder / "often" / "calibration.json").unlink()
-        self.assertEqual(furrow("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder).returncode, 0)
+        self.furrow("calibrate", study, "--out", "often", "--no-plots")
         self.assertEqual(self.text("often"), expected)
 
     def test_another_calibration_needs_another_folder(self):
-        self.assertEqual(furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.furrow("calibrate", self.study(), "--out", "out", "--no-plots")
         before = self.text("out")
         other = self.study("other.json", parameters={"bending": {}})
-        done = furrow("calibrate", other, "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("holds the evaluations of another calibration", done.stderr)
+        self.furrow("calibrate", other, "--out", "out", code=2, says="holds the evaluations of another calibration")
         self.assertEqual(self.text("out"), before)
-        done = furrow("calibrate", other, "--out", "out", "--overwrite", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("calibrate", other, "--out", "out", "--overwrite", "--no-plots")
         self.assertNotEqual(self.text("out"), before)
         (self.folder / "mine").mkdir()
         (self.folder / "mine" / "notes.txt").write_text("mine")
         for words in ((), ("--overwrite",)):
-            done = furrow("calibrate", other, "--out", "mine", *words, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
+            self.furrow("calibrate", other, "--out", "mine", *words, code=2)
         self.assertEqual([path.name for path in (self.folder / "mine").iterdir()], ["notes.txt"])
 
     def test_earlier_results_stay_where_the_new_ones_have_no_place(self):
-        done = furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("calibrate", self.study(), "--out", "out", "--no-plots")
         (self.folder / "out" / "notes.json").write_text("mine")
         before = self.text("out")
-        done = furrow("calibrate", self.study("other.json", result="notes.json"),
-                      "--out", "out", "--overwrite", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("notes.json: stands where a result is to be written", done.stderr)
+        self.furrow("calibrate", self.study("other.json", result="notes.json"), "--out", "out", "--overwrite", code=2,
+                    says="notes.json: stands where a result is to be written")
         self.assertEqual(self.text("out"), before)
         self.assertEqual((self.folder / "out" / "notes.json").read_text(), "mine")
 
@@ -178,43 +162,35 @@ class Calibrate(SystemTest):
         for change, expected in (({"calibrate": "rings"}, "'rings' is unknown, expected 'ring'?"),
                                  ({"start": "no.json"}, "key 'start'"),
                                  ({"starts": 0}, "key 'starts'")):
-            document = {**json.loads((self.folder / "study.json").read_text()), **change}
-            (self.folder / "wrong.json").write_text(json.dumps(document))
-            done = furrow("calibrate", "wrong.json", cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertIn(expected, done.stderr)
+            document = {**read_json(self.folder / "study.json"), **change}
+            write_json(self.folder / "wrong.json", document)
+            self.furrow("calibrate", "wrong.json", code=2, says=expected, prints="")
             self.assertEqual(set(self.names()), before | {"wrong.json"}, expected)
         done = furrow("calibrate", ROOT / "rigs" / "study_slip.json", cwd=self.folder)
         self.assertIn("is a study, expected a calibration ('furrow sweep' takes studies)", done.stderr)
         done = furrow("calibrate", ROOT / "rigs" / "first_look.json", cwd=self.folder)
         self.assertIn("is a scenario, expected a calibration ('furrow run' takes scenarios)", done.stderr)
         # A tire that no pressure of the study can hold.
-        document = {**json.loads((self.folder / "study.json").read_text()), "starts": 2}
+        document = {**read_json(self.folder / "study.json"), "starts": 2}
         document["targets"][0]["pressure"] = 5e7
-        (self.folder / "stiff.json").write_text(json.dumps(document))
-        done = furrow("calibrate", "stiff.json", "--out", "stiff", cwd=self.folder)
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("the model has no answer at any of the 2 starts", done.stderr)
+        write_json(self.folder / "stiff.json", document)
+        self.furrow("calibrate", "stiff.json", "--out", "stiff", code=3,
+                    says="the model has no answer at any of the 2 starts")
 
     def test_commands_for_runs_say_what_a_calibration_is_and_what_continues_it(self):
         study = self.study()
-        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
-        done = furrow("resume", "out", cwd=self.folder)
-        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-        self.assertEqual(done.stderr,
-                         "furrow: error: out: holds a calibration, expected a run; the command that began it, 'furrow "
-                         "calibrate' "
-                                      "with the same study, continues it\n")
+        self.furrow("calibrate", study, "--out", "out", "--no-plots")
+        done = self.furrow("resume", "out", code=2, prints="")
+        self.assertEqual(done.stderr, "furrow: error: out: holds a calibration, expected a run; the command that began "
+                         "it, 'furrow calibrate' with the same study, continues it\n")
         (self.folder / "out" / "calibration.json").unlink()  # as after a signal or kill −9
         before = set(self.names())
         for command in (("report",), ("resume",), ("events",), ("report", "--vtk", "vtk")):
-            done = furrow(command[0], "out", *command[1:], cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertEqual(done.stderr,
-                             "furrow: error: out: holds a calibration that has not ended; the command that began it, "
-                                          "'furrow calibrate' with the same study, continues it\n")
+            done = self.furrow(command[0], "out", *command[1:], code=2, prints="")
+            self.assertEqual(done.stderr, "furrow: error: out: holds a calibration that has not ended; the command "
+                             "that began it, 'furrow calibrate' with the same study, continues it\n")
         self.assertEqual(set(self.names()), before)
-        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.furrow("calibrate", study, "--out", "out", "--no-plots")
 
     def test_validate_checks_a_study_and_says_what_is_fitted(self):
         study = self.study()
@@ -223,9 +199,8 @@ class Calibrate(SystemTest):
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0], "calibration  study.json, kind ring")
         self.assertIn("parameter    sidewall_1: 100e3 to 1e7 N/m, logarithmic, from 235340", lines)
-        self.assertRegex(done.stdout,
-                         r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, force_N \S+ to "
-                         r"\S+\n")
+        self.assertRegex(done.stdout, r"\ntarget       plate \(plate[^)]*\): 8 points, deflection_m \S+ to \S+, "
+                         r"force_N \S+ to \S+\n")
         self.assertRegex(done.stdout, r"\nheld out     again \(")
         self.assertIn("starts       3, seed 1", lines)
         self.assertIn("result       soft_ring_fitted.json", lines)
@@ -235,33 +210,26 @@ class Calibrate(SystemTest):
                           "start": told["parameters"]["air_share"]["start"]})
         self.assertEqual([target["name"] for target in told["targets"]], ["plate", "cleat"])
         done = furrow("validate", study, "--set", "rig.slip=0.1", cwd=self.folder)
-        self.assertEqual(done.stderr,
-                         "furrow: error: command line: key '--set': is given with a calibration study, expected a "
-                         "scenario\n")
+        self.assertEqual(done.stderr, "furrow: error: command line: key '--set': is given with a calibration study, "
+                         "expected a scenario\n")
         self.study("wrong.json", starts=0)
         self.assertEqual(furrow("validate", "wrong.json", cwd=self.folder).stderr,
                          furrow("calibrate", "wrong.json", cwd=self.folder).stderr)
         self.assertNotIn("results", self.names())
 
     def test_validate_sums_up_a_target_of_many_values(self):
-        done = furrow("validate", "calibrate_handling.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout,
-                         r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to 5587\.121, each "
-                         r"± 40\n")
+        done = self.furrow("validate", "calibrate_handling.json")
+        self.assertRegex(done.stdout, r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to "
+                         r"5587\.121, each ± 40\n")
 
     def test_commands_for_scenarios_point_to_calibrate(self):
         for command in ("run", "ranks", "press", "bed", "soil"):
-            done = furrow(command, "calibrate_ring.json", cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertRegex(done.stderr,
-                             r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a scenario "
-                                          r"\('furrow calibrate' takes calibrations\)\n$")
+            self.furrow(command, "calibrate_ring.json", code=2, matches=r"^furrow: error: .+calibrate_ring.json: is a "
+                        r"calibration, expected a scenario \('furrow calibrate' takes calibrations\)\n$", prints="")
 
     def test_explain_knows_the_keys_of_calibrations(self):
         def told(key):
-            done = furrow("explain", key, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.furrow("explain", key)
             return done.stdout
         for key in ("calibrate.targets", "calibrate.evaluations", "calibrate.grains"):
             self.assertIn(key, told("calibrate"))
@@ -271,19 +239,15 @@ class Calibrate(SystemTest):
         for key, what in (("calibrate.ring.bendin", "expected 'bending'?"), ("calibrate.target", "expected 'targets'?"),
                           ("calibrate_ring.json",
                            "is the name of a file, expected a key; 'furrow validate' checks a file")):
-            done = furrow("explain", key, cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertIn(what, done.stderr)
+            self.furrow("explain", key, code=2, says=what, prints="")
 
     def test_shipped_calibrations_are_valid(self):
         for path in sorted((ROOT / "rigs").glob("calibrate_*.json")):
-            done = furrow("calibrate", path, "--out", "/proc/furrow", cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key '--out': cannot be made", done.stderr)
+            done = self.furrow("calibrate", path, "--out", "/proc/furrow", code=2, says="key '--out': cannot be made")
             # By its name alone, from any folder.
             self.assertEqual(furrow("calibrate", path.name, "--out", "/proc/furrow", cwd=self.folder).stderr,
                              done.stderr)
-            self.assertEqual(furrow("validate", path.name, cwd=self.folder).returncode, 0)
+            self.furrow("validate", path.name)
 
 
 if __name__ == "__main__":

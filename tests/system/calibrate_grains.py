@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """`furrow calibrate` with grains: real soil tests of a few seconds, stopped and continued."""
 import csv
-import json
 import signal
 
-from program import ROOT, SystemTest, furrow, main, start, wait_for
+from program import ROOT, SystemTest, main, read_json, wait_for, write_json
 
 
 class CalibrateGrains(SystemTest):
@@ -25,8 +24,8 @@ class CalibrateGrains(SystemTest):
         return list(csv.DictReader(text.splitlines()[1:]))
 
     def test_it_is_stopped_continued_and_leaves_a_soil_with_what_was_reached(self):
-        (self.folder / "study.json").write_text(json.dumps(self.STUDY))
-        process = start("calibrate", "study.json", "--out", "out", "--no-plots", cwd=self.folder)
+        write_json(self.folder / "study.json", self.STUDY)
+        process = self.start("calibrate", "study.json", "--out", "out", "--no-plots")
         table = self.folder / "out" / "evaluations.csv"
         wait_for(lambda: process.poll() is not None or (table.exists() and table.read_text().count("\n") >= 4),
                  300, "two evaluations")
@@ -36,8 +35,7 @@ class CalibrateGrains(SystemTest):
         # Before anything is computed.
         self.assertIn("janosi_K_m of 1 mm cannot be reached with grains of 20 mm diameter", err)
         before = table.read_text()
-        done = furrow("calibrate", "study.json", "--out", "out", cwd=self.folder, timeout=300)
-        self.assertEqual((done.returncode, done.stdout), (0, "out\n"), done.stderr)
+        self.furrow("calibrate", "study.json", "--out", "out", timeout=300, prints="out\n")
         self.assertTrue(table.read_text().startswith(before))
         rows = self.rows()
         fitted = [row for row in rows if row["set"] == "fitted"]
@@ -45,7 +43,7 @@ class CalibrateGrains(SystemTest):
         self.assertLessEqual(len(fitted), 6)
         self.assertTrue(all(float(row["processor_s"]) > 0 for row in fitted))
 
-        result = json.loads((self.folder / "out" / "calibration.json").read_text())
+        result = read_json(self.folder / "out" / "calibration.json")
         self.assertEqual(result["evaluations"], len(fitted))
         self.assertAlmostEqual(result["processor_s"], sum(float(row["processor_s"] or 0) for row in rows), places=2)
         states = {target["name"]: target["figures"][0].get("state")
@@ -57,21 +55,18 @@ class CalibrateGrains(SystemTest):
         place = {row["rolling_friction"] for row in fitted}
         self.assertIn(result["parameters"]["rolling_friction"]["value"], map(float, place))
 
-        soil = json.loads((self.folder / "out" / "sand.json").read_text())
+        soil = read_json(self.folder / "out" / "sand.json")
         self.assertEqual(soil["terrain"]["rolling_friction"], result["parameters"]["rolling_friction"]["value"])
         self.assertEqual(soil["measured"]["grain_radius_m"], 0.01)
         self.assertIn("mean", soil["measured"]["bulk_density_kg_m3"])
-        told = furrow("validate", ROOT / "rigs" / "drawbar_pull_small.json",
-                      "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}",
-                      cwd=self.folder)
-        self.assertEqual(told.returncode, 0, told.stderr)
+        self.furrow("validate", ROOT / "rigs" / "drawbar_pull_small.json",
+                    "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}")
         for name in ("fit.png", "residual.png", "report.html"):
             self.assertTrue((self.folder / "out" / name).exists(), name)
         # All is known: the same bits at once.
         expected = {name: (self.folder / "out" / name).read_bytes()
                     for name in ("calibration.json", "fit.csv", "evaluations.csv", "sand.json")}
-        done = furrow("calibrate", "study.json", "--out", "out", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("calibrate", "study.json", "--out", "out", "--no-plots")
         self.assertEqual({name: (self.folder / "out" / name).read_bytes() for name in expected}, expected)
 
 

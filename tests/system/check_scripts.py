@@ -115,8 +115,7 @@ class Docs(Check):
         files = {"rigs__drawbar_pull_small_dot_json": json.dumps({"expected": expected})}
         self.assertEqual(self.told(README_dot_md=said, **files), "")
         self.assertIn("README.md: does not say '1400 ± 150 N', which rigs/drawbar_pull_small.json expects as "
-                      "drawbar_pull",
-                      self.told(README_dot_md=said.replace("1400", "1500"), **files))
+                      "drawbar_pull", self.told(README_dot_md=said.replace("1400", "1500"), **files))
 
     def test_a_sixth_file_within_a_step_of_a_recipe(self):
         names = [f"tire/{letter}.cpp" for letter in "abcdef"]

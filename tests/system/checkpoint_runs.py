@@ -1,14 +1,12 @@
 """What the tests of checkpoints share: a run of a second, the same run made to fail at a named point, and
 comparisons."""
-import csv
-import json
 import os
 import pathlib
 import shutil
 import sys
 import tempfile
 
-from program import ROOT, SystemTest, changed, furrow, start, survivors, wait_for, write_scenario
+from program import ROOT, SystemTest, changed, furrow, read_json, rows_of, survivors, wait_for, write_scenario
 
 sys.path.insert(0, str(ROOT / "tests" / "campaign"))
 from compare_runs import differences  # noqa: E402
@@ -20,9 +18,8 @@ RANKS = {"rig": 0, "tire": 1, "terrain": 2}
 # The wheel comes down within the first half: frames of a wheel in the air would show no forces whatever is saved.
 RUN = changed(rig={"touchdown_damping": 0}, run={"step": 2e-4, "end": 0.1, "average_from": 0.04, "peer_timeout": 20},
               output={"series_interval": 0.002, "frame_interval": 0.01}, checkpoint={"interval": 0.02, "keep": 3})
-FLEXIBLE = changed(tire={"file": "hmmwv_layered.json", "rigid": False,
-                         "elements_circumference": 30, "elements_width": 12},
-                   run=RUN["run"], output=RUN["output"], checkpoint=RUN["checkpoint"])
+FLEXIBLE = changed(tire={"file": "hmmwv_layered.json", "rigid": False, "elements_circumference": 30,
+                         "elements_width": 12}, run=RUN["run"], output=RUN["output"], checkpoint=RUN["checkpoint"])
 
 
 def steps(run):
@@ -32,13 +29,12 @@ def steps(run):
 
 
 def summary(run):
-    return json.loads((pathlib.Path(run) / "summary.json").read_text())
+    return read_json(pathlib.Path(run) / "summary.json")
 
 
 def table(run):
     """The lines of the series."""
-    with open(pathlib.Path(run) / "timeseries.csv", newline="") as file:
-        return list(csv.DictReader(file))
+    return rows_of(pathlib.Path(run) / "timeseries.csv")
 
 
 class CheckpointTest(SystemTest):
@@ -61,8 +57,7 @@ class CheckpointTest(SystemTest):
         self.mark = self.folder / "fired"
 
     def program(self, *arguments, code=0, **options):
-        done = furrow(*arguments, cwd=self.folder, program=FAULTY, **options)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow(*arguments, program=FAULTY, **options, code=code)
         self.no_process_left()
         return done
 
@@ -77,10 +72,8 @@ class CheckpointTest(SystemTest):
 
     def start_waiting(self, point, rank, count, run=None, env=()):
         """A run that waits at the point until self.mark is removed."""
-        process = start("run", self.path, "--out", run or self.run_folder,
-                        "--no-plots", cwd=self.folder, program=FAULTY,
-                        env={**self.fault(point, rank, count, "wait"), **dict(env)})
-        self.addCleanup(process.kill)
+        process = self.start("run", self.path, "--out", run or self.run_folder, "--no-plots", program=FAULTY,
+                             env={**self.fault(point, rank, count, "wait"), **dict(env)})
         wait_for(lambda: self.mark.exists() or process.poll() is not None, 150, "the fault fires")
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
         return process

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """Checkpoints and `furrow resume`: the run that continues is bit for bit the one that was not interrupted."""
-import json
 import os
 import pathlib
 import shutil
@@ -9,7 +8,7 @@ import subprocess
 import unittest
 
 from checkpoint_runs import FAULTY, FLEXIBLE, INTERVAL, STEPS, CheckpointTest, steps, summary, table
-from program import PROGRAM, furrow, main
+from program import PROGRAM, main, read_json, write_json
 
 
 class Signals(CheckpointTest):
@@ -52,9 +51,8 @@ class Resume(CheckpointTest):
     def test_again_and_again(self):
         self.run_with_fault("step", 1, 150, "kill")
         for count in (120, 110):
-            done = furrow("resume", self.run_folder, "--no-plots", cwd=self.folder, program=FAULTY,
-                          env=self.fault("step", 1, count, "kill"))
-            self.assertEqual(done.returncode, 4, done.stderr)
+            self.furrow("resume", self.run_folder, "--no-plots", program=FAULTY, env=self.fault("step", 1, count,
+                                                                                                "kill"), code=4)
         self.resume()
         self.same_as_whole()
         self.assertEqual([s["from_step"] for s in summary(self.run_folder)["segments"]], [0, 100, 200, 300])
@@ -149,9 +147,9 @@ class Resume(CheckpointTest):
             self.assertIn(f"key '{key}': is ", done.stderr)
             self.assertIn(f"but the run was computed with {was}", done.stderr)
         # also where the file was edited
-        scenario = json.loads((run / "scenario.json").read_text())
+        scenario = read_json(run / "scenario.json")
         scenario["terrain"]["friction"] = 0.5
-        (run / "scenario.json").write_text(json.dumps(scenario))
+        write_json(run / "scenario.json", scenario)
         self.assertIn("key 'terrain.friction': is 0.5", self.resume(code=2).stderr)
         self.assertFalse((run / "summary.json").exists())
         self.assertEqual(steps(run), steps(self.whole))
@@ -176,9 +174,7 @@ class Resume(CheckpointTest):
 
     def test_another_build_is_warned_of(self):
         self.copy_of_whole()
-        done = furrow("resume", self.run_folder, "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("the checkpoint is of another build of furrow", done.stderr)
+        self.furrow("resume", self.run_folder, "--no-plots", says="the checkpoint is of another build of furrow")
 
     def test_under_the_users_mpirun(self):
         self.run_with_fault("step", 0, 250, "kill")

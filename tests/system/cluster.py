@@ -12,7 +12,7 @@ import unittest
 import slurm
 from checkpoint_runs import FAULTY, CheckpointTest, steps
 from liggghts import LIBRARY, on_liggghts
-from program import changed, furrow, wait_for
+from program import changed, wait_for
 
 
 class ClusterTest(CheckpointTest):
@@ -31,9 +31,7 @@ class ClusterTest(CheckpointTest):
     def script(self, *flags):
         """The path of what `furrow ranks --slurm` prints."""
         job = ["--cores-per-node", self.CORES, "--partition", "all", "--time", "10"]
-        done = furrow("ranks", "--slurm", *job, *flags, self.path, "--out",
-                      self.run_folder, cwd=self.folder, program=FAULTY)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("ranks", "--slurm", *job, *flags, self.path, "--out", self.run_folder, program=FAULTY)
         path = self.folder / "job.sh"
         # the plots of the other run were left out, too
         path.write_text(done.stdout.replace('"$program" run', '"$program" run --no-plots')
@@ -41,9 +39,8 @@ class ClusterTest(CheckpointTest):
         return path
 
     def srun(self, *arguments, mpi="pmix", count=3):
-        return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none",
-                                 "--overcommit", "-n", count, FAULTY, *arguments,
-                                 cwd=self.folder, check=False)
+        return self.cluster.call("srun", f"--mpi={mpi}", "-K1", "--cpu-bind=none", "--overcommit", "-n", count, FAULTY,
+                                 *arguments, cwd=self.folder, check=False)
 
     def requeued_job_ends_as_if_undisturbed(self, **env):
         number = self.cluster.submit(self.script(), cwd=self.folder,
@@ -57,9 +54,8 @@ class ClusterTest(CheckpointTest):
         self.cluster.wait_for_state(number, lambda job: job["Restarts"] == "1"
                                     and job["JobState"] in ("PENDING", "RUNNING"), 60)
         time.sleep(3)  # Slurm refuses what it began in the same second; on its own it lets two minutes pass
-        wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}",
-                                           "StartTime=now", check=False).returncode == 0,
-                 30, "the job need not wait for two minutes")
+        wait_for(lambda: self.cluster.call("scontrol", "update", f"JobId={number}", "StartTime=now",
+                                           check=False).returncode == 0, 30, "the job need not wait for two minutes")
         self.cluster.wait_for_state(number, lambda job: job["JobState"] == "COMPLETED", 240)
         text = said.read_text()
         time_then = self.STOPPED_AT * self.SCENARIO["run"]["step"]
@@ -149,8 +145,7 @@ class FourWheelsOnTwoRanks(ClusterTest):
         self.assertEqual(sorted(path for path in rest if not path.startswith("checkpoints/")),
                          ["run.log", "summary.json"])
         print(f"signalled before step {min(signalled)} of {steps(self.whole)[-1]}; of {len(files)} files {len(equal)} "
-              f"are equal byte for "
-              f"byte; wall times aside so are summary.json and {len(rest) - 2} files of checkpoints")
+              f"are equal byte for byte; wall times aside so are summary.json and {len(rest) - 2} files of checkpoints")
 
 
 class QueuedAgainByItself(ClusterTest):

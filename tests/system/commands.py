@@ -1,11 +1,9 @@
 #!/usr/bin/python3
 """The commands that start nothing: validate, ranks, explain, --help, --version."""
 import json
-import pathlib
 import re
-import unittest
 
-from program import ROOT, SMALL, SystemTest, changed, furrow, main, on_terminal, write_scenario
+from program import ROOT, SMALL, SystemTest, changed, furrow, main, on_terminal, read_json, write_json, write_scenario
 
 # for `furrow sweep`
 STUDIES = ("study_slip.json", "study_slip_angle.json", "study_camber.json",
@@ -17,8 +15,7 @@ SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json")
 
 class Commands(SystemTest):
     def output(self, *arguments):
-        done = furrow(*arguments, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow(*arguments)
         return done.stdout
 
     def test_version(self):
@@ -28,9 +25,8 @@ class Commands(SystemTest):
         text = self.output("--help")
         for command in ("run", "validate", "ranks", "explain", "report", "events", "bed", "soil"):
             self.assertIn(command, text)
-            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil")
-                          else "KEY" if command == "explain" else "DIR",
-                          self.output(command, "--help"))
+            self.assertIn("SCENARIO" if command in ("run", "validate", "ranks", "bed", "soil") else "KEY" if command
+                          == "explain" else "DIR", self.output(command, "--help"))
 
     def test_examples_in_the_help_name_options_and_files_that_there_are(self):
         commands = re.findall(r"^  (\w+)  ", self.output("--help"), re.MULTILINE)
@@ -92,9 +88,8 @@ class Commands(SystemTest):
 
     def test_validate_tells_people(self):
         text = self.output("validate", write_scenario(self.folder))
-        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius",
-                     "memory", "disk", "terrain",
-                     "load         4609 N", "sinkage", "Froude number",
+        for word in ("of the stable", "grains", "coordinates" if "layered" not in text else "radius", "memory", "disk",
+                     "terrain", "load         4609 N", "sinkage", "Froude number",
                      "bound by     terrain.radius: the contact is about"):
             self.assertIn(word, text)
 
@@ -105,7 +100,7 @@ class Commands(SystemTest):
 
     def test_shipped_scenarios_are_found_by_their_names(self):
         self.assertIn("first_look.json", self.output("validate", "first_look.json"))
-        (self.folder / "first_look.json").write_text(json.dumps(changed(run={"end": 0.04})))
+        write_json(self.folder / "first_look.json", changed(run={"end": 0.04}))
         self.assertIn("0.04 s in 400 steps", self.output("validate", "first_look.json"),
                       "a file that is here comes first")
 
@@ -123,9 +118,7 @@ class Commands(SystemTest):
                                     (("calibrate", "study_slip.json"),
                                      "is a study, expected a calibration ('furrow sweep' takes studies)"),
                                     (("sweep", "first_look.json"), "is a scenario, expected a study")):
-            done = furrow(*arguments, cwd=self.folder)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn(expected, done.stderr)
+            self.furrow(*arguments, code=2, says=expected)
         self.assertEqual(self.names(), [])
 
     def test_list_names_what_comes_with_the_program(self):
@@ -141,9 +134,7 @@ class Commands(SystemTest):
         self.assertTrue(listed["soils"]["files"]["dry_sand.json"].endswith("Wiley 2008"), "an initial ends no sentence")
         self.assertEqual(list(json.loads(self.output("list", "soils", "--json"))), ["soils"])
         self.assertIn("first_look.json", self.output("list", "scenarios"))
-        done = furrow("list", "wheels", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("KIND': is 'wheels', expected one of 'scenarios', ", done.stderr)
+        self.furrow("list", "wheels", code=2, says="KIND': is 'wheels', expected one of 'scenarios', ")
 
     def test_new_scenarios_are_valid_and_fit_their_tires(self):
         reports = {}
@@ -171,10 +162,9 @@ class Commands(SystemTest):
                 report = json.loads(self.output("validate", f"{name}.json", "--json"))
                 self.assertEqual(report["warnings"], [])
                 self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
-        done = furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level ground",
-                      done.stderr)
+        self.furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", code=2,
+                    says="--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level "
+                    "ground")
 
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):
         for options, said in ((["--tire", "no_such.json"], "'no_such.json' does not exist"),
@@ -183,9 +173,7 @@ class Commands(SystemTest):
                               (["--load", "-1"], "--load: is -1, expected a number above 0, see"),
                               (["--load", "nan"], "--load: is nan"),
                               (["--vehicle", "rover.json", "--load", "5"], "excludes")):
-            done = furrow("new", "mine", *options, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(said, done.stderr)
+            self.furrow("new", "mine", *options, code=2, says=said)
             self.assertEqual(self.names(), [])
         done = furrow("new", "my drum", "--tire", "rigid_drum.json", cwd=self.folder)
         self.assertIn("run it with: furrow run 'my drum.json'", done.stderr)
@@ -195,15 +183,12 @@ class Commands(SystemTest):
         done = furrow("new", "rover", "--vehicle", "rover.json", cwd=self.folder)
         self.assertIn("NAME': is 'rover.json': beside that scenario", done.stderr)
         for name in ("", "-", ".", "no_such_folder/x"):
-            self.assertEqual(furrow("new", name, cwd=self.folder).returncode, 5 if "/" in name else 2)
+            self.furrow("new", name, code=5 if "/" in name else 2)
         self.assertEqual(self.names(), [])
-        done = furrow("list", cwd=self.folder, env={"FURROW_HOME": str(self.folder)})
-        self.assertEqual(done.returncode, 5)
-        self.assertIn("rigs: is missing, expected the folder that comes with furrow", done.stderr)
+        self.furrow("list", env={"FURROW_HOME": str(self.folder)}, code=5,
+                    says="rigs: is missing, expected the folder that comes with furrow")
         (self.folder / "mine.json").write_text("mine")
-        done = furrow("new", "mine", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("'mine.json' exists already, expected a new file", done.stderr)
+        self.furrow("new", "mine", code=2, says="'mine.json' exists already, expected a new file")
         self.assertEqual((self.folder / "mine.json").read_text(), "mine")
 
     def test_comments_are_taken(self):
@@ -221,10 +206,7 @@ class Commands(SystemTest):
     def test_unstable_step_can_be_allowed(self):
         path = write_scenario(self.folder, changed(run={"step": 2e-3}, output={"series_interval": 2e-3},
                                                    terrain={"allow_unstable_step": True}))
-        done = furrow("validate", path, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("furrow: warning: ", done.stderr)
-        self.assertIn("is above the stable step", done.stderr)
+        self.furrow("validate", path, says=("furrow: warning: ", "is above the stable step"))
 
     def test_set_changes_the_digest_and_threads_do_not(self):
         path = write_scenario(self.folder)
@@ -247,9 +229,9 @@ class Commands(SystemTest):
         self.assertEqual(len(report["ranks"]), 3)
 
     def test_tire_file_beside_the_scenario_comes_first(self):
-        own = json.loads((ROOT / "tire" / "data" / "hmmwv_layered.json").read_text())
+        own = read_json(ROOT / "tire" / "data" / "hmmwv_layered.json")
         own["elements_circumference"] = 30
-        (self.folder / "hmmwv_layered.json").write_text(json.dumps(own))
+        write_json(self.folder / "hmmwv_layered.json", own)
         path = write_scenario(self.folder, changed(tire={"rigid": False}))
         self.assertIn("30 × ", self.output("validate", path))
 
@@ -272,7 +254,7 @@ class Commands(SystemTest):
     def test_every_key_is_explained_in_words_with_unit_and_default(self):
         keys = [line.split()[0] for line in self.output("explain").splitlines()]
         self.assertGreater(len(keys), 50)
-        schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
+        schema = read_json(ROOT / "rigs" / "scenario.schema.json")
         for key in keys:
             node = schema["definitions"]["tire"] if key.startswith("tire.") else schema
             for part in key.split(".")[1 if key.startswith("tire.") else 0:]:
@@ -312,12 +294,9 @@ class BatchScripts(SystemTest):
                               (["--nodes", "2", "--cores-per-node", "5"],
                                "'--cores-per-node': is 5, expected 4 or another multiple of the 2 ranks")):
             with self.subTest(options):
-                done = furrow("ranks", "--slurm", *options, scenario, cwd=self.folder)
-                self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(told, done.stderr)
+                self.furrow("ranks", "--slurm", *options, scenario, code=2, says=told)
         for time in ("8", "12:00:00", "1-12", "2-12:30"):
-            done = furrow("ranks", "--slurm", "--time", time, scenario, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.furrow("ranks", "--slurm", "--time", time, scenario)
             self.assertIn(f"#SBATCH --time={time}\n", done.stdout)
 
 

@@ -19,9 +19,8 @@ _furrow furrow "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"
 
 
 def made(script, *arguments):
-    return subprocess.run([sys.executable, "-B", DOCS / script, *arguments, "--program", PROGRAM],
-                          text=True, check=True,
-                          capture_output=True).stdout
+    return subprocess.run([sys.executable, "-B", DOCS / script, *arguments, "--program", PROGRAM], text=True,
+                          check=True, capture_output=True).stdout
 
 
 class Completion(SystemTest):

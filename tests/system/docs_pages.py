@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """What the documentation site is made from: links for their new places, and pages made from schemas, sources and
 help."""
-import json
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
-from program import PROGRAM, ROOT, SystemTest, furrow, main
+from program import PROGRAM, ROOT, SystemTest, furrow, main, read_json, write_json
 
 DOCS = ROOT / "scripts" / "docs"
 
@@ -21,8 +20,7 @@ class Stage(SystemTest):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
         done = subprocess.run([sys.executable, "-B", DOCS / "stage.py", self.folder / "site", "--root", root],
-                              text=True,
-                              capture_output=True)
+                              text=True, capture_output=True)
         return done
 
     def page(self, name):
@@ -82,12 +80,10 @@ class Reference(SystemTest):
         for name in ("time_s", "sinkage_m", "drawbar_pull_N", "iso_force_x_N",
                      "suspension_travel_m", "spring_energy_J"):
             self.assertIn(name, columns)
-        scenario = {"tire": {"file": "rigid_drum.json", "rigid": True},
-                    "terrain": {"engine": "rigid"}, "rig": {"load": 25},
-                    "run": {"end": 0.01, "average_from": 0}, "output": {"frame_interval": 0}}
-        (self.folder / "a.json").write_text(json.dumps(scenario))
-        done = furrow("run", "a.json", "--out", "a", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        scenario = {"tire": {"file": "rigid_drum.json", "rigid": True}, "terrain": {"engine": "rigid"},
+                    "rig": {"load": 25}, "run": {"end": 0.01, "average_from": 0}, "output": {"frame_interval": 0}}
+        write_json(self.folder / "a.json", scenario)
+        self.furrow("run", "a.json", "--out", "a", "--no-plots")
         written = (self.folder / "a" / "timeseries.csv").read_text().split("\n")[0].split(",")
         self.assertEqual(set(written) - set(columns), set())
 
@@ -102,7 +98,7 @@ class Reference(SystemTest):
     def test_every_definition_of_files(self):
         for name, schema in (("tire_files", "tire/data/tire.schema.json"),
                              ("vehicle_files", "vehicle/data/vehicle.schema.json")):
-            content = json.loads((ROOT / schema).read_text())
+            content = read_json(ROOT / schema)
             for definition, entry in content["definitions"].items():
                 for key in entry.get("properties", {}):
                     self.assertIn(f"| `{key}` |", self.page(name))

@@ -7,7 +7,6 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import unittest
 import urllib.parse
 
 from program import PROGRAM, ROOT, SystemTest, main
@@ -36,9 +35,8 @@ class Page(html.parser.HTMLParser):
 
 class Site(SystemTest):
     def test_it_is_built_and_every_link_leads_somewhere(self):
-        done = subprocess.run([ROOT / "scripts" / "docs.sh", "--out", self.folder / "docs"],
-                              text=True, capture_output=True,
-                              env={**os.environ, "FURROW": PROGRAM, "FURROW_NO_SETUP": "1"})
+        done = subprocess.run([ROOT / "scripts" / "docs.sh", "--out", self.folder / "docs"], text=True,
+                              capture_output=True, env={**os.environ, "FURROW": PROGRAM, "FURROW_NO_SETUP": "1"})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         site = pathlib.Path(done.stdout.strip()).parent
         pages = {path: Page(path) for path in site.rglob("*.html")}

@@ -5,11 +5,10 @@ import os
 import pathlib
 import resource
 import shutil
-import signal
 import subprocess
 import tempfile
 
-from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, start, wait_for, write_scenario
+from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, read_json, wait_for, write_json, write_scenario
 
 # Its bed settles for a minute or more.
 SLOW = changed(terrain={"radius": 0.01, "layers": 12, "length": 12}, run={"step": 2e-5})
@@ -67,9 +66,8 @@ class Overwrite(SystemTest):
         said = self.folder / "said"
         with open(said, "w") as file:
             process = subprocess.Popen([PROGRAM, "run", self.slow, "--out", self.out, "--overwrite", "--no-plots"],
-                                       cwd=self.folder,
-                                       stdin=subprocess.DEVNULL, stdout=file,
-                                       stderr=file, env={**os.environ, **self.cache})
+                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
+                                       env={**os.environ, **self.cache})
         self.addCleanup(process.kill)
         wait_for(lambda: "settling" in said.read_text(), 60, "the bed settles")
         self.assertIsNone(process.poll())
@@ -77,11 +75,8 @@ class Overwrite(SystemTest):
         return process, said
 
     def test_they_come_back_where_no_rank_can_be_started(self):
-        done = furrow("run", self.path, "--out", self.out, "--overwrite",
-                      cwd=self.folder, env={"FURROW_MPIRUN": "/bin/false"})
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertIn("no rank could be started", done.stderr)
-        self.assertIn("out holds the earlier results again", done.stderr)
+        self.furrow("run", self.path, "--out", self.out, "--overwrite", env={"FURROW_MPIRUN": "/bin/false"}, code=5,
+                    says=("no rank could be started", "out holds the earlier results again"))
         self.is_as_before()
 
     def test_they_come_back_where_a_signal_ends_the_run_before_its_first_step(self):
@@ -95,40 +90,30 @@ class Overwrite(SystemTest):
         process, _ = self.begun_to_settle()
         process.kill()
         process.wait(timeout=60)
-        told = furrow("report", self.out, cwd=self.folder)
-        self.assertEqual(told.returncode, 5, told.stderr)
-        self.assertIn(f"{self.out}/.furrow-before holds earlier results, which 'furrow resume' brings back",
-                      told.stderr)
-        done = furrow("resume", self.out, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("is finished", done.stderr)
+        self.furrow("report", self.out, code=5,
+                    says=f"{self.out}/.furrow-before holds earlier results, which 'furrow resume' brings back")
+        self.furrow("resume", self.out, says="is finished")
         self.is_as_before()
 
     def test_those_of_soil_tests_come_back_after_a_kill(self):
         tests = self.folder / "soil"
         begin = ["soil", self.path, "--only", "plate", "--out", tests]
-        done = furrow(*begin, "--speed", "1", "--set", "terrain.layers=2", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow(*begin, "--speed", "1", "--set", "terrain.layers=2")
         before = contents(tests)
-        process = start(*begin, "--speed", "0.001", "--overwrite", cwd=self.folder)
-        self.addCleanup(process.kill)
+        process = self.start(*begin, "--speed", "0.001", "--overwrite")
         wait_for(lambda: (tests / ".furrow-before" / "soil.json").exists(), 60, "the results are set aside")
         process.kill()
         process.communicate(timeout=60)
-        done = furrow("resume", tests, cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("holds the results of 'furrow soil'", done.stderr)
+        self.furrow("resume", tests, code=2, says="holds the results of 'furrow soil'")
         self.assertEqual(contents(tests), before)
 
     def test_beds_stay_where_a_file_of_the_users_own_stands_in_the_place_of_a_new_one(self):
         begin = ["run", self.path, "--out", "beds", "--no-plots"]
-        done = furrow(*begin, "--seeds", "2", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow(*begin, "--seeds", "2")
         (self.folder / "beds" / "seed3.log").write_text("mine")
         before = contents(self.folder / "beds")
-        done = furrow(*begin, "--seeds", "3", "--overwrite", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("seed3.log: stands where a result is to be written", done.stderr)
+        self.furrow(*begin, "--seeds", "3", "--overwrite", code=2,
+                    says="seed3.log: stands where a result is to be written")
         self.assertEqual(contents(self.folder / "beds"), before)
 
 
@@ -192,8 +177,7 @@ class OverwrittenBeds(SystemTest):
         process, _ = self.begun_to_settle()
         process.kill()
         process.wait(timeout=60)
-        done = furrow("run", self.path, "--seeds", "2", "--out", self.beds, "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("run", self.path, "--seeds", "2", "--out", self.beds, "--no-plots")
         self.assertEqual(done.stderr.count("is done already"), 2, done.stderr)
         after = self.now()
         for name in self.before:
@@ -206,7 +190,7 @@ class OverwrittenBeds(SystemTest):
         done = self.overwrite(write_scenario(self.folder, changed(rig={"slip": 0.2}), "other.json"))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(mine.read_text(), "mine")
-        self.assertEqual(json.loads((self.beds / "seed1" / "summary.json").read_text())["slip"], 0.2)
+        self.assertEqual(read_json(self.beds / "seed1" / "summary.json")["slip"], 0.2)
         self.assertFalse((self.beds / ".furrow-before").exists())
 
 
@@ -242,47 +226,40 @@ class ContinuedRun(SystemTest):
 
     def setUp(self):
         super().setUp()
-        self.path = write_scenario(self.folder,
-                                   changed(terrain={"engine": "rigid", "radius": None, "cohesion": None, "layers": None,
-                                                    "length": None, "width": None}))
-        scenario = json.loads(self.path.read_text())
+        self.path = write_scenario(self.folder, changed(terrain={"engine": "rigid", "radius": None, "cohesion": None,
+                                                                 "layers": None, "length": None, "width": None}))
+        scenario = read_json(self.path)
         scenario["terrain"] = {"engine": "rigid"}
-        self.path.write_text(json.dumps(scenario))
+        write_json(self.path, scenario)
         self.out = self.folder / "out"
-        done = furrow("run", self.path, "--out", self.out, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.end = json.loads(self.path.read_text())["run"]["end"]
+        self.furrow("run", self.path, "--out", self.out)
+        self.end = read_json(self.path)["run"]["end"]
 
     def test_it_stays_finished_where_no_rank_can_be_started(self):
-        done = furrow("resume", self.out, "--until", 2 * self.end, cwd=self.folder, env={"FURROW_MPIRUN": "/bin/false"})
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertIn("the run had not gone on; ", done.stderr)
+        self.furrow("resume", self.out, "--until", 2 * self.end, env={"FURROW_MPIRUN": "/bin/false"}, code=5,
+                    says="the run had not gone on; ")
         self.assertTrue((self.out / "summary.json").exists())
         self.assertFalse((self.out / "summary_failed.json").exists())
 
     def test_plots_of_the_earlier_end_are_gone_where_it_stops_on_the_way(self):
         self.assertTrue((self.out / "ranks.png").exists())
-        process = start("resume", self.out, "--until", 1000 * self.end, cwd=self.folder)
-        self.addCleanup(process.kill)
+        process = self.start("resume", self.out, "--until", 1000 * self.end)
         wait_for(lambda: not (self.out / "summary.json").exists(), 60, "it goes on")
         wait_for(lambda: not list(self.out.glob("*.png")), 10, "its plots are gone")
         process.terminate()
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, err)
+        self.ended(process, 75)
         self.assertFalse((self.out / "report.html").exists())
         (self.out / "energy.png").write_text("of an earlier version")
         with open(self.out / ".furrow-run", "a") as names:
             names.write("energy.png\n")
-        self.assertEqual(furrow("report", self.out, cwd=self.folder).returncode, 0)
+        self.furrow("report", self.out)
         self.assertFalse((self.out / "energy.png").exists())
 
     def test_settings_that_change_nothing_are_told(self):
-        done = furrow("resume", self.out, "--set", "output.frame_interval=0.001", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("key 'output.frame_interval': is not changed to 0.001, as the run is finished", done.stderr)
-        done = furrow("resume", self.out, "--until", 1, "--set", "run.end=2", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("key '--until': is given with --set run.end, expected one of them", done.stderr)
+        self.furrow("resume", self.out, "--set", "output.frame_interval=0.001",
+                    says="key 'output.frame_interval': is not changed to 0.001, as the run is finished")
+        self.furrow("resume", self.out, "--until", 1, "--set", "run.end=2", code=2,
+                    says="key '--until': is given with --set run.end, expected one of them")
 
 
 class UnwritableFiles(SystemTest):

@@ -2,12 +2,11 @@
 """Empirical soil as a user meets it: a wheel on it, the same with any number of threads, soil files for several
 engines."""
 import csv
-import json
 import math
 
 import h5py
 
-from program import SystemTest, changed, furrow, main, write_scenario
+from program import SystemTest, changed, main, read_json, write_scenario
 
 # A rigid wheel is let down on dry sand while it starts, and rolls half a metre.
 WHEEL = {
@@ -20,9 +19,8 @@ WHEEL = {
 class EmpiricalSoil(SystemTest):
     def run_of(self, name, *flags, scenario=WHEEL):
         path = write_scenario(self.folder, scenario)
-        done = furrow("run", path, "--no-plots", "--out", self.folder / name, *flags, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.folder / name / "summary.json").read_text()), done.stderr
+        done = self.furrow("run", path, "--no-plots", "--out", self.folder / name, *flags)
+        return read_json(self.folder / name / "summary.json"), done.stderr
 
     def test_a_wheel_sinks_pulls_leaves_a_rut_and_its_accounts_close(self):
         told, _ = self.run_of("out")
@@ -42,12 +40,9 @@ class EmpiricalSoil(SystemTest):
         self.assertLess(deepest, -0.005)
 
     def test_a_wheel_that_no_ground_bears_or_holds_is_warned_of(self):
-        for stiffness, step, words in (("1e4", 2e-4,
-                                        r"WARNING: the wheel has sunk in by \S+ radii: the ground does not bear its "
-                                        r"load"),
-                                       ("1e11", 5e-4,
-                                        r"WARNING: the wheel is \S+ radii above the ground as it was: it bounces or "
-                                        r"was thrown off")):
+        for stiffness, step, words in (("1e4", 2e-4, r"WARNING: the wheel has sunk in by \S+ radii: the ground does "
+                                        r"not bear its load"), ("1e11", 5e-4, r"WARNING: the wheel is \S+ radii above "
+                                                                r"the ground as it was: it bounces or was thrown off")):
             _, told = self.run_of(stiffness, "--set", f"terrain.bekker_k_phi={stiffness}",
                                   "--set", "terrain.bekker_k_c=0",
                                   "--set", "run.end=0.8", "--set", "run.average_from=0.7",
@@ -67,21 +62,18 @@ class EmpiricalSoil(SystemTest):
         scenario = {**WHEEL, "run": {"step": 2e-4, "end": 0.01, "average_from": 0.005},
                     "terrain": {**WHEEL["terrain"], "material": None}}
         _, told = self.run_of("scm", "--set", "terrain.material=loose_sand.json", scenario=scenario)
-        terrain = json.loads((self.folder / "scm/scenario.json").read_text())["terrain"]
+        terrain = read_json(self.folder / "scm/scenario.json")["terrain"]
         self.assertEqual(terrain["bekker_n"], 0.2843)
         self.assertNotIn("rolling_friction", terrain)
         self.assertNotIn("are ignored", told)
         path = write_scenario(self.folder, changed(terrain={"material": "loose_sand.json"}))
-        done = furrow("validate", path, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("validate", path)
         self.assertNotIn("are ignored", done.stderr)
 
     def test_commands_that_need_grains_say_so(self):
         path = write_scenario(self.folder, WHEEL)
         for command in ("bed", "soil"):
-            done = furrow(command, path, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn("key 'terrain.engine': is 'scm'", done.stderr)
+            self.furrow(command, path, code=2, says="key 'terrain.engine': is 'scm'")
 
 
 if __name__ == "__main__":

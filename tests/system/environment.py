@@ -9,7 +9,7 @@ import signal
 import subprocess
 import time
 
-from program import PROGRAM, SystemTest, changed, furrow, main, ranks, start, survivors, wait_for, write_scenario
+from program import PROGRAM, SystemTest, changed, furrow, main, ranks, survivors, wait_for, write_json, write_scenario
 
 VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 SHORT = ["--set", "run.end=0.004", "--set", "run.average_from=0", "--set", "terrain.engine=rigid", "--no-plots"]
@@ -47,8 +47,8 @@ class LauncherVariables(EnvironmentTest):
         for variable in VARIABLES:
             with self.subTest(variable):
                 env = {variable: "3"}
-                self.assertEqual(furrow("validate", self.path, cwd=self.folder, env=env).returncode, 0)
-                self.assertEqual(furrow("explain", "rig.slip", cwd=self.folder, env=env).returncode, 0)
+                self.furrow("validate", self.path, env=env)
+                self.furrow("explain", "rig.slip", env=env)
                 self.assertIn("does not exist",
                               self.one_error(furrow("validate", "no.json", cwd=self.folder, env=env), 2))
                 self.assertIn("unknown command", self.one_error(furrow("rnu", cwd=self.folder, env=env), 2))
@@ -68,14 +68,12 @@ class LauncherVariables(EnvironmentTest):
         self.assertIn("--fast", self.one_error(furrow("run", self.path, "--fast", cwd=self.folder, env=env), 2))
 
     def test_an_empty_variable_is_none(self):
-        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder, env={"PMI_RANK": ""})
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("run", self.path, *SHORT, "--out", "out", env={"PMI_RANK": ""})
 
     def test_a_finished_run_under_mpirun_says_so(self):
-        self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)
-        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root",
-                               "--oversubscribe", "-n", "3", PROGRAM,
-                               "resume", "out"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.furrow("run", self.path, *SHORT, "--out", "out")
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", "3",
+                               PROGRAM, "resume", "out"], cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.count("there is nothing to do"), 1, done.stderr)
         self.assertEqual(done.stdout, "out\n")
@@ -83,10 +81,9 @@ class LauncherVariables(EnvironmentTest):
     def test_a_sweep_as_a_rank_starts_its_runs_all_the_same(self):
         study = {"scenario": "small.json", "set": {"run.end": 0.004, "run.average_from": 0, "terrain.engine": "rigid"},
                  "grid": {"rig.slip": [0.2]}}
-        (self.folder / "study.json").write_text(json.dumps(study))
-        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root",
-                               "-n", "1", PROGRAM, "sweep", "study.json"],
-                              cwd=self.folder, capture_output=True, text=True, timeout=120)
+        write_json(self.folder / "study.json", study)
+        done = subprocess.run([shutil.which("mpirun"), "-q", "--allow-run-as-root", "-n", "1", PROGRAM, "sweep",
+                               "study.json"], cwd=self.folder, capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
@@ -120,9 +117,8 @@ class Launcher(EnvironmentTest):
     def test_that_fails_where_memory_is_scarce_is_a_limit(self):
         env = self.launcher("echo 'PMIX ERROR: NOT-AVAILABLE in file dstore_segment.c' >&2; exit 1\n")
         line = self.one_error(limited("-v 400000", "run", self.path, "--out", "out", cwd=self.folder, env=env), 6)
-        self.assertRegex(line,
-                         r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended with "
-                         r"status 1 .*PMIX ERROR")
+        self.assertRegex(line, r"out of memory: limit 0.4 GB \(ulimit -v\): no rank could be started: mpirun ended "
+                         r"with status 1 .*PMIX ERROR")
 
     def test_that_hands_on_the_death_of_a_rank_is_no_broken_one(self):
         # Open MPI's, of a rank that it has just started
@@ -148,9 +144,7 @@ class Launcher(EnvironmentTest):
 
     def test_without_ssh_on_path(self):
         (self.folder / "empty").mkdir()
-        done = furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder,
-                      env={"PATH": str(self.folder / "empty")})
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("run", self.path, *SHORT, "--out", "out", env={"PATH": str(self.folder / "empty")})
 
 
 class Limits(EnvironmentTest):
@@ -176,41 +170,35 @@ class Limits(EnvironmentTest):
         self.assertIn(f"the folder for temporary files, TMPDIR {small}, has room for", done.stderr)
 
     def test_processor_time(self):
-        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3",
-                       "--set", "terrain.radius=0.012", "--set", "terrain.layers=12", "--set", "run.step=2e-5",
-                       "--out", "out", cwd=self.folder)
+        done = limited("-t 2", "run", self.path, "--set", "run.end=0.3", "--set", "terrain.radius=0.012",
+                       "--set", "terrain.layers=12", "--set", "run.step=2e-5", "--out", "out", cwd=self.folder)
         self.assertIn("a process may use 2 s of processor time (ulimit -t)", self.one_error(done, 6))
         self.assertEqual(survivors(self.folder), [])
 
     def test_processor_time_of_a_command_without_ranks(self):
         for limits in ("-t 2", "-S -t 2"):
-            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006",
-                           "--set", "terrain.layers=30", "--set", "run.step=2e-5",
-                           cwd=self.folder)
-            self.assertEqual(self.one_error(done, 6),
-                             "furrow: error: a process may use 2 s of processor time (ulimit -t), expected a higher "
-                             "limit")
+            done = limited(limits, "bed", self.path, "--set", "terrain.radius=0.006", "--set", "terrain.layers=30",
+                           "--set", "run.step=2e-5", cwd=self.folder)
+            self.assertEqual(self.one_error(done, 6), "furrow: error: a process may use 2 s of processor time (ulimit "
+                             "-t), expected a higher limit")
             self.assertEqual(self.names(), ["small.json"])
 
     def test_a_terrain_that_cannot_fit_is_refused_before_anything_begins(self):
-        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15",
-                 "--set", "terrain.length=100", "--set", "terrain.width=40",
-                 "--set", "run.step=2e-5"]
+        large = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=100",
+                 "--set", "terrain.width=40", "--set", "run.step=2e-5"]
         for command in ("run", "bed"):
             begin = time.monotonic()
             line = self.one_error(limited("-v 4000000", command, self.path, *large, cwd=self.folder), 6)
-            self.assertRegex(line,
-                             r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB \(ulimit "
-                             r"-v\)")
+            self.assertRegex(line, r"small.json: out of memory: the terrain needs about \d+\.\d GB, limit 4.1 GB "
+                             r"\(ulimit -v\)")
             self.assertLess(time.monotonic() - begin, 20)
         self.assertEqual(self.names(), ["small.json"])
         self.assertEqual(limited("-v 4000000", "validate", self.path, *large, cwd=self.folder).returncode, 0)
 
     def test_memory_that_runs_out_on_the_way_is_no_failure_of_the_physics(self):
         # About 620,000 grains: half of the estimate is below the limit, so it is tried. MPI itself needs about 0.3 GB.
-        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15",
-                "--set", "terrain.length=13.3", "--set", "terrain.width=0.6",
-                "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
+        many = ["--set", "terrain.radius=0.006", "--set", "terrain.layers=15", "--set", "terrain.length=13.3",
+                "--set", "terrain.width=0.6", "--set", "run.step=2e-5", "--set", "terrain.bed_generator=lattice"]
         done = limited("-v 340000", "run", self.path, *many, cwd=self.folder, timeout=300)
         self.assertRegex(self.one_error(done, 6), r"out of memory: needs about \d+\.\d GB, limit 0.3 GB \(ulimit -v\)")
         self.assertEqual(survivors(self.folder), [])
@@ -259,18 +247,14 @@ class LongWork(EnvironmentTest):
                    "--set", "terrain.layers=1", "--set", "run.step=2e-5", phase="placing the grains")
 
     def test_settling_many_grains(self):
-        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set",
-                   "terrain.length=12", "--set", "terrain.layers=12",
-                   "--set", "run.step=2e-5",
-                   phase="settling the bed")
+        self.check("bed", self.path, "--set", "terrain.radius=0.01", "--set", "terrain.length=12",
+                   "--set", "terrain.layers=12", "--set", "run.step=2e-5", phase="settling the bed")
 
     def test_plots_and_what_measures_the_machine(self):
-        done = furrow("run", self.path, *SHORT, "--out", "out", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("run", self.path, *SHORT, "--out", "out", "--no-plots")
         self.check("report", "out", phase="plotting")
         (self.folder / "said").write_text("")
-        process = start("validate", self.path, cwd=self.folder, env={"XDG_CACHE_HOME": str(self.folder / "cache")})
-        self.addCleanup(process.kill)
+        process = self.start("validate", self.path, env={"XDG_CACHE_HOME": str(self.folder / "cache")})
         status = pathlib.Path(f"/proc/{process.pid}/status")
         caught = lambda: int(status.read_text().split("SigCgt:")[1].split()[0], 16)
         wait_for(lambda: caught() & 1 << signal.SIGTERM - 1, 60, "it attends to signals")
@@ -297,10 +281,8 @@ class Pause(EnvironmentTest):
 
     def stopped_run(self):
         """A run that Ctrl-Z has stopped, with its ranks."""
-        process = start("run", self.path, "--set", "run.end=0.3", "--out",
-                        "out", "--set", "terrain.engine=rigid", "--no-plots",
-                        "--set", "run.step=1e-6", cwd=self.folder)
-        self.addCleanup(process.kill)
+        process = self.start("run", self.path, "--set", "run.end=0.3", "--out", "out", "--set", "terrain.engine=rigid",
+                             "--no-plots", "--set", "run.step=1e-6")
         wait_for(lambda: (self.folder / "out" / "timeseries.csv").exists(), 60, "the run begins")
         process.send_signal(signal.SIGTSTP)
         wait_for(lambda: set(self.states().values()) == {"T"} and len(self.states()) == 3, 20, "all ranks are stopped")
@@ -327,20 +309,15 @@ class Pause(EnvironmentTest):
 class Names(EnvironmentTest):
     def test_that_begin_with_a_hyphen(self):
         self.path.rename(self.folder / "-b.json")
-        done = furrow("run", *SHORT, "--out=-dd", "--", "-b.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout, "-dd\n")
-        done = furrow("resume", "--until", "0.006", "--no-plots", "--", "-dd", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        done = furrow("report", "--", "-dd", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("run", *SHORT, "--out=-dd", "--", "-b.json", prints="-dd\n")
+        self.furrow("resume", "--until", "0.006", "--no-plots", "--", "-dd")
+        done = self.furrow("report", "--", "-dd")
         self.assertIn("-dd/forces.png", done.stdout)
 
     def test_that_are_not_utf_8(self):
         folder = os.fsencode(self.folder) + b"/caf\xe9"
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path),
-                               *(word.encode() for word in SHORT), b"--out", folder],
-                              cwd=self.folder, capture_output=True)
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", os.fsencode(self.path), *(word.encode() for word in SHORT),
+                               b"--out", folder], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         done = subprocess.run([os.fsencode(PROGRAM), b"report", folder], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -357,22 +334,20 @@ class Names(EnvironmentTest):
             file.write(tire.read_bytes())
         with open(folder + b"/s.json", "w") as file:
             json.dump(changed(tire={"file": "own.json"}), file)
-        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json",
-                               *(word.encode() for word in SHORT), b"--out", b"out"],
-                              cwd=self.folder, capture_output=True)
+        done = subprocess.run([os.fsencode(PROGRAM), b"run", folder + b"/s.json", *(word.encode() for word in SHORT),
+                               b"--out", b"out"], cwd=self.folder, capture_output=True)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn(b"key 'tire.file': is in a folder with a name that is not UTF-8", done.stderr)
 
     def test_of_plots_do_not_depend_on_the_users_python(self):
-        self.assertEqual(furrow("run", self.path, *SHORT, "--out", "out", cwd=self.folder).returncode, 0)
+        self.furrow("run", self.path, *SHORT, "--out", "out")
         evil = self.folder / "evil"
         evil.mkdir()
         for module in ("json", "matplotlib", "h5py"):
             (evil / f"{module}.py").write_text("raise SystemExit('the user's own code ran')")
             shutil.copy(evil / f"{module}.py", self.folder)
         for env in ({"PYTHONPATH": str(evil)}, {"PYTHONHOME": "/nowhere"}, {"PYTHONSTARTUP": str(evil / "json.py")}):
-            done = furrow("report", "out", cwd=self.folder, env=env)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.furrow("report", "out", env=env)
             self.assertNotIn("Python", done.stderr)
 
 

@@ -138,8 +138,7 @@ class Vehicle(Exact, CheckpointTest):
         while "stopping" not in process.stderr.readline():
             pass
         self.mark.unlink()
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, err)
+        self.ended(process, 75)
         self.assertIn(steps(self.run_folder)[-1], range(257, 277))
         self.resume()
         self.same_as_whole()

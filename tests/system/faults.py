@@ -2,7 +2,6 @@
 """Faults at named points (fault_injection.cpp) and damaged files: what the user sees, the exit code, no process left,
 and the run goes on from the last good checkpoint to the very same result."""
 import contextlib
-import json
 import os
 import shutil
 import signal
@@ -12,7 +11,7 @@ import time
 import unittest
 
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
-from program import children, furrow, main, start
+from program import children, main, read_json, start, write_json
 
 # (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
@@ -41,7 +40,7 @@ class Killed(CheckpointTest):
         self.assertIn(f"furrow resume '{self.run_folder}'", done.stderr)
         self.assertEqual(steps(self.run_folder)[-1], step)
         if point == "checkpoint.done":  # what there is can be read
-            self.assertEqual(furrow("report", self.run_folder, cwd=self.folder).returncode, 0)
+            self.furrow("report", self.run_folder)
             for plot in (*self.run_folder.glob("*.png"), *self.run_folder.glob("report.html")):
                 plot.unlink()
         self.resume()
@@ -64,7 +63,7 @@ class ProgramFault(CheckpointTest):
     def test_an_exception_that_no_code_expects(self):
         done = self.run_with_fault("step", RANKS["tire"], 250, "throw", code=70)
         self.assertIn("furrow: error: fault of the program: thrown by a test; please report it", done.stderr)
-        failed = json.loads((self.run_folder / "summary_failed.json").read_text())["failed"]
+        failed = read_json(self.run_folder / "summary_failed.json")["failed"]
         self.assertEqual(failed["exit_code"], 70)
         self.resume()
         self.same_as_whole()
@@ -80,10 +79,9 @@ class KilledAtTheStart(CheckpointTest):
     def test_the_launcher(self):
         process = self.start_waiting("start", 1, 1)
         os.kill(children(process.pid)[0], signal.SIGKILL)
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 4, err)
-        self.assertIn("furrow: error: the ranks were lost while they were being started: mpirun was killed by signal 9",
-                      err)
+        self.ended(process, 4,
+                   says="furrow: error: the ranks were lost while they were being started: mpirun was killed by signal "
+                   "9")
         self.no_process_left()
 
 
@@ -126,9 +124,7 @@ class LauncherThatDoesNotEnd(CheckpointTest):
             pass
         time.sleep(1)  # the signal passes through the launcher
         self.mark.unlink()
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, err)
-        self.assertIn("furrow: stopped by a signal; partial results are in", err)
+        self.ended(process, 75, says="furrow: stopped by a signal; partial results are in")
         self.hung()
         self.resume()
         self.same_as_whole()
@@ -145,9 +141,8 @@ class LauncherThatDoesNotEnd(CheckpointTest):
 
     def test_after_a_rank_was_lost_is_killed_and_the_loss_is_told(self):
         begin = time.monotonic()
-        done = self.program("run", self.path, "--out", self.run_folder,
-                            "--no-plots", "--set", "run.peer_timeout=2", code=4,
-                            env={**self.fault("step", 1, 250, "kill"), **self.launcher("")})
+        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--set", "run.peer_timeout=2",
+                            code=4, env={**self.fault("step", 1, 250, "kill"), **self.launcher("")})
         self.assertGreater(time.monotonic() - begin, 20)
         self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", done.stderr)
         self.hung()
@@ -256,9 +251,9 @@ class Damaged(CheckpointTest):
         self.goes_on_from_the_one_before("rig.h5: does not fit its checkpoint")
 
     def test_of_a_newer_program(self):
-        manifest = json.loads((self.newest / "manifest.json").read_text())
+        manifest = read_json(self.newest / "manifest.json")
         manifest["format_version"] = 3
-        (self.newest / "manifest.json").write_text(json.dumps(manifest))
+        write_json(self.newest / "manifest.json", manifest)
         self.goes_on_from_the_one_before("format_version 3 is newer than this program reads")
 
     def test_of_another_scenario(self):
@@ -302,8 +297,7 @@ class Damaged(CheckpointTest):
         os.truncate(self.run / "frames" / "tire0_000003.h5", 1000)
         told = self.resume().stderr
         self.assertIn(f"furrow: warning: {self.run}/frames/terrain_000001.h5 is missing or cannot be read: "
-                      f"results.xdmf leaves out 2 instants\n",
-                      told)
+                      "results.xdmf leaves out 2 instants\n", told)
 
     def test_a_log_that_is_no_file(self):
         (self.run / "run.log").unlink()
@@ -317,12 +311,9 @@ class Folder(CheckpointTest):
         others = [start(*command, cwd=self.folder) for command in  # they wait for 10 s, together
                   (["resume", self.run_folder], ["run", self.path, "--out", self.run_folder, "--overwrite"])]
         for other in others:
-            _, err = other.communicate(timeout=30)
-            self.assertEqual(other.returncode, 2, err)
-            self.assertIn("is in use by a run that has not ended", err)
+            self.ended(other, 2, says="is in use by a run that has not ended")
         self.mark.unlink()
-        _, err = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 0, err)
+        self.ended(process, 0)
         self.same_as_whole()
 
     @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "needs a user who is not root")

@@ -2,13 +2,12 @@
 """A tire property file as a tire on hard ground: what a user gets of it in the rig, under a vehicle, pressed, and
 refused."""
 import csv
-import json
 import re
 import sys
 
 import numpy as np
 
-from program import ROOT, SystemTest, furrow, main
+from program import ROOT, SystemTest, main, read_json, write_json
 
 sys.path.insert(0, str(ROOT / "tests/tire/handling"))
 import evaluate_tir  # noqa: E402  the other evaluator
@@ -28,11 +27,9 @@ STEADY = {
 
 class Handling(SystemTest):
     def run_of(self, name, *flags, scenario=STEADY):
-        path = self.folder / "scenario.json"
-        path.write_text(json.dumps(scenario))
-        done = furrow("run", path, "--no-plots", "--out", self.folder / name, *flags, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.folder / name / "summary.json").read_text())
+        path = write_json(self.folder / "scenario.json", scenario)
+        self.furrow("run", path, "--no-plots", "--out", self.folder / name, *flags)
+        return read_json(self.folder / name / "summary.json")
 
     def expected(self, summary):
         """Of the other evaluator, at the slips of the run."""
@@ -78,9 +75,8 @@ class Handling(SystemTest):
             row = max(found, key=lambda row: row["rig.carrier_mass"] == "450")
             # the same spin: rig.slip counts from each tire's own radius
             turns = 1.0 - SHELL_RADIUS * (1.0 - slip) / radius
-            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}",
-                               "--set", f"rig.slip={turns}", "--set", f"rig.toe_angle={toe}",
-                               "--set", f"rig.carrier_mass={row['rig.carrier_mass']}")
+            told = self.run_of(f"table_{mode}_{slip}", "--set", f"rig.mode={mode}", "--set", f"rig.slip={turns}",
+                               "--set", f"rig.toe_angle={toe}", "--set", f"rig.carrier_mass={row['rig.carrier_mass']}")
             for k, of in enumerate(("fx", "fy")):
                 self.assertAlmostEqual(told["iso_w"]["force_N"][k], float(row[f"iso_w.force_N.{k}"]),
                                        delta=1.1 * largest[of] + 5.0, msg=(wanted, of))
@@ -98,10 +94,8 @@ class Handling(SystemTest):
         checkpoints = sorted((folder / "checkpoints").iterdir())
         self.assertGreater(len(checkpoints), 1)
         self.run_of("cut", "--set", "run.end=0.2", "--set", "run.average_from=0.1", scenario=scenario)
-        done = furrow("resume", self.folder / "cut", "--until", "0.4", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        first, second = (json.loads((self.folder / name / "summary.json").read_text())["state_hash"]
-                         for name in ("whole", "cut"))
+        self.furrow("resume", self.folder / "cut", "--until", "0.4", "--no-plots")
+        first, second = (read_json(self.folder / name / "summary.json")["state_hash"] for name in ("whole", "cut"))
         self.assertEqual(first, second)
         for name in ("whole", "cut"):
             self.assertTrue((self.folder / name / "timeseries.csv").exists())
@@ -109,26 +103,19 @@ class Handling(SystemTest):
 
     def test_under_a_vehicle(self):
         path = ROOT / "rigs/hmmwv_rigid.json"
-        done = furrow("run", path, "--no-plots", "--out", self.folder / "car",
-                      "--set", "tire.file=hmmwv_handling.tir", "--set",
-                      "run.step=5e-4", "--set", "run.end=2", "--set", "output.frame_interval=0", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        told = json.loads((self.folder / "car/summary.json").read_text())
+        self.furrow("run", path, "--no-plots", "--out", self.folder / "car", "--set", "tire.file=hmmwv_handling.tir",
+                    "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "output.frame_interval=0")
+        told = read_json(self.folder / "car/summary.json")
         self.assertTrue(told["accounts"]["momentum"]["closes"], told["accounts"]["momentum"])
 
     def test_pressed_on_a_plate_and_validated(self):
-        path = self.folder / "scenario.json"
-        path.write_text(json.dumps(STEADY))
-        done = furrow("press", path, "--out", self.folder / "press", "--load", "4000", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        told = json.loads((self.folder / "press/summary.json").read_text())
+        path = write_json(self.folder / "scenario.json", STEADY)
+        self.furrow("press", path, "--out", self.folder / "press", "--load", "4000")
+        told = read_json(self.folder / "press/summary.json")
         stiffness = evaluate_tir.read(TIR)["VERTICAL_STIFFNESS"]
         self.assertAlmostEqual(told["secant_stiffness_N_per_m"], stiffness, delta=1e-6 * stiffness)
-        done = furrow("press", path, "--on", "cleat", "--out", self.folder / "cleat", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("expected plate", done.stderr)
-        done = furrow("validate", path, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("press", path, "--on", "cleat", "--out", self.folder / "cleat", code=2, says="expected plate")
+        done = self.furrow("validate", path)
         self.assertIn("hmmwv_handling.tir", done.stdout)
 
     def test_other_ground_is_refused_by_key(self):
@@ -136,11 +123,8 @@ class Handling(SystemTest):
         for terrain, key in (({"engine": "scm", "material": "dry_sand.json"}, "engine"), ({"engine": "dem"}, "engine"),
                              ({"engine": "rigid", "profile": [[6, 0], [6, 0.1]]}, "profile"),
                              ({"engine": "rigid", "road_class": "B"}, "road_class")):
-            path.write_text(json.dumps({**STEADY, "terrain": terrain}))
-            done = furrow("validate", path, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, terrain)
-            self.assertIn(f"key 'terrain.{key}'", done.stderr)
-            self.assertIn("Magic Formula", done.stderr)
+            write_json(path, {**STEADY, "terrain": terrain})
+            self.furrow("validate", path, code=2, says=(f"key 'terrain.{key}'", "Magic Formula"))
 
     def test_calibration_finds_the_tire_that_made_the_table(self):
         truth = evaluate_tir.read(TIR)
@@ -171,10 +155,8 @@ class Handling(SystemTest):
                  "parameters": {name: dict(zip(("lower", "upper"), sorted((0.5 * truth[name], 1.6 * truth[name]))))
                                 for name in fitted},
                  "targets": [{"data": "table.csv", "of": of} for of in ("fx", "fy", "my", "mz")]}
-        (self.folder / "fit.json").write_text(json.dumps(study))
-        done = furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit",
-                      "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        write_json(self.folder / "fit.json", study)
+        self.furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots")
         found = evaluate_tir.read(self.folder / "fit/start_fitted.tir")
         for name in fitted:
             self.assertAlmostEqual(found[name], truth[name], delta=1e-4 * abs(truth[name]), msg=name)
@@ -187,9 +169,8 @@ class Handling(SystemTest):
         table = (self.folder / "fit/start_fitted.tdx").read_text()
         self.assertTrue(table.startswith("**HEADER\nRELEASE   Release of TYDEX-Format"))
         self.assertEqual(len(table.split("**MEASURDATA\n")[1].splitlines()), len(states) + 1)
-        (self.folder / "scenario.json").write_text(json.dumps({**STEADY, "tire": {"file": "fit/start_fitted.json"}}))
-        done = furrow("validate", self.folder / "scenario.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        write_json(self.folder / "scenario.json", {**STEADY, "tire": {"file": "fit/start_fitted.json"}})
+        self.furrow("validate", self.folder / "scenario.json")
 
     def test_wrong_calibrations_are_refused_by_key(self):
         good = {"format_version": 1, "calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKY1": {}},
@@ -203,23 +184,19 @@ class Handling(SystemTest):
                              ({"targets": [{"data": "no.csv", "of": "fy"}]}, "no.csv"),
                              ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]},
                               "key 'targets[0].on'")):
-            (self.folder / "fit.json").write_text(json.dumps({**good, **change}))
-            done = furrow("calibrate", self.folder / "fit.json", "--out",
-                          self.folder / "fit", "--no-plots", cwd=self.folder)
-            self.assertEqual(done.returncode, 2, (change, done.stderr))
-            self.assertIn(said, done.stderr)
+            write_json(self.folder / "fit.json", {**good, **change})
+            self.furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots", code=2,
+                        says=said)
 
     def test_a_changed_file_is_noticed(self):
         text = TIR.read_text()
         (self.folder / "my.tir").write_text(text)
         scenario = {**STEADY, "tire": {"file": "my.json"}, "run": {"step": 2e-4, "end": 0.02, "average_from": 0.01}}
-        (self.folder / "my.json").write_text(json.dumps({"format_version": 1,
-                                                         "model": "handling", "tir": "my.tir", "mass": 12.0}))
+        write_json(self.folder / "my.json", {"format_version": 1, "model": "handling", "tir": "my.tir", "mass": 12.0})
         self.run_of("own", scenario=scenario)
         (self.folder / "my.tir").write_text(text.replace("[UNITS]", "! changed\n[UNITS]"))
-        done = furrow("resume", self.folder / "own", "--until", "0.04", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("my.tir' was changed since the run began", done.stderr)
+        self.furrow("resume", self.folder / "own", "--until", "0.04", code=2,
+                    says="my.tir' was changed since the run began")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,8 @@
 #!/usr/bin/python3
 """Contacts too hard for the step: the terrain steps more finely; and what is left of a run that fails all the same."""
 import csv
-import json
-import unittest
 
-from program import SystemTest, changed, furrow, main, write_scenario
+from program import SystemTest, changed, main, read_json, rows_of, write_json, write_scenario
 
 # A rigid disc of a laboratory's single-wheel test: radius 58 mm, width 50 mm, on dry sand.
 DISC = {
@@ -35,19 +33,18 @@ WHEEL = {
 
 
 def summary(run, name="summary.json"):
-    return json.loads((run / name).read_text())
+    return read_json(run / name)
 
 
 class SmallWheel(SystemTest):
     def setUp(self):
         super().setUp()
-        (self.folder / "disc.json").write_text(json.dumps(DISC))
+        write_json(self.folder / "disc.json", DISC)
         self.path = write_scenario(self.folder, WHEEL, "wheel.json")
         self.run_folder = self.folder / "run"
 
     def test_a_run_that_a_hard_contact_used_to_end_comes_to_its_end(self):
-        done = furrow("run", self.path, "--no-plots", "--out", self.run_folder, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("run", self.path, "--no-plots", "--out", self.run_folder)
         found = summary(self.run_folder)
         self.assertGreater(found["substeps_added"], 0, done.stderr)
         self.assertTrue(0.0 < found["substeps_refined_share"] <= 1.0)
@@ -55,11 +52,9 @@ class SmallWheel(SystemTest):
         self.assertIn(f"the terrain took {found['substeps_added']} more substeps", done.stderr)
         # It continues bit for bit while it is refined, whatever the threads.
         again = self.folder / "again"
-        for arguments in (("run", self.path, "--threads", "1", "--out",
-                           again, "--set", "run.end=0.0845", "--set", "run.average_from=0.06"),
-                          ("resume", again, "--until", "0.12")):
-            done = furrow(*arguments, "--no-plots", cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
+        for arguments in (("run", self.path, "--threads", "1", "--out", again, "--set", "run.end=0.0845",
+                           "--set", "run.average_from=0.06"), ("resume", again, "--until", "0.12")):
+            self.furrow(*arguments, "--no-plots")
         other = summary(again)
         for key in ("state_hash", "substeps_added", "substeps_refined_share", "drawbar_pull_N"):
             self.assertEqual(other[key], found[key], key)
@@ -74,19 +69,15 @@ class Failed(SystemTest):
     def fail(self, scenario, *flags, code=3):
         path = write_scenario(self.folder, scenario)
         run = self.folder / "run"
-        done = furrow("run", path, "--no-plots", "--out", run, *flags, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow("run", path, "--no-plots", "--out", run, *flags, code=code)
         return run, done.stderr
 
     def test_what_no_step_cures_says_how_many_where_and_what_to_change(self):
         run, told = self.fail(self.SOFT)
-        self.assertRegex(told,
-                         r"terrain has contacts that are too hard for its grains at t = .* contacts? (is|are) deeper "
-                         r"than 30 % of a "
-                               r"grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) m; expected "
-                               r"stiffer grains \(about .* Pa in "
-                               r"terrain.young_modulus, which needs a step of at most .* s\), or less load or speed; a "
-                               r"smaller step does not help")
+        self.assertRegex(told, r"terrain has contacts that are too hard for its grains at t = .* contacts? (is|are) "
+                         r"deeper than 30 % of a grain's diameter, the deepest by .* m \(\d+ %\) between .* at \(.*\) "
+                         r"m; expected stiffer grains \(about .* Pa in terrain.young_modulus, which needs a step of at "
+                         r"most .* s\), or less load or speed; a smaller step does not help")
         self.assertNotIn("furrow resume", told)
         self.assertIn("a resumed run would fail at the same step; start again with furrow run", told)
         self.assertFalse((run / "summary.json").exists())
@@ -105,17 +96,13 @@ class Failed(SystemTest):
     def test_a_failed_run_may_be_stepped_more_finely_and_only_that(self):
         run, told = self.fail(self.SOFT)
         for setting, key in (("terrain.young_modulus=1e7", "terrain.young_modulus"), ("run.step=7e-5", "run.step")):
-            done = furrow("resume", run, "--set", setting, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(f"key '{key}': is ", done.stderr)
+            self.furrow("resume", run, "--set", setting, code=2, says=f"key '{key}': is ")
         # Up to before the failure, where it has a checkpoint: it continues with half the step and ends.
         stopped = summary(run, "summary_failed.json")["failed"]["time_s"]
         last = max(int(entry.name) for entry in (run / "checkpoints").iterdir()) * 1e-4
         self.assertLess(last, stopped)
-        done = furrow("resume", run, "--no-plots", "--set", "run.step=5e-5",
-                      "--set", "terrain.substeps=2", "--until", f"{last + 2e-4:.4f}",
-                      cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("resume", run, "--no-plots", "--set", "run.step=5e-5", "--set", "terrain.substeps=2",
+                    "--until", f"{last + 2e-4:.4f}")
         self.assertFalse((run / "summary_failed.json").exists())
         segment = summary(run)["segments"][-1]
         self.assertEqual(segment["from_step"], round(last / 5e-5))
@@ -125,27 +112,24 @@ class Failed(SystemTest):
             times = [float(row["time_s"]) for row in csv.DictReader(file)]
         self.assertEqual(times, sorted(set(times)))
         # A run that has not failed keeps its step.
-        done = furrow("resume", run, "--until", "0.3", "--set", "run.step=2.5e-5", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("only one that failed may be stepped more finely", done.stderr)
+        self.furrow("resume", run, "--until", "0.3", "--set", "run.step=2.5e-5", code=2,
+                    says="only one that failed may be stepped more finely")
 
     def test_unchanged_it_is_told_that_it_will_fail_again(self):
         run, _ = self.fail(self.SOFT)
-        done = furrow("resume", run, "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertRegex(done.stderr, r"warning: .*failed at t = .* s and will fail again, as nothing is changed")
+        done = self.furrow("resume", run, "--no-plots", code=3,
+                           matches=r"warning: .*failed at t = .* s and will fail again, as nothing is changed")
         self.assertNotIn("to continue from the last checkpoint: furrow resume", done.stderr)
 
     def test_a_sweep_keeps_what_there_is(self):
         write_scenario(self.folder, self.SOFT)
-        study = self.folder / "study.json"
-        study.write_text(json.dumps({"scenario": "small.json", "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean"},
-                                     "list": [{"rig.slip": 0.3},
-                                              {"rig.slip": 0.4, "terrain.young_modulus": 2.49e7, "run.end": 0.03}]}))
-        done = furrow("sweep", study, cwd=self.folder)
-        self.assertEqual(done.returncode, 3, done.stderr)
-        with open(self.folder / "results" / "study" / "sweep.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
+        study = write_json(self.folder / "study.json", {"scenario": "small.json", "plot": {"x": "rig.slip",
+                                                                                           "y": "drawbar_pull_N.mean"},
+                                                        "list": [{"rig.slip": 0.3}, {"rig.slip": 0.4,
+                                                                                     "terrain.young_modulus": 2.49e7,
+                                                                                     "run.end": 0.03}]})
+        self.furrow("sweep", study, code=3)
+        rows = rows_of(self.folder / "results" / "study" / "sweep.csv")
         self.assertEqual([row["state"] for row in rows], ["failed", "done"])
         self.assertTrue(float(rows[0]["drawbar_pull_N.mean"]) == float(rows[0]["drawbar_pull_N.mean"]))
         self.assertIn("deeper than 30 %", rows[0]["problem"])

@@ -16,8 +16,7 @@ class Install(SystemTest):
     def setUp(self):
         super().setUp()
         done = subprocess.run(["cmake", "--install", str(BUILD), "--prefix", str(self.folder / "first")],
-                              capture_output=True,
-                              text=True)
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.tree = self.folder / "moved tree"
         (self.folder / "first").rename(self.tree)
@@ -31,9 +30,8 @@ class Install(SystemTest):
     def test_a_moved_tree_runs_and_finds_its_files(self):
         done = self.run_installed("validate", write_scenario(self.folder))
         self.assertEqual(done.returncode, 0, done.stderr)
-        done = self.run_installed("run", self.folder / "small.json", "--out",
-                                  "out", "--set", "terrain.engine=rigid", "--set",
-                                  "run.end=0.004", "--set", "run.average_from=0")
+        done = self.run_installed("run", self.folder / "small.json", "--out", "out", "--set", "terrain.engine=rigid",
+                                  "--set", "run.end=0.004", "--set", "run.average_from=0")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(list((self.folder / "out").glob("*.png")) or "no plots" in done.stderr, done.stderr)
         self.assertTrue((self.tree / "share/furrow/rigs/scenario.schema.json").exists())

@@ -15,7 +15,7 @@ import h5py
 
 from checkpoint_runs import FAULTY, CheckpointTest, steps, summary, table
 from exact_resume import Exact, kept
-from program import changed, furrow, main, write_scenario
+from program import changed, main, write_scenario
 from scenarios import SMALL_BED, run_of  # found since exact_resume was imported
 
 LIBRARY = pathlib.Path(FAULTY).parent / "libfurrow_liggghts.so"
@@ -252,17 +252,14 @@ class Refused(CheckpointTest):
         shutil.copy2(FAULTY, program)
         for command in (["run", self.path, "--out", self.run_folder], ["validate", self.path],
                         ["ranks", "--slurm", self.path]):
-            done = furrow(*command, cwd=self.folder, program=str(program))
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertRegex(done.stderr,
-                             "key 'terrain.engine': 'liggghts' is not part of this program: .*libliggghts-dev")
+            done = self.furrow(*command, program=str(program), code=2, matches="key 'terrain.engine': 'liggghts' is not "
+                               "part of this program: .*libliggghts-dev")
             self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
         self.assertFalse(self.run_folder.exists())
         with open(LIBRARY, "rb") as whole:
             (program.parent / LIBRARY.name).write_bytes(whole.read(100_000))
-        done = furrow("run", self.path, "--out", self.run_folder, cwd=self.folder, program=str(program))
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertRegex(done.stderr, f"{LIBRARY.name} has 100000 bytes, expected [0-9]+ or more: it is cut short")
+        self.furrow("run", self.path, "--out", self.run_folder, program=str(program), code=2,
+                    matches=f"{LIBRARY.name} has 100000 bytes, expected [0-9]+ or more: it is cut short")
         self.assertFalse(self.run_folder.exists())
 
 
@@ -272,7 +269,6 @@ if __name__ == "__main__":
         sys.exit(77)
     if sys.argv[1:] == ["--short"]:
         sys.argv[1:] = ["SameNumbersOfTheReportsLaw", "RigidTire.test_from_a_checkpoint_whose_step_has_a_frame",
-                        "Refused",
-                        "Faults.test_a_command_that_liggghts_refuses_on_all_ranks",
+                        "Refused", "Faults.test_a_command_that_liggghts_refuses_on_all_ranks",
                         "Faults.test_a_file_that_one_rank_misses"]
     main()

@@ -5,7 +5,7 @@ import io
 import json
 import math
 
-from program import ROOT, SystemTest, furrow, main
+from program import ROOT, SystemTest, main, read_json, write_json
 
 
 def rows(text):
@@ -14,14 +14,12 @@ def rows(text):
 
 class Modes(SystemTest):
     def run_modes(self, *arguments):
-        done = furrow("modes", *arguments, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("modes", *arguments)
         return done
 
     def test_folder_holds_frequencies_shapes_and_pictures(self):
-        done = self.run_modes("hmmwv_lumped.json", "--elements-circumference",
-                              "24", "--elements-width", "6", "--orders", "3",
-                              "--count", "2", "--out", "out")
+        done = self.run_modes("hmmwv_lumped.json", "--elements-circumference", "24", "--elements-width", "6",
+                              "--orders", "3", "--count", "2", "--out", "out")
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), "out")
         self.assertRegex(done.stderr, r"furrow: lowest frequency [\d.]+ Hz, of order \d\n")
@@ -29,7 +27,7 @@ class Modes(SystemTest):
                          {"modes.csv", "section.csv", "shapes.csv", "summary.json",
                           "frequencies.png", "mode_shapes.png",
                           "mode_sections.png", "report.html"})
-        summary = json.loads((out / "summary.json").read_text())
+        summary = read_json(out / "summary.json")
         self.assertEqual([(mode["order"], mode["number"]) for mode in summary["modes"]],
                          [(order, number) for order in range(4) for number in (1, 2)])
         self.assertTrue(summary["stable"])
@@ -41,9 +39,7 @@ class Modes(SystemTest):
             self.assertTrue(20 < mode["frequency_Hz"] < 400, mode)
         self.assertEqual(len(rows((out / "shapes.csv").read_text())), 8 * 7)
         self.assertEqual(len(rows((out / "section.csv").read_text())), 6)
-        again = furrow("modes", "hmmwv_lumped.json", "--out", "out", cwd=self.folder)
-        self.assertEqual(again.returncode, 2)
-        self.assertIn("out", again.stderr)
+        self.furrow("modes", "hmmwv_lumped.json", "--out", "out", code=2, says="out")
 
     def test_pressure_stiffens_and_what_is_printed_is_what_is_written(self):
         coarse = ("hmmwv_lumped.json", "--elements-circumference", "24", "--elements-width", "6", "--orders", "2")
@@ -66,27 +62,25 @@ class Modes(SystemTest):
         self.assertIn("lowest frequency", done.stderr)
         self.assertFalse((self.folder / "out" / "mode_sections.png").exists())
         self.assertTrue((self.folder / "out" / "mode_shapes.png").exists())
-        self.assertIsNone(json.loads((self.folder / "out" / "summary.json").read_text())["pressure_Pa"])
+        self.assertIsNone(read_json(self.folder / "out" / "summary.json")["pressure_Pa"])
 
     def test_flexible_rings(self):
         done = self.run_modes("hmmwv_ring.json", "--elements-circumference", "240", "--orders", "3", "--out", "out")
         self.assertIn("lowest frequency", done.stderr)
         self.assertTrue((self.folder / "out" / "mode_shapes.png").exists())
-        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        summary = read_json(self.folder / "out" / "summary.json")
         self.assertEqual((summary["pressure_Pa"], summary["mass_kg"], summary["sections"]), (200e3, 11.5, 240))
         self.assertEqual([(mode["order"], mode["number"]) for mode in summary["modes"]],
                          [(order, number) for order in range(4) for number in (1, 2)])
         self.assertTrue(summary["stable"])
         # The belt turns on its rim with k_t alone: sqrt(2 pi k_t / belt mass) / (2 pi).
-        tangential = json.loads((ROOT / "tire/data/hmmwv_ring.json").read_text())["tangential"]
+        tangential = read_json(ROOT / "tire/data/hmmwv_ring.json")["tangential"]
         self.assertAlmostEqual(summary["modes"][0]["frequency_Hz"],
                                (2 * math.pi * tangential / 8.207) ** 0.5 / (2 * math.pi), delta=0.01)
 
     def test_bad_input(self):
         (self.folder / "broken.json").write_text("{")
-        (self.folder
-         / "other.json").write_text(json.dumps({**json.loads((ROOT / "tire/data/aligator_planar.json").read_text()),
-                                                "radius": 0.1}))
+        write_json(self.folder / "other.json", {**read_json(ROOT / "tire/data/aligator_planar.json"), "radius": 0.1})
         for arguments, said in (
                 ((), "TIRE is required"), (("none.json",), "key 'TIRE': 'none.json' does not exist"),
                 (("broken.json",), "broken.json:1:2: is not valid JSON"),
@@ -109,9 +103,7 @@ class Modes(SystemTest):
                 (("hmmwv_lumped.json", "--csv", "--json"), "excludes"),
                 (("hmmwv_lumped.json", "--csv", "--out", "x"), "excludes")):
             before = set(self.folder.iterdir())
-            done = furrow("modes", *arguments, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, (arguments, done.stderr))
-            self.assertIn(said, done.stderr)
+            self.furrow("modes", *arguments, code=2, says=said)
             self.assertEqual(set(self.folder.iterdir()), before)
 
 

@@ -64,9 +64,8 @@ class Package(SystemTest):
             self.skipTest("needs python3-matplotlib and python3-h5py")
         self.run_here(usr / "bin/furrow", "report", "out")
         self.assertTrue((self.folder / "out" / "report.html").exists())
-        shown = self.run_here("env", f"PYTHONPATH={usr}/lib/python3/dist-packages",
-                              f"PATH={usr}/bin:/usr/bin:/bin", "/usr/bin/python3",
-                              "-B", "-c", "import furrow; print(furrow.open('out').state)")
+        shown = self.run_here("env", f"PYTHONPATH={usr}/lib/python3/dist-packages", f"PATH={usr}/bin:/usr/bin:/bin",
+                              "/usr/bin/python3", "-B", "-c", "import furrow; print(furrow.open('out').state)")
         self.assertEqual(shown, "done\n")
 
 

@@ -1,11 +1,13 @@
 """What the system tests share: the program under test, a scenario that runs in a second, and how to look at
 processes."""
 import copy
+import csv
 import fcntl
 import json
 import os
 import pathlib
 import pty
+import re
 import signal
 import struct
 import subprocess
@@ -42,10 +44,47 @@ def changed(**sections):
     return scenario
 
 
+def with_keys(document, changes):
+    """A copy in which keys such as "rig.slip" or "axles[0].wheel" have other values; ... removes the key."""
+    document = copy.deepcopy(document)
+    for key, value in changes.items():
+        place = document
+        *way, last = [int(part) if part.isdigit() else part for part in re.findall(r"\w+", key)]
+        for part in way:
+            place = place[part]
+        if value is ...:
+            del place[last]
+        elif isinstance(place, list) and last == len(place):
+            place.append(value)
+        else:
+            place[last] = value
+    return document
+
+
+def message_of(changes, words):
+    """What the message for a document with these changes holds: the first key before the words, unless they begin with
+    an ellipsis."""
+    return words[2:] if words.startswith("… ") else f"key '{next(iter(changes))}': {words}"
+
+
 def write_scenario(folder, scenario=None, name="small.json"):
-    path = pathlib.Path(folder) / name
-    path.write_text(json.dumps(scenario if scenario is not None else SMALL))
+    return write_json(pathlib.Path(folder) / name, scenario if scenario is not None else SMALL)
+
+
+def read_json(path):
+    return json.loads(pathlib.Path(path).read_text())
+
+
+def write_json(path, content):
+    """Writes a file and returns its path."""
+    pathlib.Path(path).write_text(json.dumps(content))
     return path
+
+
+def rows_of(path):
+    """The lines of a CSV file as dictionaries of texts."""
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def furrow(*arguments, cwd, timeout=200, env=None, program=PROGRAM):
@@ -58,9 +97,8 @@ def on_terminal(*arguments, cwd, columns=100, env=None, program=PROGRAM):
     """Runs the program to its end on a terminal of this width; the exit code and what it printed, both streams."""
     ours, terminal = pty.openpty()
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-    process = subprocess.Popen([program, *map(str, arguments)], cwd=cwd,
-                               stdin=subprocess.DEVNULL, stdout=terminal, stderr=terminal,
-                               env={**os.environ, "TERM": "xterm", **(env or {})})
+    process = subprocess.Popen([program, *map(str, arguments)], cwd=cwd, stdin=subprocess.DEVNULL, stdout=terminal,
+                               stderr=terminal, env={**os.environ, "TERM": "xterm", **(env or {})})
     os.close(terminal)
     printed = b""
     try:
@@ -140,6 +178,36 @@ class SystemTest(unittest.TestCase):
         holder = tempfile.TemporaryDirectory(prefix="furrow test ")
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
+
+    def says(self, text, says=(), matches=None):
+        """The text holds all of these words, and something that matches the pattern."""
+        for words in [says] if isinstance(says, str) else says:
+            self.assertIn(words, text)
+        if matches is not None:
+            self.assertRegex(text, matches)
+
+    def furrow(self, *arguments, code=0, says=(), matches=None, prints=None, **options):
+        """Runs the program to its end. It ends with this exit code, says these words on standard error, one that
+        matches the pattern too, and prints exactly this on standard output."""
+        done = furrow(*arguments, **{"cwd": self.folder, **options})
+        self.assertEqual(done.returncode, code, (arguments, done.stderr))
+        self.says(done.stderr, says, matches)
+        if prints is not None:
+            self.assertEqual(done.stdout, prints)
+        return done
+
+    def start(self, *arguments, **options):
+        """Starts the program, which ends with the test at the latest."""
+        process = start(*arguments, **{"cwd": self.folder, **options})
+        self.addCleanup(process.kill)
+        return process
+
+    def ended(self, process, code, says=(), matches=None, timeout=60):
+        """Waits for a program that ends with this exit code. @returns what it said on standard error"""
+        _, err = process.communicate(timeout=timeout)
+        self.assertEqual(process.returncode, code, err)
+        self.says(err, says, matches)
+        return err
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())

@@ -3,15 +3,13 @@
 missing (scripts/setup.sh --python)."""
 import doctest
 import importlib.util
-import json
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
-import unittest
 
-from program import ROOT, SMALL, SystemTest, changed, main, write_scenario
+from program import ROOT, SMALL, SystemTest, changed, main, read_json, write_scenario
 
 NEEDED = ("pandas", "xarray", "h5netcdf")
 if not all(importlib.util.find_spec(name) for name in NEEDED):
@@ -45,7 +43,7 @@ class Package(SystemTest):
         run = self.run_
         self.assertEqual(run.state, "done")
         self.assertIsNone(run.failure)
-        self.assertEqual(run.summary, json.loads((self.path / "summary.json").read_text()))
+        self.assertEqual(run.summary, read_json(self.path / "summary.json"))
         self.assertEqual(run.scenario["rig"]["slip"], 0.4)
         self.assertEqual(run.number("drawbar_pull_N.mean"), run.summary["drawbar_pull_N"]["mean"])
         self.assertEqual(run.number("wheels.0.slip"), 0.4)
@@ -209,9 +207,8 @@ class Package(SystemTest):
         self.assertEqual(doctest.testmod(units).failed, 0)
         if not importlib.util.find_spec("mypy"):
             self.skipTest("no mypy")
-        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file",
-                               "mypy.ini", "--cache-dir", self.folder / "cache", "furrow"],
-                              cwd=ROOT / "scripts" / "python", text=True, capture_output=True)
+        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file", "mypy.ini", "--cache-dir", self.folder
+                               / "cache", "furrow"], cwd=ROOT / "scripts" / "python", text=True, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stdout)
 
 

@@ -5,7 +5,7 @@ import json
 import re
 import subprocess
 
-from program import ROOT, SystemTest, changed, furrow, main, on_terminal, write_scenario
+from program import ROOT, SystemTest, changed, furrow, main, on_terminal, write_json, write_scenario
 
 PRESSED = changed(rig={"slip": 0.1, "ramp": 0.1},
                   tire={"file": "hmmwv_lumped.json", "rigid": False, "elements_circumference": 30, "elements_width": 6})
@@ -28,8 +28,7 @@ class Quiet(SystemTest):
 
     def both(self, *arguments, says=True):
         """What it prints without and with --quiet."""
-        loud = furrow(*arguments, cwd=self.folder, env=self.env)
-        self.assertEqual(loud.returncode, 0, loud.stderr)
+        loud = self.furrow(*arguments, env=self.env)
         if says:
             self.assertNotEqual(loud.stderr, "", "it has something to say")
         quiet = furrow(*arguments, "--quiet", cwd=self.folder, env=self.env)
@@ -51,8 +50,7 @@ class Quiet(SystemTest):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/small-001\n", ""))
 
     def test_a_report_says_how_far_it_is_unless_it_is_quiet(self):
-        self.assertEqual(furrow("run", write_scenario(self.folder), "--out",
-                                "out", "--no-plots", cwd=self.folder, env=self.env).returncode, 0)
+        self.furrow("run", write_scenario(self.folder), "--out", "out", "--no-plots", env=self.env)
         code, text = on_terminal("report", "out", "--vtk", "vtk", cwd=self.folder, env=self.env)
         self.assertEqual(code, 0, text)
         self.assertIn("\rfurrow: writing the frames", text)
@@ -60,9 +58,8 @@ class Quiet(SystemTest):
         shares = [int(share) for share in re.findall(r"furrow: plotting (\d+) %", text)]
         self.assertGreater(len(shares), 1, text)
         self.assertEqual(shares, sorted(shares))
-        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py",
-                               "--out", "more", "--progress", "out"], cwd=self.folder,
-                              text=True, capture_output=True)
+        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py", "--out", "more",
+                               "--progress", "out"], cwd=self.folder, text=True, capture_output=True)
         shares = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("progress ")]
         self.assertEqual((len(shares), shares[0], shares), (6, 0.0, sorted(shares)), done)
         self.assertRegex(text, r"plotting \d+ %   \d+:\d\d left")
@@ -73,8 +70,8 @@ class Quiet(SystemTest):
     def test_several_beds_and_a_study(self):
         write_scenario(self.folder)
         self.both("run", "small.json", "--seeds", "2", "--out", "beds", "--no-plots")
-        (self.folder / "study.json").write_text(json.dumps({"format_version": 1, "scenario": "small.json",
-                                                            "grid": {"rig.slip": [0.1, 0.2]}}))
+        write_json(self.folder / "study.json", {"format_version": 1, "scenario": "small.json",
+                                                            "grid": {"rig.slip": [0.1, 0.2]}})
         done = furrow("sweep", "study.json", "--quiet", cwd=self.folder, env=self.env)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "results/study\n", ""))
 
@@ -96,9 +93,8 @@ class Quiet(SystemTest):
                          ("results/aligator_planar-modes-001\n", "results/aligator_planar-modes-002\n"))
 
     def test_suspensions(self):
-        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json",
-                                   "--points", "3", "--no-plots", says=False),
-                         ("results/rover-kc-001\n", "results/rover-kc-002\n"))
+        self.assertEqual(self.both("kc", ROOT / "vehicle" / "data" / "rover.json", "--points", "3",
+                                   "--no-plots", says=False), ("results/rover-kc-001\n", "results/rover-kc-002\n"))
 
     def test_benchmarks(self):
         loud, quiet = map(json.loads, self.both("bench", "tire", "--elements-circumference",
@@ -107,8 +103,7 @@ class Quiet(SystemTest):
         self.assertEqual(loud["state_hash"], quiet["state_hash"])
 
     def test_errors_and_how_to_continue_are_said(self):
-        done = furrow("run", "none.json", "--quiet", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
+        done = self.furrow("run", "none.json", "--quiet", code=2)
         self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)
         failing = changed(run={"step": 5e-4}, terrain={"allow_unstable_step": True, "young_modulus": 1e10},
                           output={"series_interval": 1e-3})

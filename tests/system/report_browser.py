@@ -104,8 +104,7 @@ def measured(folder, frames, grains, shake=0.0):
         played = json.loads(driver.execute_script(PLAY))
         stall = driver.execute_async_script(STALL, 3)
         renderer = driver.execute_script("const gl = document.createElement('canvas').getContext('webgl2'), about = "
-                                         "gl.getExtension("
-                                         "'WEBGL_debug_renderer_info'); return about ? "
+                                         "gl.getExtension('WEBGL_debug_renderer_info'); return about ? "
                                          "gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : ''")
         complaints = [line["message"] for line in driver.get_log("browser") if line["level"] != "INFO"]
     finally:
@@ -178,11 +177,9 @@ class InBrowser(SystemTest):
         for choice, value in ((0, "speed"), (0, "displacement"), (1, "pressure"), (1, "force")):
             self.ask(f"const list = document.querySelectorAll('.controls select')[{choice}]; list.value = '{value}'; "
                      "list.dispatchEvent(new Event('change'))")
-        self.assertIn("contact",
-                      self.ask("const list = document.querySelectorAll('.controls select')[1]; list.value = "
-                               "'pressure'; "
-                               "list.dispatchEvent(new Event('change')); return "
-                               "document.querySelector('.scales').textContent"))
+        self.assertIn("contact", self.ask("const list = document.querySelectorAll('.controls select')[1]; list.value = "
+                                          "'pressure'; list.dispatchEvent(new Event('change')); return "
+                                          "document.querySelector('.scales').textContent"))
 
     def plots_answer(self):
         from selenium.webdriver.common.action_chains import ActionChains
@@ -219,8 +216,7 @@ def measure(file):
                             text=True, capture_output=True).stdout.strip()
     version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
     figures = {"format_version": 1, "commit": commit, "command": "tests/system/report_browser.py --measure FILE.json",
-               "browser": version,
-               "cores": os.cpu_count(), "machine": platform.machine(), "pages": []}
+               "browser": version, "cores": os.cpu_count(), "machine": platform.machine(), "pages": []}
     for frames, grains, shake in ((12, 25000, 0.0), (1000, 12000, report_page.RADIUS)):
         with tempfile.TemporaryDirectory(prefix="furrow page ") as folder:
             figures["pages"].append(measured(folder, frames, grains, shake))

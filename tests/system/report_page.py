@@ -12,7 +12,7 @@ import zlib
 import h5py
 import numpy as np
 
-from program import ROOT, SystemTest, furrow, main, write_scenario
+from program import ROOT, SystemTest, furrow, main, read_json, write_json, write_scenario
 
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "report")]
 import page  # noqa: E402
@@ -64,16 +64,15 @@ def known_run(folder, count=FRAMES, grains=GRAINS, shake=0.0):
     """A run of known contents; the positions of its grains by frame. `shake`: how far every grain moves at random
     between frames, m, which no packing makes small."""
     (folder / "frames").mkdir(parents=True)
-    (folder / "scenario.json").write_text(json.dumps({
-        "description": "</script><img src=x onerror=alert(1)>", "rig": {"slip": 0.2},
-        "run": {"end": 1.5, "average_from": 0.1},
-        "expected": {"drawbar_pull": 100.0, "drawbar_pull_spread": 5.0}}))
-    (folder / "summary.json").write_text(json.dumps({
+    write_json(folder / "scenario.json", {"description": "</script><img src=x onerror=alert(1)>",
+                                                      "rig": {"slip": 0.2}, "run": {"end": 1.5, "average_from": 0.1},
+                                                      "expected": {"drawbar_pull": 100.0, "drawbar_pull_spread": 5.0}})
+    write_json(folder / "summary.json", {
         "scenario": "known", "slip": 0.2, "simulated_s": 0.25, "net_terrain_force_N": [100.0, 0.0, 4000.0],
         "terrain_engine": "dem",
         "drawbar_pull_N": {"mean": 110.0, "sem": 4.0, "n_eff": 9.0, "steady": False, "unsteady_because": ["it drifts"],
                            "from_s": 0.1, "to_s": 0.25},
-        "ranks": [{"rank": 0, "node": "rig", "threads": 1, "busy_share": 0.25}]}))
+        "ranks": [{"rank": 0, "node": "rig", "threads": 1, "busy_share": 0.25}]})
     time = np.arange(0, 0.25, 1e-3)
     (folder / "timeseries.csv").write_text("time_s,drawbar_pull_N,sinkage_m\n"
                                            + "".join(f"{t},{100 * t},{t}\n" for t in time))
@@ -196,11 +195,10 @@ class Page(SystemTest):
     def test_a_failed_run_and_one_without_frames(self):
         (self.run_folder / "summary.json").unlink()
         failed = {"scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}}
-        (self.run_folder / "summary_failed.json").write_text(json.dumps(failed))
+        write_json(self.run_folder / "summary_failed.json", failed)
         for path in (self.run_folder / "frames").iterdir():
             path.unlink()
-        done = furrow("report", self.run_folder, cwd=self.folder)
-        self.assertEqual((done.returncode, done.stdout), (0, f"{self.run_folder}/report.html\n"), done.stderr)
+        self.furrow("report", self.run_folder, prints=f"{self.run_folder}/report.html\n")
         about, _ = document(self.run_folder / "report.html")
         self.assertEqual(about["badges"], [{"text": "failed", "kind": "bad"}])
         self.assertIn("failed at t = 0.2 s: too hard", " ".join(block["text"] for block in blocks_of(about, "text")))
@@ -210,12 +208,11 @@ class Page(SystemTest):
         (self.run_folder / "summary.json").unlink()
         energy = {"closes": True, "residual_share": 1e-4, "turnover": 100.0,
                   "residual": 0.01, "work": {"drive_work": 90.0}}
-        (self.run_folder / "summary_failed.json").write_text(json.dumps({
+        write_json(self.run_folder / "summary_failed.json", {
             "scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}, "accounts": {"energy": energy},
             "ranks": [{"rank": 0, "node": "rig", "threads": 1, "compute_s": 1.0,
-                       "wait_s": 3.0, "cpu_s": 1.0, "busy_share": 0.25}]}))
-        done = furrow("report", self.run_folder, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+                       "wait_s": 3.0, "cpu_s": 1.0, "busy_share": 0.25}]})
+        done = self.furrow("report", self.run_folder)
         names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
         self.assertLessEqual({"energy.png", "ranks.png", "report.html"}, names, done.stderr)
         self.assertIn("no momentum.png: summary_failed.json has no account of momentum", done.stderr)
@@ -228,17 +225,13 @@ class Page(SystemTest):
     def test_several_runs_beside_each_other(self):
         other = self.folder / "other"
         known_run(other)
-        (other / "scenario.json").write_text(json.dumps({"rig": {"slip": 0.25}}))
-        done = furrow("report", self.run_folder, other, cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("'--out'", done.stderr)
+        write_json(other / "scenario.json", {"rig": {"slip": 0.25}})
+        self.furrow("report", self.run_folder, other, code=2, says="'--out'")
         (self.folder / "file").write_text("")
         for runs in ([self.run_folder], [self.run_folder, other]):
-            done = furrow("report", *runs, "--out", "file", cwd=self.folder)
-            self.assertEqual(done.returncode, 2)
-            self.assertIn("furrow: error: file: is a file, expected a folder", done.stderr)
-        done = furrow("report", self.run_folder, other, "--out", "both", cwd=self.folder)
-        self.assertEqual((done.returncode, done.stdout), (0, "both/report.html\n"), done.stderr)
+            self.furrow("report", *runs, "--out", "file", code=2,
+                        says="furrow: error: file: is a file, expected a folder")
+        self.furrow("report", self.run_folder, other, "--out", "both", prints="both/report.html\n")
         about, _ = document(self.folder / "both" / "report.html")
         tables = blocks_of(about, "table")
         self.assertEqual(tables[0]["rows"][0], ["drawbar pull", "110.0 ± 9.2", "110.0 ± 9.2", "N"])
@@ -249,7 +242,7 @@ class Page(SystemTest):
     def test_a_table_of_a_study_that_is_none_is_named(self):
         study = self.folder / "study"
         study.mkdir()
-        (study / "sweep.json").write_text(json.dumps({"study": "slips", "plot": {}, "results": []}))
+        write_json(study / "sweep.json", {"study": "slips", "plot": {}, "results": []})
         (study / "sweep.csv").write_text("garbage\n")
         done = furrow("report", study, cwd=self.folder)
         self.assertNotEqual(done.returncode, 0)
@@ -260,8 +253,7 @@ class Page(SystemTest):
         for wall in ("1.25", "12.5"):
             study = self.folder / f"wall {wall}" / "study"
             study.mkdir(parents=True)
-            (study / "sweep.json").write_text(json.dumps({"study": "slips",
-                                                          "plot": {}, "results": ["sinkage_m", "wall_s"]}))
+            write_json(study / "sweep.json", {"study": "slips", "plot": {}, "results": ["sinkage_m", "wall_s"]})
             (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\n"
                                              f"runs/1,done,0,0.2,0.021,{wall}\n")
             self.assertEqual(page.write(study, [Sweep(study)], lambda *_: True), ["report.html"])
@@ -275,11 +267,11 @@ class Page(SystemTest):
     def test_the_page_of_a_study_says_what_it_is_about_and_its_keys_have_units(self):
         study = self.folder / "study"
         study.mkdir()
-        (study / "sweep.json").write_text(json.dumps({
+        write_json(study / "sweep.json", {
             "study": "slips", "description": "Two soils.",
             "results": ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"],
             "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem",
-                     "lines": "terrain.cohesion"}}))
+                     "lines": "terrain.cohesion"}})
         (study / "sweep.csv").write_text("folder,state,exit_code,rig.slip,terrain.cohesion,drawbar_pull_N.mean,"
                                          "drawbar_pull_N.sem,drawbar_pull_N.steady\n"
                                          "runs/1,done,0,0.2,40000.0,120,4,true\n"
@@ -293,18 +285,17 @@ class Page(SystemTest):
         self.assertEqual(charts["note"], "Whiskers: standard error of each run.")
         self.assertEqual([line["label"] for line in charts["charts"][0]["lines"]], ["terrain.cohesion = 40000 Pa"])
         (table,) = blocks_of(about, "table")
-        self.assertEqual(table["columns"][3:],
-                         ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N", "drawbar pull standard error, N",
-                          "drawbar pull steady"])
+        self.assertEqual(table["columns"][3:], ["rig.slip", "terrain.cohesion, Pa", "drawbar pull, N",
+                                                "drawbar pull standard error, N", "drawbar pull steady"])
         self.assertEqual(table["rows"][0][4:], ["40000", "120", "4", "true"])
 
     def test_all_values_of_a_pressed_tire_have_units(self):
         folder = self.folder / "press"
         folder.mkdir()
-        (folder / "summary.json").write_text(json.dumps({
+        write_json(folder / "summary.json", {
             "obstacle": "plate", "load_N": 4600.0, "deflection_m": 0.0128, "pressure_Pa": 2e5,
             "statically_stable": True,
-            "sticking_stiffness": {"lateral_N_per_m": 1.5e5, "torsional_Nm_per_rad": 2500.0}}))
+            "sticking_stiffness": {"lateral_N_per_m": 1.5e5, "torsional_Nm_per_rad": 2500.0}})
         (folder / "press.csv").write_text("deflection_m,force_N,unloading\n"
                                          "0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
         page.write(folder, [Press(folder)], lambda *_: True)
@@ -321,8 +312,7 @@ class Page(SystemTest):
 
     def test_frames_as_vtp_files(self):
         out = self.folder / "vtk"
-        done = furrow("report", self.run_folder, "--vtk", out, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("report", self.run_folder, "--vtk", out)
         self.assertEqual(done.stdout.splitlines()[:2], [str(out / "tire0.pvd"), str(out / "terrain.pvd")])
         self.assertEqual(len(list(out.glob("*.vtp"))), 2 * FRAMES)
         listed = re.findall(r'timestep="([^"]+)" file="([^"]+)"', (out / "terrain.pvd").read_text())
@@ -334,22 +324,18 @@ class Page(SystemTest):
         np.testing.assert_array_equal(np.frombuffer(zlib.decompress(base64.b64decode(packed[44:])),
                                                     "<f4").reshape(-1, 3), self.positions[-1])
         self.assertEqual(list(head[:3]), [1, self.positions[-1].nbytes, 0])
-        again = furrow("report", self.run_folder, "--vtk", out, "--quiet", cwd=self.folder)
-        self.assertEqual(again.returncode, 2)
-        self.assertEqual(again.stderr,
-                         f"furrow: error: command line: key '--vtk': {out} exists and is not an empty folder, expected "
-                         f"a new one\n")
+        again = self.furrow("report", self.run_folder, "--vtk", out, "--quiet", code=2)
+        self.assertEqual(again.stderr, f"furrow: error: command line: key '--vtk': {out} exists and is not an empty "
+                         "folder, expected a new one\n")
         damaged = self.run_folder / "frames" / "terrain_000001.h5"
         damaged.write_bytes(b"")
-        done = furrow("report", self.run_folder, "--vtk", self.folder / "part", cwd=self.folder)
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertIn(f"furrow: error: {damaged}: ", done.stderr)
+        self.furrow("report", self.run_folder, "--vtk", self.folder / "part", code=5,
+                    says=f"furrow: error: {damaged}: ")
         self.assertEqual(list((self.folder / "part").iterdir()), [])
         for frame in (self.run_folder / "frames").iterdir():
             frame.unlink()
-        none = furrow("report", self.run_folder, "--vtk", self.folder / "none", cwd=self.folder)
-        self.assertEqual(none.returncode, 2, none.stderr)
-        self.assertIn("has no frames, expected a run with output.frame_interval above 0", none.stderr)
+        self.furrow("report", self.run_folder, "--vtk", self.folder / "none", code=2,
+                    says="has no frames, expected a run with output.frame_interval above 0")
         self.assertFalse((self.folder / "none").exists())
 
 
@@ -360,15 +346,14 @@ class OwnFiles(SystemTest):
         super().setUp()
         self.run_folder, self.out = self.folder / "run", self.folder / "own"
         known_run(self.run_folder)
-        summary = json.loads((self.run_folder / "summary.json").read_text())
+        summary = read_json(self.run_folder / "summary.json")
         # so that there are two plots: ranks.png and scene.png
         summary["ranks"][0] |= {"compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0}
-        (self.run_folder / "summary.json").write_text(json.dumps(summary))
+        write_json(self.run_folder / "summary.json", summary)
         self.out.mkdir()
 
     def report(self, *arguments, code=0, told=()):
-        done = furrow("report", *arguments, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow("report", *arguments, code=code)
         for words in told:
             self.assertIn(words, done.stderr)
         return [pathlib.Path(line).name for line in done.stdout.splitlines()]
@@ -423,10 +408,9 @@ class OwnFiles(SystemTest):
                 for name, to in (("scene.png", "precious"), ("report.html", "nowhere")):
                     (folder / name).unlink(missing_ok=True)
                     (folder / name).symlink_to(self.folder / to)
-                made = self.report(*arguments,
-                                   told=[f"no {name}: the file of that name in this folder is a link, which furrow "
-                                         f"does not follow"
-                                         for name in ("scene.png", "report.html")])
+                made = self.report(*arguments, told=[f"no {name}: the file of that name in this folder is a link, "
+                                                     "which furrow does not follow" for name in ("scene.png",
+                                                                                                 "report.html")])
                 self.assertEqual(made, ["ranks.png"])
                 self.assertTrue((folder / "scene.png").is_symlink() and (folder / "report.html").is_symlink())
                 self.assertEqual((self.folder / "precious").read_text(), "precious")
@@ -437,9 +421,8 @@ class OwnFiles(SystemTest):
         (self.out / "notes.txt").write_text("mine")
         self.report("run", "--out", "own")
         names = {path.name for path in self.out.iterdir()}
-        done = furrow("run", write_scenario(self.folder), "--out", "own", "--overwrite", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("own: key '--out': holds no run's list of its files (.furrow-run)", done.stderr)
+        self.furrow("run", write_scenario(self.folder), "--out", "own", "--overwrite", code=2,
+                    says="own: key '--out': holds no run's list of its files (.furrow-run)")
         self.assertEqual({path.name for path in self.out.iterdir()}, names)
 
     def test_a_list_that_was_cut_short_or_is_a_link(self):

@@ -2,7 +2,6 @@
 """The folder of a run: nothing of the user's own is lost in it, one run at a time has it, and a run notices when it is
 gone."""
 import fcntl
-import json
 import os
 import pathlib
 import re
@@ -11,7 +10,7 @@ import subprocess
 import unittest
 
 from checkpoint_runs import FAULTY, RUN, CheckpointTest, steps, summary
-from program import SystemTest, furrow, main, start, wait_for, write_scenario
+from program import SystemTest, furrow, main, start, wait_for, write_json, write_scenario
 
 CYCLES = int(os.environ.get("FURROW_CYCLES", "6"))
 MINE = ("photo.png", "summary_of_my_thesis.json", "timeseries_measured.csv", "frames/cad.step", "checkpoints/notes.txt")
@@ -51,9 +50,8 @@ class Overwrite(SystemTest):
         self.put_mine(names)
         for command in (["run", self.path, "--overwrite"], ["run", self.path], ["soil", self.path, "--overwrite"],
                         ["press", self.path, "--set", "tire.rigid=false", "--overwrite"]):
-            done = furrow(*command, "--out", self.out, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertRegex(done.stderr, r"furrow: error: .*out: key '--out': (holds no run|exists already)")
+            self.furrow(*command, "--out", self.out, code=2,
+                        matches=r"furrow: error: .*out: key '--out': (holds no run|exists already)")
         self.assertIn("an earlier version of furrow made it", furrow("resume", self.out, cwd=self.folder).stderr)
         self.assertEqual({name: path.read_text() for name, path in files(self.out).items()},
                          dict.fromkeys(names, "mine"))
@@ -62,8 +60,7 @@ class Overwrite(SystemTest):
         self.run_it(self.path, "--out", "out", "--profile")
         self.assertEqual(unlisted(self.out), set())
         self.put_mine()
-        again = furrow("report", "out", cwd=self.folder)  # plots are listed too, once
-        self.assertEqual(again.returncode, 0, again.stderr)
+        self.furrow("report", "out")  # plots are listed too, once
         ours = files(self.out).keys() - set(MINE)
         self.assertEqual(unlisted(self.out), set(MINE))
         self.run_it(self.path, "--out", "out", "--overwrite", "--no-plots", "--set", "output.frame_interval=0")
@@ -78,9 +75,7 @@ class Overwrite(SystemTest):
     def test_a_plot_never_replaces_a_picture_of_the_users_own(self):
         self.run_it(self.path, "--out", "out", "--no-plots")
         (self.out / "forces.png").write_text("mine")
-        done = furrow("report", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("no forces.png: furrow did not write the file of that name", done.stderr)
+        self.furrow("report", "out", says="no forces.png: furrow did not write the file of that name")
         self.assertEqual((self.out / "forces.png").read_text(), "mine")
 
     def test_a_runs_own_scenario_can_be_run_over_its_folder(self):
@@ -106,12 +101,10 @@ class Overwrite(SystemTest):
         self.assertEqual((self.names(), list(inner.iterdir())), (["inner", "small.json"], []))
 
     def test_a_study_is_refused_where_no_study_was(self):
-        study = self.folder / "study.json"
-        study.write_text(json.dumps({"scenario": "small.json", "grid": {"rig.slip": [0.1]}}))
+        study = write_json(self.folder / "study.json", {"scenario": "small.json", "grid": {"rig.slip": [0.1]}})
         self.put_mine(("sweep.csv",))
-        done = furrow("sweep", study, "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("holds no run's list of its files (.furrow-run): no study made it", done.stderr)
+        self.furrow("sweep", study, "--out", "out", code=2,
+                    says="holds no run's list of its files (.furrow-run): no study made it")
         self.assertEqual(files(self.out).keys(), {"sweep.csv"})
 
     def test_of_two_that_begin_together_one_has_the_folder(self):
@@ -185,9 +178,7 @@ class Gone(CheckpointTest):
         (elsewhere / "rig.h5").write_text("mine")
         (self.run_folder / "checkpoints" / ".000000000300.part").symlink_to(elsewhere)
         self.mark.unlink()
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 0, err)
-        self.assertIn("the checkpoint at t = 0.06 s could not be written", err)
+        self.ended(process, 0, says="the checkpoint at t = 0.06 s could not be written")
         self.assertEqual({path.name: path.read_text() for path in elsewhere.iterdir()}, {"rig.h5": "mine"})
         self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
 
@@ -200,8 +191,7 @@ class Gone(CheckpointTest):
         for path in (part / "rig.h5", part / "tire0.h5", self.run_folder / ".results.h5.0123456789abcdef.part"):
             path.write_text("half")
         self.mark.unlink()
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 0, err)
+        self.ended(process, 0)
         self.same_as_whole(self.run_folder)
 
     def test_a_link_in_the_place_of_a_folder_of_results_is_refused(self):
@@ -214,18 +204,15 @@ class Gone(CheckpointTest):
             (self.run_folder / name).symlink_to("../own")
             for command in (["run", self.path, "--out", self.run_folder, "--overwrite"],
                             ["resume", self.run_folder, "--until", "0.2"]):
-                done = furrow(*command, "--no-plots", cwd=self.folder)
-                self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(f"{name}: is a link, expected what it leads to", done.stderr)
+                self.furrow(*command, "--no-plots", code=2, says=f"{name}: is a link, expected what it leads to")
             shutil.rmtree(self.run_folder)
         for name in ("run.log", "timeseries.csv"):
             shutil.copytree(self.whole, self.run_folder)
             (self.run_folder / name).rename(self.folder / name)
             (self.run_folder / name).symlink_to(f"../{name}")
             before = (self.folder / name).read_bytes()
-            done = furrow("resume", self.run_folder, "--until", "0.2", "--no-plots", cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(f"{name}: is a link, expected what it leads to", done.stderr)
+            self.furrow("resume", self.run_folder, "--until", "0.2", "--no-plots", code=2,
+                        says=f"{name}: is a link, expected what it leads to")
             self.assertEqual((self.folder / name).read_bytes(), before)
             shutil.rmtree(self.run_folder)
         self.assertEqual([(path.name, path.read_text()) for path in own.iterdir()], [("tire0_000000.h5", "precious")])
@@ -251,9 +238,8 @@ class Gone(CheckpointTest):
                 process = self.start_waiting("step", 0, 220)
                 change(self.run_folder / name)
                 self.mark.unlink()
-                _, err = process.communicate(timeout=60)
-                self.assertEqual(process.returncode, 0, err)
-                self.assertIn(f"{name} was removed or changed while the run was under way, and is written again", err)
+                self.ended(process, 0,
+                           says=f"{name} was removed or changed while the run was under way, and is written again")
                 self.same_as_whole()
                 shutil.rmtree(self.run_folder)
 
@@ -298,8 +284,7 @@ class Killed(CheckpointTest):
     def test_again_and_again_without_a_pause(self):
         command = ["run", self.path, "--out", self.run_folder, "--no-plots"]
         for _ in range(CYCLES):  # each comes past a checkpoint, every 20 steps, and dies in the middle of a step
-            process = start(*command, cwd=self.folder, program=FAULTY, env=self.fault("step", 0, 25, "wait"))
-            self.addCleanup(process.kill)
+            process = self.start(*command, program=FAULTY, env=self.fault("step", 0, 25, "wait"))
             wait_for(lambda: self.mark.exists() or process.poll() is not None, 60, "the fault fires")
             self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
             process.kill()
@@ -317,12 +302,10 @@ class Killed(CheckpointTest):
             others = [start(*command, cwd=self.folder, program=FAULTY) for command in
                       (["resume", run], ["run", self.path, "--out", run, "--overwrite"])]
             for other in others:
-                _, err = other.communicate(timeout=60)
-                self.assertEqual(other.returncode, 2, err)
+                err = self.ended(other, 2)
                 waits, error = err.splitlines()
-                self.assertRegex(waits,
-                                 r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; waiting for "
-                                 r"up to 10 s")
+                self.assertRegex(waits, r"^furrow: .*out is in use by a run that has not ended: process \d+ .*; "
+                                 r"waiting for up to 10 s")
                 self.assertRegex(error, rf"^furrow: error: .*out: .*process {os.getpid()} \(")
 
 

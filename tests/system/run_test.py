@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """`furrow run` for real: what it leaves behind, and what it does when ranks die, stop, or it is told to stop."""
 import csv
-import json
 import os
 import shutil
 import signal
 import subprocess
 
-from program import (PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, start, survivors, wait_for,
-                     write_scenario)
+from program import (PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, read_json, survivors, wait_for,
+                     write_json, write_scenario)
 
 FIRST_LOOK = ROOT / "rigs" / "first_look.json"
 SHORT = ["--set", "run.end=0.05", "--set", "run.average_from=0.02"]
@@ -18,12 +17,10 @@ RESULTS = {"summary.json", "timeseries.csv", "results.h5", "results.xdmf", "scen
 class Run(SystemTest):
     def test_first_look_shortened_leaves_its_results(self):
         landed = ["--set", "run.end=0.3", "--set", "run.average_from=0.25"]
-        done = furrow("run", FIRST_LOOK, *landed, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout, "results/first_look-001\n")
+        done = self.furrow("run", FIRST_LOOK, *landed, prints="results/first_look-001\n")
         run = self.folder / "results" / "first_look-001"
         self.assertLessEqual(RESULTS, {path.name for path in run.iterdir()})
-        summary = json.loads((run / "summary.json").read_text())
+        summary = read_json(run / "summary.json")
         self.assertAlmostEqual(summary["simulated_s"], 0.3)
         self.assertGreater(summary["grains"], 1000)
         self.assertEqual([rank["node"] for rank in summary["ranks"]], ["rig", "tire 0", "terrain"])
@@ -44,7 +41,7 @@ class Run(SystemTest):
         summary's."""
         with open(run / "timeseries.csv", newline="") as file:
             rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-        rig = json.loads((run / "scenario.json").read_text())["rig"]
+        rig = read_json(run / "scenario.json")["rig"]
         tire_mass = summary["vertical_load_N"] / 9.81 - rig["carrier_mass"] - rig["rim_mass"]
         weight_work = -9.81 * tire_mass * (rows[-1]["axle_height_m"] - rows[0]["axle_height_m"])
         on_tire = summary["interface_work_J"] + rows[-1]["rim_work_J"] + weight_work
@@ -53,13 +50,12 @@ class Run(SystemTest):
         self.assertEqual(summary["spindle_work_J"], rows[-1]["spindle_work_J"])
 
     def test_a_wheel_that_stands_on_a_soil_of_ones_own_and_goes_on(self):
-        (self.folder / "mysand.json").write_text(json.dumps({"format_version": 1, "terrain": {"friction": 0.5}}))
+        write_json(self.folder / "mysand.json", {"format_version": 1, "terrain": {"friction": 0.5}})
         scenario = changed(rig={"mode": "fixed_speed", "speed": 0}, terrain={"material": "mysand.json"},
                            output={"frame_interval": 0})
-        done = furrow("run", write_scenario(self.folder, scenario), "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("run", write_scenario(self.folder, scenario), "--no-plots")
         run = self.folder / done.stdout.strip()
-        summary = json.loads((run / "summary.json").read_text())
+        summary = read_json(run / "summary.json")
         reasons = " ".join(summary["drawbar_pull_N"]["unsteady_because"])
         self.assertIn("neither rolls nor slips", reasons)
         self.assertNotIn("% of load × speed", reasons)
@@ -68,7 +64,7 @@ class Run(SystemTest):
         self.assertEqual(summary["columns"]["spindle_work_J"], summary["spindle_work_J"])
         again = furrow("resume", run, "--until", "0.06", "--no-plots", cwd=self.folder.parent)
         self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertAlmostEqual(json.loads((run / "summary.json").read_text())["simulated_s"], 0.06)
+        self.assertAlmostEqual(read_json(run / "summary.json")["simulated_s"], 0.06)
 
     def test_threads_do_not_change_the_result_and_the_seed_does(self):
         path = write_scenario(self.folder)
@@ -76,20 +72,18 @@ class Run(SystemTest):
         sides = ["--set", "terrain.sides=periodic", "--threads"]
         for number, flags in enumerate((["--threads", "1"], ["--threads", "2"],
                                         ["--set", "run.seed=2"], [*sides, "1"], [*sides, "2"])):
-            done = furrow("run", path, "--out", f"out{number}", *flags, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            hashes.append(json.loads((self.folder / f"out{number}" / "summary.json").read_text())["state_hash"])
+            self.furrow("run", path, "--out", f"out{number}", *flags)
+            hashes.append(read_json(self.folder / f"out{number}" / "summary.json")["state_hash"])
         self.assertEqual(hashes[0], hashes[1])
         self.assertEqual(hashes[3], hashes[4])
         self.assertEqual(len({hashes[0], hashes[2], hashes[3]}), 3)
 
     def test_overwrite_replaces_results_and_nothing_else(self):
         path = write_scenario(self.folder)
-        self.assertEqual(furrow("run", path, "--out", "out", cwd=self.folder).returncode, 0)
+        self.furrow("run", path, "--out", "out")
         (self.folder / "out" / "notes.txt").write_text("mine")
         (self.folder / "out" / "frames" / "terrain_009999.h5").write_text("of an older, longer run")
-        done = furrow("run", path, "--out", "out", "--overwrite", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("run", path, "--out", "out", "--overwrite")
         self.assertEqual(done.stderr.count("Open MPI's option --allow-run-as-root"), os.geteuid() == 0, done.stderr)
         self.assertEqual((self.folder / "out" / "notes.txt").read_text(), "mine")
         self.assertFalse((self.folder / "out" / "frames" / "terrain_009999.h5").exists())
@@ -105,11 +99,10 @@ class Run(SystemTest):
         self.assertEqual(done.stderr.count(" simulated s, "), 1, done.stderr)
 
     def test_four_wheels_on_one_bed_each_read_their_own_weight(self):
-        done = furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
-                      "--set", "terrain.layers=3", "--set", "run.step=2e-4", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
+                    "--set", "terrain.layers=3", "--set", "run.step=2e-4")
         masses = [200, 320, 450, 700]
-        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        summary = read_json(self.folder / "out" / "summary.json")
         self.assertEqual(len(summary["ranks"]), 6)
         self.assertNotIn("vertical_load_N", summary)
         for wheel, (mass, entry) in enumerate(zip(masses, summary["wheels"], strict=True)):
@@ -121,9 +114,8 @@ class Run(SystemTest):
         self.assertEqual(sorted(path.name for path in (self.folder / "out").glob("summary*")), ["summary.json"])
 
     def test_profile_is_a_chrome_trace_of_all_ranks(self):
-        done = furrow("run", write_scenario(self.folder), "--out", "out", "--profile", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        events = json.loads((self.folder / "out" / "profile.json").read_text())["traceEvents"]
+        self.furrow("run", write_scenario(self.folder), "--out", "out", "--profile")
+        events = read_json(self.folder / "out" / "profile.json")["traceEvents"]
         names = {event["pid"]: event["args"]["name"] for event in events if event["ph"] == "M"}
         self.assertEqual(list(names.values()), ["rig", "tire 0", "terrain"])
         for rank in names:
@@ -134,11 +126,10 @@ class Run(SystemTest):
 
     def test_report_makes_plots(self):
         path = write_scenario(self.folder)
-        self.assertEqual(furrow("run", path, "--out", "out", cwd=self.folder).returncode, 0)
+        self.furrow("run", path, "--out", "out")
         for plot in (self.folder / "out").glob("*.png"):
             plot.unlink()
-        done = furrow("report", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("report", "out")
         self.assertTrue(done.stdout)
         for name in done.stdout.splitlines():
             self.assertEqual((self.folder / name).read_bytes()[:4],
@@ -156,8 +147,7 @@ class Interrupted(SystemTest):
                                            output={"frame_interval": 0.05}))
 
     def started(self):
-        process = start("run", self.path, "--out", "out", cwd=self.folder)
-        self.addCleanup(process.kill)
+        process = self.start("run", self.path, "--out", "out")
         series = self.folder / "out" / "timeseries.csv"
         wait_for(lambda: series.exists() and len(ranks(self.path)) == 3 and process.poll() is None,
                  60, "the run begins")
@@ -207,8 +197,7 @@ class Interrupted(SystemTest):
                 self.assertFalse((self.folder / "out" / "summary.json").exists())
 
     def test_stop_while_starting(self):
-        process = start("run", self.path, "--out", "out", cwd=self.folder)
-        self.addCleanup(process.kill)
+        process = self.start("run", self.path, "--out", "out")
         wait_for(lambda: (self.folder / "out" / "run.log").exists(), 20, "the supervisor begins")
         process.send_signal(signal.SIGTERM)
         self.end(process, 75, 60)

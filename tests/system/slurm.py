@@ -85,15 +85,13 @@ class Cluster:
     def daemon(self, *command):
         log = open(self.folder / f"{command[0]}.out", "wb")
         self.processes.append(subprocess.Popen([shutil.which(command[0], path=PATH), *map(str, command[1:])],
-                                               stdout=log,
-                                               stderr=log, stdin=subprocess.DEVNULL, env=self.environment,
+                                               stdout=log, stderr=log, stdin=subprocess.DEVNULL, env=self.environment,
                                                start_new_session=True))
         log.close()
 
     def call(self, *command, check=True, cwd=None, env=None, timeout=120):
-        return subprocess.run(list(map(str, command)), capture_output=True,
-                              text=True, check=check, cwd=cwd, timeout=timeout,
-                              stdin=subprocess.DEVNULL, env={**self.environment, **(env or {})})
+        return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=check, cwd=cwd,
+                              timeout=timeout, stdin=subprocess.DEVNULL, env={**self.environment, **(env or {})})
 
     def scontrol(self, *arguments, check=True):
         return self.call("scontrol", *arguments, check=check).stdout

@@ -7,7 +7,7 @@ import pathlib
 import signal
 import time
 
-from program import SystemTest, changed, furrow, main, start, wait_for, write_scenario
+from program import SystemTest, changed, furrow, main, read_json, start, wait_for, write_json, write_scenario
 
 PLOTS = os.access("/usr/bin/python3", os.X_OK)
 
@@ -86,7 +86,7 @@ class Soil(WithCache):
         begin = time.monotonic()
         soil, told = self.run_json("soil", path, "--quick", "--speed", "0.3", "--out", "out")
         self.assertLess(time.monotonic() - begin, 60.0)
-        self.assertEqual(soil, json.loads((self.work / "out" / "soil.json").read_text()))
+        self.assertEqual(soil, read_json(self.work / "out" / "soil.json"))
         names = {".furrow-run", "soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"}
         if "no plots" not in told:
             names |= {"plate.png", "shear.png", "cone.png", "repose.png", "report.html"}
@@ -106,7 +106,7 @@ class Soil(WithCache):
         self.assertGreater(soil["janosi_K_m"], 0)
         self.assertEqual([soil["terrain"][key] for key in ("bekker_k_c", "bekker_k_phi", "bekker_n", "janosi_k")],
                          [soil[key] for key in ("k_c", "k_phi", "n", "janosi_K_m")])
-        (self.work / "mine.json").write_text(json.dumps({"format_version": 1, "terrain": soil["terrain"]}))
+        write_json(self.work / "mine.json", {"format_version": 1, "terrain": soil["terrain"]})
         empirical = write_scenario(self.work, changed(terrain=None)
                                    | {"terrain": {"engine": "scm", "material": "mine.json"}}, "scm.json")
         done = furrow("validate", empirical, cwd=self.work)
@@ -189,13 +189,11 @@ class Soil(WithCache):
         run = self.work / "run"
         run.mkdir()
         (run / "scenario.json").write_text("{}")
-        (run / "summary.json").write_text(json.dumps({"format_version": 1,
-                                                      "tire_radius_m": 0.4673, "tread_width_m": 0.25,
-                                                      "vertical_load_N": 4609, "slip": 0.3}))
-        (self.work / "soil.json").write_text(json.dumps({
-            "format_version": 1, "k_c": 15.6e3, "k_phi": 245e3, "n": 0.395,
-            "cohesion_Pa": 6.9e3, "friction_angle_deg": 26.8,
-            "janosi_K_m": 0.0209, "standard_error": {"cohesion_Pa": 1.4e3}}))
+        write_json(run / "summary.json", {"format_version": 1, "tire_radius_m": 0.4673,
+                                                      "tread_width_m": 0.25, "vertical_load_N": 4609, "slip": 0.3})
+        write_json(self.work / "soil.json", {"format_version": 1, "k_c": 15.6e3, "k_phi": 245e3, "n": 0.395,
+                                             "cohesion_Pa": 6.9e3, "friction_angle_deg": 26.8, "janosi_K_m": 0.0209,
+                                             "standard_error": {"cohesion_Pa": 1.4e3}})
         done = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
         self.assertRegex(done.stderr,
                          r"furrow: soil theory \(rigid wheel\): drawbar pull 9\d\d ± \d+ N, sinkage \d+.\d mm")
@@ -203,7 +201,7 @@ class Soil(WithCache):
         refused = furrow("report", "run", "--soil", "soil.json", cwd=self.work)
         self.assertEqual(refused.returncode, 2, refused.stderr)
         self.assertIn("terrain.engine", refused.stderr)
-        estimate = json.loads((run / "soil_estimate.json").read_text())
+        estimate = read_json(run / "soil_estimate.json")
         self.assertAlmostEqual(estimate["thrust_N"] - estimate["compaction_resistance_N"],
                                estimate["drawbar_pull_N"], places=6)
         pulls = [point["drawbar_pull_N"] for point in estimate["curve"]]

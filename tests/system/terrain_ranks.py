@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """A terrain of three ranks, the strip mat of tests/dummies: results that do not depend on how many there are, each rank
 killed and stopped, and what is refused."""
-import json
 import os
 import pathlib
 import shutil
 import tempfile
 
 from checkpoint_runs import INTERVAL, CheckpointTest, steps, summary, table
-from program import ROOT, changed, main, write_scenario
+from program import ROOT, changed, main, read_json, write_json, write_scenario
 
 MAT = changed(rig={"touchdown_damping": 0}, terrain={"ground_stiffness": 4e7},
               run={"step": 2e-4, "end": 0.1, "average_from": 0.04, "peer_timeout": 20},
@@ -23,9 +22,9 @@ def home(folder):
     (folder / "rigs").mkdir(parents=True)
     for name in ("tire", "terrain", "vehicle", "scripts"):
         (folder / name).symlink_to(ROOT / name)
-    schema = json.loads((ROOT / "rigs" / "scenario.schema.json").read_text())
+    schema = read_json(ROOT / "rigs" / "scenario.schema.json")
     schema["properties"]["terrain"]["properties"]["engine"]["enum"].append("strip_mat")
-    (folder / "rigs" / "scenario.schema.json").write_text(json.dumps(schema))
+    write_json(folder / "rigs" / "scenario.schema.json", schema)
     return folder
 
 
@@ -75,8 +74,7 @@ class TerrainRanks(CheckpointTest):
         process = self.start_waiting("step", 3, 250)
         process.terminate()
         self.mark.unlink()
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, err)
+        self.ended(process, 75)
         self.assertGreater(steps(self.run_folder)[-1], 2 * INTERVAL)
         self.resume()
         self.same_as_whole()
@@ -86,9 +84,8 @@ class TerrainRanks(CheckpointTest):
             with self.subTest(ranks):
                 other = self.folder / f"of {ranks}"
                 self.program("run", self.path, "--out", other, "--set", f"terrain.ranks={ranks}", "--no-plots")
-                self.same_as_whole(run=other,
-                                   leave_out=["scenario.json", "summary.json", "checkpoints/*", "checkpoints/*/*",
-                                              "results.h5"])
+                self.same_as_whole(run=other, leave_out=["scenario.json", "summary.json", "checkpoints/*",
+                                                         "checkpoints/*/*", "results.h5"])
                 self.assertEqual(summary(other)["drawbar_pull_N"], summary(self.whole)["drawbar_pull_N"])
 
     def test_each_is_in_the_summary_and_has_a_part_of_the_checkpoint(self):

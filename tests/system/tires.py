@@ -2,13 +2,12 @@
 """Tires at the edges of their range, as a user meets them: changing pressure, drops, heavy loads, the rim, steps too
 large. Either a run ends well or one message says what happened, when and what to try; no number in the results is not
 finite."""
-import csv
 import json
 import math
 import re
 import subprocess
 
-from program import ROOT, SystemTest, furrow, main
+from program import ROOT, SystemTest, furrow, main, read_json, rows_of, write_json
 
 HARD = {
     "format_version": 1,
@@ -19,34 +18,30 @@ HARD = {
     "output": {"series_interval": 1e-3, "frame_interval": 0},
     "checkpoint": {"at_end": False},
 }
-ROLLING = {"rig.angular_speed": 8.56, "rig.slip": 0.05, "rig.ramp": 0.05,
-           "rig.touchdown_time": 0.1, "terrain.ground_stiffness": 5e7,
-           "terrain.ground_shear_stiffness": 2e7, "terrain.ground_damping": 1e4}
+ROLLING = {"rig.angular_speed": 8.56, "rig.slip": 0.05, "rig.ramp": 0.05, "rig.touchdown_time": 0.1,
+           "terrain.ground_stiffness": 5e7, "terrain.ground_shear_stiffness": 2e7, "terrain.ground_damping": 1e4}
 DROP = {"rig.drop_height": 0.3, "rig.touchdown_damping": 0, "terrain.ground_stiffness": 5e7,
         "terrain.ground_damping": 1e4}
-GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 20e3,
-          "terrain.layers": 4, "terrain.length": 1.2,
-          "terrain.width": 0.5}
+GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 20e3, "terrain.layers": 4,
+          "terrain.length": 1.2, "terrain.width": 0.5}
 
 
 class TireTest(SystemTest):
-    def start(self, settings, command="run", more=()):
-        path = self.folder / "tire.json"
-        path.write_text(json.dumps(HARD))
+    def begin(self, settings, command="run", more=()):
+        path = write_json(self.folder / "tire.json", HARD)
         flags = [flag for key, value in settings.items() for flag in ("--set", f"{key}={json.dumps(value)}")]
         return furrow(command, path, "--out", self.folder / "out", *flags, *more, cwd=self.folder, timeout=400)
 
     def series(self, name="out"):
         """Columns of the series; every number in it is finite."""
-        with open(self.folder / name / "timeseries.csv") as file:
-            rows = list(csv.DictReader(file))
+        rows = rows_of(self.folder / name / "timeseries.csv")
         columns = {key: [float(row[key]) for row in rows] for key in rows[0]} if rows else {}
         for key, values in columns.items():
             self.assertTrue(all(map(math.isfinite, values)), key)
         return columns
 
     def ends_well(self, settings):
-        done = self.start(settings, more=["--no-plots"])
+        done = self.begin(settings, more=["--no-plots"])
         self.assertEqual(done.returncode, 0, done.stderr)
         text = (self.folder / "out/summary.json").read_text()
         self.assertNotIn("NaN", text)
@@ -54,7 +49,7 @@ class TireTest(SystemTest):
 
     def stops(self, settings, expected):
         """Exit code 3, one error that matches, no summary, no number that is not finite."""
-        done = self.start(settings, more=["--no-plots"])
+        done = self.begin(settings, more=["--no-plots"])
         self.assertEqual(done.returncode, 3, done.stderr)
         errors = [line for line in done.stderr.splitlines() if "error:" in line]
         self.assertEqual(len(errors), 1, done.stderr)
@@ -89,13 +84,10 @@ class Load(TireTest):
         self.assertLess(abs(summary["net_terrain_force_N"][2] / summary["vertical_load_N"] - 1), 0.05)
 
     def test_the_rim_stops_the_run(self):
-        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000,
-                            "rig.drop_height": 0.1, "rig.touchdown_damping": 0,
-                            "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3,
-                            "run.step": 2e-4, "run.end": 1.0},
-                           r"tire 0 reached its rim at t = [\d.]+ s, step \d+: clearance -[\d.e-]+ m at the node of "
-                           r"column \d+, "
-                           r"row \d+ .*try a higher pressure")
+        error = self.stops({"tire.pressure": 15e3, "rig.carrier_mass": 3000, "rig.drop_height": 0.1,
+                            "rig.touchdown_damping": 0, "terrain.ground_stiffness": 2e7, "terrain.ground_damping": 5e3,
+                            "run.step": 2e-4, "run.end": 1.0}, r"tire 0 reached its rim at t = [\d.]+ s, step \d+: "
+                           r"clearance -[\d.e-]+ m at the node of column \d+, row \d+ .*try a higher pressure")
         time = float(re.search(r"t = ([\d.]+)", error)[1])
         self.assertGreater(time, math.sqrt(2 * 0.1 / 9.81))
 
@@ -129,15 +121,13 @@ class Pressure(TireTest):
         self.assertLess(abs(low["accounts"]["energy"]["residual_share"]), 0.05)
 
     def test_a_run_with_a_schedule_goes_on_bit_for_bit(self):
-        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]],
-                    "run.end": 0.06, "run.average_from": 0.02,
-                    "checkpoint.at_end": True}
+        settings = {**ROLLING, "tire.pressure": [[0.0, 2e5], [0.01, 2e5], [0.05, 8e4]], "run.end": 0.06,
+                    "run.average_from": 0.02, "checkpoint.at_end": True}
         whole, _ = self.ends_well(settings)
         (self.folder / "out").rename(self.folder / "whole")
         self.ends_well({**settings, "run.end": 0.03})
-        done = furrow("resume", self.folder / "out", "--until", "0.06", "--no-plots", cwd=self.folder, timeout=400)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        resumed = json.loads((self.folder / "out/summary.json").read_text())
+        self.furrow("resume", self.folder / "out", "--until", "0.06", "--no-plots", timeout=400)
+        resumed = read_json(self.folder / "out/summary.json")
         self.assertEqual(resumed["state_hash"], whole["state_hash"])
 
     def test_a_rigid_tire_does_not_mind(self):
@@ -155,7 +145,7 @@ class Pressure(TireTest):
                                   ([], "tire.pressure", r"a list of 1 to 10000 \[t, p\] in s and Pa"),
                                   ("soft", "tire.pressure", "expected a number")):
             with self.subTest(table):
-                done = self.start({"tire.pressure": table})
+                done = self.begin({"tire.pressure": table})
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertRegex(done.stderr, rf"furrow: error: .*tire.json: key '{key}': .*{words}")
 
@@ -166,9 +156,9 @@ class OtherTires(TireTest):
     def check(self, file, mass, stiffness):
         coarse = {"tire.file": file, "tire.elements_circumference": 40,
                   "tire.elements_width": 12, "rig.carrier_mass": mass}
-        done = self.start(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
+        done = self.begin(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
         self.assertEqual(done.returncode, 0, done.stderr)
-        press = json.loads((self.folder / "out/summary.json").read_text())
+        press = read_json(self.folder / "out/summary.json")
         self.assertLess(press["loading_unloading_difference"], 1e-3)
         self.assertTrue(stiffness[0] < press["secant_stiffness_N_per_m"] < stiffness[1], press)
         (self.folder / "out").rename(self.folder / "press")

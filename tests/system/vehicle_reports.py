@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import ROOT, SystemTest, furrow, main
+from program import ROOT, SystemTest, furrow, main, read_json, write_json
 from report_page import document
 
 sys.path.insert(0, str(ROOT / "scripts"))
@@ -59,12 +59,11 @@ def series(seed=1, **shape):
         wheels.append({"time_s": time, "slip": slip, "sinkage_m": sinkage, "sinkage_in_rut_m": in_rut,
                        "force_z_N": vertical, "iso_force_x_N": net, "iso_force_y_N": zero, "iso_force_z_N": vertical,
                        "tractive_effort_N": net + (700.0 if rear else 900.0),
-                       "terrain_resistance_N": (700.0 if rear else 900.0) + zero,
-                       "spindle_torque_Nm": (net + 900.0) * RADIUS, "speed_m_per_s": speed,
-                       "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
-                       "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way,
-                       "axle_height_m": height, "lowest_point_m": SURFACE - sinkage,
-                       "sinkage_kinematic_m": SURFACE - (height - RADIUS), "suspension_travel_m": zero})
+                       "terrain_resistance_N": (700.0 if rear else 900.0) + zero, "spindle_torque_Nm": (net + 900.0)
+                       * RADIUS, "speed_m_per_s": speed, "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
+                       "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way, "axle_height_m": height,
+                       "lowest_point_m": SURFACE - sinkage, "sinkage_kinematic_m": SURFACE - (height - RADIUS),
+                       "suspension_travel_m": zero})
     return vehicle, wheels
 
 
@@ -79,15 +78,15 @@ def write_run(folder, **shape):
     write_table(folder / "timeseries_vehicle.csv", vehicle)
     for k, wheel in enumerate(wheels):
         write_table(folder / f"timeseries_wheel{k}.csv", wheel)
-    (folder / "scenario.json").write_text(json.dumps({
+    write_json(folder / "scenario.json", {
         "rig": {"type": "vehicle", "vehicle": shape.get("vehicle", "hmmwv.json"), "lateral": 0.0},
         "run": {"end": shape.get("end", END), "average_from": 1.0},
-        "terrain": {"engine": "dem"}}))
-    (folder / "summary.json").write_text(json.dumps({
+        "terrain": {"engine": "dem"}})
+    write_json(folder / "summary.json", {
         "scenario": "made", "terrain_engine": "dem", "law": "mindlin", "grains": 3000,
         "ranks": [{"rank": 0, "node": "rig", "kind": "vehicle", "threads": 1,
                    "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 2.0}],
-        "wheels": [{"vertical_load_N": load, "lateral_m": TRACK * (-1) ** k} for k, load in enumerate(LOADS)]}))
+        "wheels": [{"vertical_load_N": load, "lateral_m": TRACK * (-1) ** k} for k, load in enumerate(LOADS)]})
     return vehicle, wheels
 
 
@@ -120,8 +119,7 @@ class Events(SystemTest):
     def told(self, *flags, code=0, **shape):
         folder = self.folder / f"run{len(list(self.folder.iterdir()))}"
         write_run(folder, **shape)
-        done = furrow("events", folder, *flags, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow("events", folder, *flags, code=code)
         return done
 
     def test_events_stand_at_the_times_that_the_series_have(self):
@@ -151,10 +149,9 @@ class Events(SystemTest):
         self.assertEqual(at["end", "vehicle"]["time_s"], END)
 
     def test_a_vehicle_of_ones_own_is_read_where_it_is(self):
-        car = json.loads((ROOT / "vehicle/data/hmmwv.json").read_text())
+        car = read_json(ROOT / "vehicle/data/hmmwv.json")
         car["driveline"]["gearbox"]["up_rpm"] *= 1.1
-        own = self.folder / "hmmwv.json"  # with the name of a shipped one
-        own.write_text(json.dumps(car))
+        own = write_json(self.folder / "hmmwv.json", car)  # with the name of a shipped one
         speed = [json.loads(self.told("--json", **file).stdout)["gear_balance"]["shift_wheel_speed_m_per_s"]
                  for file in ({}, {"vehicle": str(own)})]
         self.assertAlmostEqual(speed[1] / speed[0], 1.1, delta=1e-9)
@@ -221,29 +218,23 @@ class Events(SystemTest):
         write_run(folder)
         path = folder / "timeseries_wheel2.csv"
         path.write_text(path.read_text().replace("sinkage_m", "sinkage_x", 1))
-        done = furrow("events", folder, cwd=self.folder)
-        self.assertEqual(done.returncode, 5)
+        done = self.furrow("events", folder, code=5)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.assertIn("timeseries_wheel2.csv has no column sinkage_m", done.stderr)
         path.unlink()
-        done = furrow("events", folder, cwd=self.folder)
-        self.assertEqual(done.returncode, 5)
-        self.assertIn("timeseries_wheel2.csv is missing or empty, but there are tables of 3 wheels", done.stderr)
-        done = furrow("events", self.folder, cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("holds no run", done.stderr)
+        self.furrow("events", folder, code=5,
+                    says="timeseries_wheel2.csv is missing or empty, but there are tables of 3 wheels")
+        self.furrow("events", self.folder, code=2, says="holds no run")
 
 
 class Report(SystemTest):
     def test_all_wheels_and_the_vehicle_are_drawn(self):
         folder = self.folder / "run"
         write_frames(folder, *write_run(folder))
-        done = furrow("report", folder, cwd=self.folder, timeout=600)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow("report", folder, timeout=600)
         names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
-        self.assertEqual(names, {"vehicle.png", "wheel_forces.png", "wheel_motion.png",
-                                 "front_and_rear.png", "gear.png", "ranks.png",
-                                 "scene.png", "report.html"})
+        self.assertEqual(names, {"vehicle.png", "wheel_forces.png", "wheel_motion.png", "front_and_rear.png",
+                                 "gear.png", "ranks.png", "scene.png", "report.html"})
         for name in names - {"report.html"}:
             self.assertEqual((folder / name).read_bytes()[:4], b"\x89PNG")
         self.assertIn("no path.png: the driver follows no path", done.stderr)
@@ -252,13 +243,12 @@ class Report(SystemTest):
     def test_the_page_shows_the_events_and_the_names_of_the_wheels(self):
         folder = self.folder / "run"
         write_run(folder)
-        summary = json.loads((folder / "summary.json").read_text())
+        summary = read_json(folder / "summary.json")
         for wheel, name in zip(summary["wheels"], ("first_left", "first_right", "second_left", "second_right")):
             wheel["name"] = name
-        (folder / "summary.json").write_text(json.dumps(summary))
+        write_json(folder / "summary.json", summary)
         told = json.loads(furrow("events", folder, "--json", cwd=self.folder).stdout)["events"]
-        done = furrow("report", folder, cwd=self.folder, timeout=600)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("report", folder, timeout=600)
         about, _ = document(folder / "report.html")
         events, = (section["blocks"][0] for section in about["sections"] if section["id"] == "events")
         self.assertEqual(events["columns"], ["time, s", "what", "of", "value", "threshold"])

@@ -2,19 +2,17 @@
 """Whole vehicles as users run them: the shipped scenarios begin, the tables say what vehicle, driver and wheels do, and
 what is wrong is told in one line."""
 import csv
-import json
 
 import h5py
 
-from program import ROOT, SystemTest, furrow, main
+from program import ROOT, SystemTest, main, read_json, write_json
 
 QUICK = ["--set", "tire.rigid=true", "--set", "output.frame_interval=0", "--no-plots"]
 
 
 class Vehicles(SystemTest):
     def run_it(self, name, *flags, code=0):
-        done = furrow("run", ROOT / "rigs" / name, "--out", self.folder / "out", *flags, cwd=self.folder, timeout=600)
-        self.assertEqual(done.returncode, code, done.stderr)
+        done = self.furrow("run", ROOT / "rigs" / name, "--out", self.folder / "out", *flags, timeout=600, code=code)
         return done
 
     def table(self, subject):
@@ -22,7 +20,7 @@ class Vehicles(SystemTest):
             return [{key: float(value) for key, value in line.items()} for line in csv.DictReader(file)]
 
     def summary(self):
-        return json.loads((self.folder / "out" / "summary.json").read_text())
+        return read_json(self.folder / "out" / "summary.json")
 
     def test_the_car_on_hard_ground_is_let_down_stands_and_drives_off(self):
         done = self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
@@ -78,23 +76,21 @@ class Vehicles(SystemTest):
         self.assertAlmostEqual(summary["vehicle"]["mass_kg"], 2470.4, delta=0.1)
 
     def test_a_car_that_tips_over_on_a_side_slope_ends_its_run(self):
-        top_heavy = json.loads((ROOT / "vehicle/data/hmmwv.json").read_text())
+        top_heavy = read_json(ROOT / "vehicle/data/hmmwv.json")
         top_heavy["chassis"]["center_of_mass"][2] = 1.3
         for axle in top_heavy["axles"]:
             axle["wheel"]["tire"] = str(ROOT / "tire/data" / axle["wheel"]["tire"])
-        (self.folder / "top_heavy.json").write_text(json.dumps(top_heavy))
+        write_json(self.folder / "top_heavy.json", top_heavy)
         told = self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json",
-                           "--set", "rig.driver=null",
-                           "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65", "--set", "run.step=5e-4",
-                           "--set", "run.end=2", "--set", "run.average_from=0.5")
+                           "--set", "rig.driver=null", "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65",
+                           "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "run.average_from=0.5")
         self.assertIn("s, before 2 s: the vehicle has turned over", told.stderr)
         self.assertEqual(self.summary()["end_reason"], "overturned")
         self.assertLess(self.summary()["end_time_s"], 1.9)
 
     def test_grains_on_a_slope_carry_the_car_and_its_momentum_closes(self):
-        coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3",
-                  "--set", "terrain.length=6", "--set", "rig.driver=null",
-                  "--set", "rig.start=3", "--set", "tire.contact_tangent=false"]
+        coarse = ["--set", "terrain.radius=0.05", "--set", "terrain.layers=3", "--set", "terrain.length=6",
+                  "--set", "rig.driver=null", "--set", "rig.start=3", "--set", "tire.contact_tangent=false"]
         self.run_it("hmmwv_small.json", *QUICK, *coarse, "--set", "rig.slope=0.1", "--set", "run.end=1.2",
                     "--set", "run.average_from=0.8", "--set", "run.step=2e-4")
         wheels = [self.table(f"wheel{k}") for k in range(4)]
@@ -120,30 +116,26 @@ class Vehicles(SystemTest):
         self.assertIn("sinkage_in_rut_m", self.table("wheel5")[0])
 
     def test_a_run_is_not_continued_with_another_vehicle(self):
-        car = json.loads((ROOT / "vehicle/data/hmmwv.json").read_text())
-        scenario = json.loads((ROOT / "rigs/hmmwv_rigid.json").read_text())
+        car = read_json(ROOT / "vehicle/data/hmmwv.json")
+        scenario = read_json(ROOT / "rigs/hmmwv_rigid.json")
         scenario["rig"]["vehicle"] = "mine.json"
-        (self.folder / "mine.json").write_text(json.dumps(car))
-        (self.folder / "car.json").write_text(json.dumps(scenario))
+        write_json(self.folder / "mine.json", car)
+        write_json(self.folder / "car.json", scenario)
         self.run_it(self.folder / "car.json", *QUICK, "--set", "run.end=0.02", "--set", "run.average_from=0.01")
         car["axles"][0]["suspension"]["shock"]["rebound"] *= 2  # the masses stay
-        (self.folder / "mine.json").write_text(json.dumps(car))
-        done = furrow("resume", self.folder / "out", "--until", "0.04", "--no-plots", cwd=self.folder, timeout=300)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn(f"key 'rig.vehicle': '{self.folder / 'mine.json'}' was changed since the run began, expected the "
-                      f"file that it "
-                      "was computed with", done.stderr)
+        write_json(self.folder / "mine.json", car)
+        self.furrow("resume", self.folder / "out", "--until", "0.04", "--no-plots", timeout=300, code=2,
+                    says=f"key 'rig.vehicle': '{self.folder / 'mine.json'}' was changed since the run began, expected "
+                    "the file that it was computed with")
 
     def test_every_shipped_scenario_of_a_vehicle_is_valid(self):
         names = [path.name for path in (ROOT / "rigs").glob("*.json")
-                 if json.loads(path.read_text()).get("rig", {}).get("type") == "vehicle"]
+                 if read_json(path).get("rig", {}).get("type") == "vehicle"]
         self.assertGreaterEqual(len(names), 3)
         for name in names:
-            done = furrow("validate", ROOT / "rigs" / name, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.furrow("validate", ROOT / "rigs" / name)
             self.assertIn("vehicle ", done.stdout)
-            ranks = furrow("ranks", ROOT / "rigs" / name, cwd=self.folder)
-            self.assertEqual(ranks.returncode, 0, ranks.stderr)
+            self.furrow("ranks", ROOT / "rigs" / name)
 
     def test_what_is_wrong_is_told_in_one_line_before_anything_is_written(self):
         for setting, message in (
@@ -157,13 +149,11 @@ class Vehicles(SystemTest):
                 ("rig.type=drawbar", "key 'tire.file': is missing")):
             with self.subTest(setting=setting):
                 flags = [] if setting.startswith("tires") else QUICK
-                scenario = json.loads((ROOT / "rigs" / "hmmwv_rigid.json").read_text())
+                scenario = read_json(ROOT / "rigs" / "hmmwv_rigid.json")
                 del scenario["tire"]
-                path = self.folder / "car.json"
-                path.write_text(json.dumps(scenario))
-                done = furrow("run", path, "--out", self.folder / "out", "--set", setting, *flags, cwd=self.folder)
-                self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(message, done.stderr)
+                path = write_json(self.folder / "car.json", scenario)
+                done = self.furrow("run", path, "--out", self.folder / "out", "--set", setting, *flags, code=2,
+                                   says=message)
                 self.assertEqual(done.stderr.count("error"), 1, done.stderr)
                 self.assertFalse((self.folder / "out").exists())
 

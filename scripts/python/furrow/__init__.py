@@ -10,25 +10,30 @@ Old results are opened by furrow.open(folder). See scripts/python/README.md.
 """
 from __future__ import annotations
 
+import pathlib
 from types import ModuleType
 
 from . import _needs  # noqa: F401  first: it names the packages that are missing
-from ._scripts import Damaged, Missing
+
+# The folder scripts/: furrow.plot is scripts/plot, whose readers and plots `furrow report` uses as well.
+__path__.append(str(pathlib.Path(__file__).resolve().parents[2]))
+
 from .commands import calibrate, kc, modes, press, resume, run, soil, sweep
 from .errors import (BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, ProgramFault, RankLost,
                      Stopped)
-from .frames import Frame, Frames, GrainFrame, TireFrame
 from .opening import Opened, open
+from .plot.frames import Frame, Frames, GrainFrame, TireFrame
+from .plot.run_data import Damaged, Missing
 from .runs import Run
 from .studies import Study
 from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
-__all__ = [
-    "BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError",
-    "GrainFrame", "InputOutputError", "Kinematics",
-    "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "ProgramFault",
-    "RankLost", "Run", "Soil", "Stopped", "Study",
-    "TireFrame", "calibrate", "kc", "modes", "open", "plots", "press", "resume", "run", "soil", "sweep"]
+__all__ = ["BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError", "GrainFrame", "InputOutputError",
+           "Kinematics", "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "ProgramFault",
+           "RankLost", "Run", "Soil", "Stopped", "Study", "TireFrame", "calibrate", "kc", "modes", "open", "plots",
+           "press", "resume", "run", "soil", "sweep"]
+
+Missing.__module__ = Damaged.__module__ = __name__  # where a user finds them
 
 
 def __getattr__(name: str) -> ModuleType:

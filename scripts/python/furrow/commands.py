@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import pathlib
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from ._program import Content, File, as_file, call, named_file, ROOT
 from ._settings import arguments
@@ -14,12 +14,22 @@ from .studies import Study
 from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
 
-def _out(out: File | None, overwrite: bool) -> list[str]:
-    return ([f"--out={os.fspath(out)}"] if out is not None else []) + (["--overwrite"] if overwrite else [])
+Kind = TypeVar("Kind", Run, Study, Press, Modes, Kinematics, Calibration)
 
 
-def _opened(printed: str) -> Any:
-    return open(printed.splitlines()[-1])
+def _options(out: File | None, overwrite: bool = False, plots: bool = True, **given: Any) -> list[str]:
+    """Options of a command; those that are None are left out."""
+    values = {"out": out and os.fspath(out), **given}
+    return [f"--{name}={value}" for name, value in values.items() if value is not None] + (
+        ["--overwrite"] if overwrite else []) + ([] if plots else ["--no-plots"])
+
+
+def _call(kind: type[Kind], command: str, file: File, options: list[str], progress: bool) -> Kind:
+    """Runs the command and opens the folder that it prints."""
+    printed, _ = call([command, *options, "--", os.fspath(file)], progress)
+    opened = open(printed.splitlines()[-1])
+    assert isinstance(opened, kind)
+    return opened
 
 
 def run(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, seeds: int | None = None,
@@ -38,21 +48,17 @@ def run(scenario: File | Content, *, out: File | None = None, overwrite: bool = 
     Raises a FurrowError with the program's message and exit code: BadInput, PhysicsFailed, …; its `directory` can be
     opened. An interrupt stops the run with a checkpoint.
     """
-    options = _out(out, overwrite) + ([] if plots else ["--no-plots"]) + arguments(settings, keys)
-    options += [f"--{name}={value}" for name, value in (("seeds", seeds), ("jobs", jobs)) if value is not None]
+    options = _options(out, overwrite, plots, seeds=seeds, jobs=jobs) + arguments(settings, keys)
     with as_file(scenario, "scenario") as path:
-        printed, _ = call(["run", *options, "--", os.fspath(path)], progress)
-    opened: Run | Study = _opened(printed)
-    return opened
+        if seeds is not None:
+            return _call(Study, "run", path, options, progress)
+        return _call(Run, "run", path, options, progress)
 
 
 def resume(directory: File, *, plots: bool = False, progress: bool = True, settings: Mapping[str, Any] | None = None,
            **keys: Any) -> Run:
     """Continues a run from its last checkpoint and opens it. run__end=… moves its end. Raises FurrowError."""
-    options = ([] if plots else ["--no-plots"]) + arguments(settings, keys)
-    printed, _ = call(["resume", *options, "--", os.fspath(directory)], progress)
-    opened: Run = _opened(printed)
-    return opened
+    return _call(Run, "resume", directory, _options(None, plots=plots) + arguments(settings, keys), progress)
 
 
 def _study(content: Content) -> Content:
@@ -78,9 +84,7 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     with as_file(_study(study) if isinstance(study, Mapping) else study, "study") as path:
         if path.parent == pathlib.Path(".") and not path.exists() and (ROOT / "rigs" / path).exists():
             path = ROOT / "rigs" / path
-        printed, _ = call(["sweep", *_out(out, False), f"--jobs={jobs}", "--", os.fspath(path)], progress)
-    opened: Study = _opened(printed)
-    return opened
+        return _call(Study, "sweep", path, _options(out, jobs=jobs), progress)
 
 
 def calibrate(study: File, *, out: File | None = None, overwrite: bool = False,
@@ -89,10 +93,7 @@ def calibrate(study: File, *, out: File | None = None, overwrite: bool = False,
 
     study   a file, or the name of a shipped one ("calibrate_ring"); its results are in results/study unless `out` says
     """
-    options = _out(out, overwrite) + ([] if plots else ["--no-plots"])
-    printed, _ = call(["calibrate", *options, "--", os.fspath(named_file(study))], progress)
-    opened: Calibration = _opened(printed)
-    return opened
+    return _call(Calibration, "calibrate", named_file(study), _options(out, overwrite, plots), progress)
 
 
 def press(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, on: str | None = None,
@@ -107,46 +108,31 @@ def press(scenario: File | Content, *, out: File | None = None, overwrite: bool 
     load         of the footprint, N
     camber       of the wheel, rad; shells only
     """
-    given = {"on": on, "deflection": deflection, "load": load, "points": points, "camber": camber}
-    options = [f"--{name}={value}" for name, value in given.items() if value is not None]
+    options = _options(out, overwrite, on=on, deflection=deflection, load=load, points=points, camber=camber)
     with as_file(scenario, "scenario") as path:
-        printed, _ = call(["press", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)],
-                          progress)
-    opened: Press = _opened(printed)
-    return opened
+        return _call(Press, "press", path, options + arguments(settings, keys), progress)
 
 
-def modes(tire: File, *, out: File | None = None, overwrite: bool = False,
-          orders: int | None = None, count: int | None = None,
-          pressure: float | None = None, plots: bool = False, progress: bool = True) -> Modes:
+def modes(tire: File, *, out: File | None = None, overwrite: bool = False, orders: int | None = None,
+          count: int | None = None, pressure: float | None = None, plots: bool = False, progress: bool = True) -> Modes:
     """Computes the natural frequencies of a tire on a rim at rest and opens them.
 
     tire       a tire file, as given or one that comes with the program
     orders     highest circumferential order; `count` frequencies of each
     pressure   of inflation, Pa; None: the file's
     """
-    given = {"orders": orders, "count": count, "pressure": pressure}
-    options = [f"--{name}={value}" for name, value in given.items()
-               if value is not None] + ([] if plots else ["--no-plots"])
-    printed, _ = call(["modes", *_out(out, overwrite), *options, "--", os.fspath(tire)], progress)
-    opened: Modes = _opened(printed)
-    return opened
+    options = _options(out, overwrite, plots, orders=orders, count=count, pressure=pressure)
+    return _call(Modes, "modes", tire, options, progress)
 
 
-def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False,
-       travel: float | None = None, points: int | None = None,
-       plots: bool = False, progress: bool = True) -> Kinematics:
+def kc(vehicle: File, *, out: File | None = None, overwrite: bool = False, travel: float | None = None,
+       points: int | None = None, plots: bool = False, progress: bool = True) -> Kinematics:
     """Moves the suspensions of a vehicle and opens what was tabulated.
 
     vehicle   a vehicle file, as given or one that comes with the program
     travel    of the wheels up and down, m; `points` of each motion
     """
-    given = {"travel": travel, "points": points}
-    options = [f"--{name}={value}" for name, value in given.items()
-               if value is not None] + ([] if plots else ["--no-plots"])
-    printed, _ = call(["kc", *_out(out, overwrite), *options, "--", os.fspath(vehicle)], progress)
-    opened: Kinematics = _opened(printed)
-    return opened
+    return _call(Kinematics, "kc", vehicle, _options(out, overwrite, plots, travel=travel, points=points), progress)
 
 
 def soil(scenario: File | Content, *, out: File | None = None, overwrite: bool = False, quick: bool = False,
@@ -158,10 +144,8 @@ def soil(scenario: File | Content, *, out: File | None = None, overwrite: bool =
     seeds   beds per test
     only    this test only: "plate", "shear", "cone" or "repose"
     """
-    options = [f"--{name}={value}" for name, value in (("seeds", seeds), ("only", only)) if value is not None]
-    options += ["--quick"] if quick else []
+    options = _options(out, overwrite, seeds=seeds, only=only) + (["--quick"] if quick else [])
     with as_file(scenario, "scenario") as path:
-        _, folder = call(["soil", *_out(out, overwrite), *options, *arguments(settings, keys), "--", os.fspath(path)],
-                         progress)
+        _, folder = call(["soil", *options, *arguments(settings, keys), "--", os.fspath(path)], progress)
     assert folder
     return Soil(folder)

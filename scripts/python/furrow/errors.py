@@ -45,9 +45,8 @@ class Stopped(FurrowError):
     """Exit code 75: the program was stopped by a signal. `furrow resume` continues the run."""
 
 
-BY_EXIT_CODE: dict[int, type[FurrowError]] = {
-    2: BadInput, 3: PhysicsFailed, 4: RankLost, 5: InputOutputError, 6: LimitReached, 70: ProgramFault,
-    75: Stopped}
+BY_EXIT_CODE: dict[int, type[FurrowError]] = {2: BadInput, 3: PhysicsFailed, 4: RankLost, 5: InputOutputError,
+                                              6: LimitReached, 70: ProgramFault, 75: Stopped}
 
 
 def error_of(message: str, exit_code: int, directory: pathlib.Path | None) -> FurrowError:

@@ -4,138 +4,77 @@ Raises Missing when what a plot shows is not there, Damaged (a ValueError) when 
 """
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import matplotlib
 from matplotlib.figure import Figure
 
-from ._scripts import drawing, style
+from . import virtual_tests as tests
 from .runs import Run
 from .studies import Study
-from .virtual_tests import Kinematics, Modes, Press, Soil
+
+with matplotlib.rc_context():  # the import sets the look of these plots; for those of the user all stays as it is
+    from .plot import accounts, charts, ground, kinematics, modes, press, soil, style
+    from .plot import scene as scenes
+    from .plot import sweep as sweep
+
+Opened = TypeVar("Opened")
 
 
-def _draw(where: str, name: str, shown: Any) -> Figure:
-    with matplotlib.rc_context(style()):
-        figure = getattr(drawing(where), name)(shown)
-    assert isinstance(figure, Figure)
-    return figure
+def _plot(draw: Callable[[Any], Figure], read: Callable[[Opened], Any], about: str) -> Callable[[Opened], Figure]:
+    """A function of this package that draws what `read` makes of the opened folder."""
+    def plot(opened: Opened) -> Figure:
+        with matplotlib.rc_context(style.LOOK):
+            return draw(read(opened))
+    plot.__name__, plot.__doc__ = draw.__name__, about
+    return plot
 
 
-def _of(where: str, kind: str, opened: Study | Soil | Press | Modes | Kinematics) -> Any:
-    return getattr(drawing(where), kind)(opened.directory)
+def _run(opened: Run) -> Any:
+    return opened._run
 
 
-def pull_slip_sinkage(run: Run) -> Figure:
-    """Drawbar pull with its mean, slip and sinkage over time."""
-    return _draw("charts", "pull_slip_sinkage", run._run)
+def _study(opened: Study) -> Any:
+    return sweep.Sweep(opened.directory)
 
 
-def forces(run: Run) -> Figure:
-    """Vertical force, forces along the travel and spindle torque over time."""
-    return _draw("charts", "forces", run._run)
+def _soil(opened: tests.Soil) -> Any:
+    return soil.Soil(opened.directory)
 
 
-def ranks(run: Run) -> Figure:
-    """How long each rank computed, communicated and waited."""
-    return _draw("charts", "ranks", run._run)
+def _press(opened: tests.Press) -> Any:
+    return press.Press(opened.directory)
 
 
-def rut(run: Run) -> Figure:
-    """The surface from above, across and along the path."""
-    return _draw("ground", "rut", run._run)
+def _modes(opened: tests.Modes) -> Any:
+    return modes.Modes(opened.directory)
 
 
-def energy(run: Run) -> Figure:
-    """The account of energy, over time and by mechanism."""
-    return _draw("accounts", "energy", run._run)
+def _kinematics(opened: tests.Kinematics) -> Any:
+    return kinematics.Kinematics(opened.directory)
 
 
-def momentum(run: Run) -> Figure:
-    """The account of momentum."""
-    return _draw("accounts", "momentum", run._run)
-
-
-def scene(run: Run) -> Figure:
-    """The tire on the bed in the last frame."""
-    return _draw("scene", "scene", run._run)
-
-
-def curve(study: Study) -> Figure:
-    """The curve that the study asks for, with intervals."""
-    return _draw("sweep", "curve", _of("sweep", "Sweep", study))
-
-
-def passes(study: Study) -> Figure:
-    """Results pass by pass of several passes in one rut."""
-    return _draw("sweep", "passes", _of("sweep", "Sweep", study))
-
-
-def rut_along(study: Study) -> Figure:
-    """The rut along the track, pass by pass."""
-    return _draw("sweep", "rut_along", _of("sweep", "Sweep", study))
-
-
-def beds(study: Study) -> Figure:
-    """The results of each bed and their mean with its interval."""
-    return _draw("sweep", "beds", _of("sweep", "Sweep", study))
-
-
-def plate(soil: Soil) -> Figure:
-    """Pressure against sinkage."""
-    return _draw("soil", "plate", _of("soil", "Soil", soil))
-
-
-def shear(soil: Soil) -> Figure:
-    """Shear stress against displacement, and the strength."""
-    return _draw("soil", "shear", _of("soil", "Soil", soil))
-
-
-def cone(soil: Soil) -> Figure:
-    """Cone resistance against depth."""
-    return _draw("soil", "cone", _of("soil", "Soil", soil))
-
-
-def repose(soil: Soil) -> Figure:
-    """The slope that is left when a wall is taken away."""
-    return _draw("soil", "repose", _of("soil", "Soil", soil))
-
-
-def load_deflection(press: Press) -> Figure:
-    """Force against deflection of a pressed tire."""
-    return _draw("press", "load_deflection", _of("press", "Press", press))
-
-
-def footprint(press: Press) -> Figure:
-    """Contact pressure of a pressed tire."""
-    return _draw("press", "footprint", _of("press", "Press", press))
-
-
-def frequencies(modes: Modes) -> Figure:
-    """Natural frequencies against the circumferential order."""
-    return _draw("modes", "frequencies", _of("modes", "Modes", modes))
-
-
-def mode_shapes(modes: Modes) -> Figure:
-    """The first modes seen from the side."""
-    return _draw("modes", "mode_shapes", _of("modes", "Modes", modes))
-
-
-def mode_sections(modes: Modes) -> Figure:
-    """Sections of the tire in the first modes."""
-    return _draw("modes", "mode_sections", _of("modes", "Modes", modes))
-
-
-def parallel(kinematics: Kinematics) -> Figure:
-    """Suspensions against travel of both wheels of an axle."""
-    return _draw("kinematics", "parallel", _of("kinematics", "Kinematics", kinematics))
-
-
-def opposite(kinematics: Kinematics) -> Figure:
-    """Suspensions against opposite travel of the wheels of an axle."""
-    return _draw("kinematics", "opposite", _of("kinematics", "Kinematics", kinematics))
-
-
-def steering(kinematics: Kinematics) -> Figure:
-    """Suspensions against steering."""
-    return _draw("kinematics", "steering", _of("kinematics", "Kinematics", kinematics))
+pull_slip_sinkage = _plot(charts.pull_slip_sinkage, _run, "Drawbar pull with its mean, slip and sinkage over time.")
+forces = _plot(charts.forces, _run, "Vertical force, forces along the travel and spindle torque over time.")
+ranks = _plot(charts.ranks, _run, "How long each rank computed, communicated and waited.")
+rut = _plot(ground.rut, _run, "The surface from above, across and along the path.")
+energy = _plot(accounts.energy, _run, "The account of energy, over time and by mechanism.")
+momentum = _plot(accounts.momentum, _run, "The account of momentum.")
+scene = _plot(scenes.scene, _run, "The tire on the bed in the last frame.")
+curve = _plot(sweep.curve, _study, "The curve that the study asks for, with intervals.")
+passes = _plot(sweep.passes, _study, "Results pass by pass of several passes in one rut.")
+rut_along = _plot(sweep.rut_along, _study, "The rut along the track, pass by pass.")
+beds = _plot(sweep.beds, _study, "The results of each bed and their mean with its interval.")
+plate = _plot(soil.plate, _soil, "Pressure against sinkage.")
+shear = _plot(soil.shear, _soil, "Shear stress against displacement, and the strength.")
+cone = _plot(soil.cone, _soil, "Cone resistance against depth.")
+repose = _plot(soil.repose, _soil, "The slope that is left when a wall is taken away.")
+load_deflection = _plot(press.load_deflection, _press, "Force against deflection of a pressed tire.")
+footprint = _plot(press.footprint, _press, "Contact pressure of a pressed tire.")
+frequencies = _plot(modes.frequencies, _modes, "Natural frequencies against the circumferential order.")
+mode_shapes = _plot(modes.mode_shapes, _modes, "The first modes seen from the side.")
+mode_sections = _plot(modes.mode_sections, _modes, "Sections of the tire in the first modes.")
+parallel = _plot(kinematics.parallel, _kinematics, "Suspensions against travel of both wheels of an axle.")
+opposite = _plot(kinematics.opposite, _kinematics, "Suspensions against opposite travel of the wheels of an axle.")
+steering = _plot(kinematics.steering, _kinematics, "Suspensions against steering.")

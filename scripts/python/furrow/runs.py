@@ -10,8 +10,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ._scripts import Missing, run_data
-from .frames import Frames, GrainFrame, TireFrame
+from .plot import run_data
+from .plot.frames import Frames, GrainFrame, TireFrame
+from .plot.run_data import Missing
+from .plot.vtk import write_kinds
 from .tables import dataset_of, frame_of
 
 
@@ -160,8 +162,8 @@ class Run:
 
         Returns the folder. Any VTK or ParaView opens them.
         """
-        from .vtk import write_run
-        return write_run(self, pathlib.Path(folder))
+        kinds = {f"tire{wheel}": self.tire(wheel) for wheel in range(max(1, len(self._wheel_names)))}
+        return pathlib.Path(write_kinds(pathlib.Path(folder), {**kinds, "terrain": self.grains}))
 
     def __repr__(self) -> str:
         return f"<Run {self.name} in {self.directory}: {self.state}; {', '.join(self.subjects)}>"

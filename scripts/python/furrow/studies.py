@@ -7,7 +7,8 @@ from typing import Any
 
 import pandas as pd
 
-from ._scripts import Missing, drawing, run_data
+from .plot import run_data
+from .plot.run_data import Missing
 from .runs import Run
 from .tables import frame_of, read_csv
 
@@ -65,7 +66,8 @@ class Study:
         if rows.empty:
             raise Missing(f"{self.directory}: no such run is done")
         lines = [{name: str(value) for name, value in row.items()} for row in rows.to_dict("records")]
-        values = drawing("sweep").points(lines, x, y, error, mean_over)
+        from .plots import sweep  # which needs matplotlib
+        values = sweep.points(lines, x, y, error, mean_over)
         table = frame_of({x: values[0], y: values[1], "half_bar": values[2]})
         table["unsteady"] = values[3].astype(bool)
         return table

@@ -1,20 +1,14 @@
 """Units of columns, which their names end in: `drawbar_pull_N`, `speed_m_per_s`."""
 from __future__ import annotations
 
-# As results.h5 has them, longest first.
-ENDINGS = {
-    "kg_m_per_s": "kg m/s", "rad_per_s": "rad/s", "m_per_s2": "m/s2", "m_per_s": "m/s",
-    "m_s": "m/s", "rpm": "1/min", "N_per_m": "N/m",
-    "rad": "rad", "Nm": "N m", "Ns": "N s", "Pa": "Pa", "kg": "kg", "s": "s", "m": "m", "N": "N", "J": "J", "W": "W"}
+from typing import Any
+
+from .plot.units import ending_of
 
 
-def _ending(name: str) -> str | None:
+def _ending(name: str) -> Any:
     """Of a key such as drawbar_pull_N.mean, that of the last part that has one."""
-    for part in reversed(name.split(".")):
-        for ending in ENDINGS:
-            if part.endswith(f"_{ending}"):
-                return ending
-    return None
+    return next(filter(None, map(ending_of, reversed(name.split(".")))), None)
 
 
 def unit(name: str) -> str:
@@ -24,7 +18,7 @@ def unit(name: str) -> str:
     ('N m', '1', 'N')
     """
     ending = _ending(name)
-    return ENDINGS[ending] if ending else "1"
+    return str(ending[1]) if ending else "1"
 
 
 def long_name(name: str) -> str:
@@ -34,4 +28,4 @@ def long_name(name: str) -> str:
     'spindle force x'
     """
     ending = _ending(name)
-    return (name.removesuffix(f"_{ending}") if ending else name).replace("_", " ")
+    return (name.removesuffix(f"_{ending[0]}") if ending else name).replace("_", " ")

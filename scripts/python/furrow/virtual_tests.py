@@ -8,7 +8,8 @@ from typing import Any
 
 import pandas as pd
 
-from ._scripts import Missing, run_data
+from .plot import run_data
+from .plot.run_data import Missing
 from .tables import read_csv
 
 

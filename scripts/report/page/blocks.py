@@ -2,8 +2,8 @@
 from plot.digits import digits, with_error
 from plot.run_data import printable
 from plot.student import student
+from plot.units import is_number, naming
 
-from .names import is_number, naming
 
 
 def text(words, kind="plain"):
@@ -23,8 +23,7 @@ def cards(items):
 def table(columns, rows, note="", marked=(), only_marked=""):
     """Rows of texts. With `only_marked` (the words beside a box to tick) the marked rows can be shown alone."""
     return {"type": "table", "columns": columns, "rows": [[printable(cell) for cell in row] for row in rows],
-            "note": note,
-            "marked": list(marked), "only_marked": only_marked}
+            "note": note, "marked": list(marked), "only_marked": only_marked}
 
 
 def bars(rows, note=""):

@@ -2,9 +2,9 @@
 import numpy as np
 
 from plot.calibrate import quantity
+from plot.units import is_number
 
 from . import blocks
-from .names import is_number
 
 MOST_LINES = 40  # of one chart
 
@@ -69,10 +69,9 @@ def figures(run):
         for target in run.values.get(key) or []:
             for f in target.get("figures") or []:
                 surrogate, span = f.get("surrogate") or {}, f.get("evaluations_span") or []
-                rows.append([f.get("label", ""), text_of(f.get("target")),
-                             text_of(f.get("sigma"), ".2g"), text_of(f.get("evaluated")),
-                             text_of(f.get("standard_error"), ".2g"), text_of(surrogate.get("value")),
-                             text_of(surrogate.get("standard_error"), ".2g"),
+                rows.append([f.get("label", ""), text_of(f.get("target")), text_of(f.get("sigma"), ".2g"),
+                             text_of(f.get("evaluated")), text_of(f.get("standard_error"), ".2g"),
+                             text_of(surrogate.get("value")), text_of(surrogate.get("standard_error"), ".2g"),
                              " … ".join(text_of(value) for value in span),
                              str(f.get("state", "" if key == "targets" else "held out"))])
     if not rows:
@@ -97,8 +96,7 @@ def curves(run, arrays):
                           "y": arrays.add(factor * target["data"]), "style": "points"})
             if np.isfinite(target["model"]).all():
                 lines.append({"label": f"{target['name']}, {'predicted' if target['held_out'] else 'fitted'}",
-                              "x": place,
-                              "y": arrays.add(factor * target["model"]), "style": "line"})
+                              "x": place, "y": arrays.add(factor * target["model"]), "style": "line"})
         items.append({**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines[:MOST_LINES]), "wide": True})
     table = figures(run)
     return {"id": "series", "title": "Data and model",

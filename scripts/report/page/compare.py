@@ -3,9 +3,9 @@ import numpy as np
 
 from plot.digits import digits
 from plot.run_data import Missing
+from plot.units import is_number, naming
 
 from . import blocks, curves, run_page, scenario
-from .names import is_number, naming
 
 KEYS = (("drawbar_pull_N", "drawbar pull"), ("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth"),
         ("drawbar_coefficient", "pull over load"),
@@ -56,9 +56,8 @@ def results(runs, arrays):
     if missing:
         made.append(blocks.text(f"Without a summary (failed, stopped or still running): {', '.join(missing)}.", "warn"))
     if items:
-        made.append(blocks.charts(items,
-                                  "Whiskers: 95 % interval of each run's own mean. It does not cover the scatter "
-                                  "between beds."))
+        made.append(blocks.charts(items, "Whiskers: 95 % interval of each run's own mean. It does not cover the "
+                                  "scatter between beds."))
     return {"id": "answer", "title": "Results", "blocks": made}
 
 

@@ -2,10 +2,10 @@
 import numpy as np
 
 from plot.run_data import Missing
+from plot.units import naming
 
 from . import blocks
 from .blobs import thin
-from .names import naming
 
 MOST_WHEELS = 16  # in one plot
 NOISE = 1e-9  # a column that never exceeds it shows nothing but rounding
@@ -23,9 +23,8 @@ WHEEL = (("Drawbar pull", ("drawbar_pull_N", "tractive_effort_N", "terrain_resis
          ("Share of grains awake", ("active_share",)))
 
 # One column over all wheels.
-WHEELS = ("vertical_force_N", "slip", "sinkage_m", "spindle_torque_Nm",
-          "tractive_effort_N", "lateral_force_N", "speed_m_per_s",
-          "suspension_travel_m", "spring_force_N", "shock_force_N", "wheel_steer_rad",
+WHEELS = ("vertical_force_N", "slip", "sinkage_m", "spindle_torque_Nm", "tractive_effort_N", "lateral_force_N",
+          "speed_m_per_s", "suspension_travel_m", "spring_force_N", "shock_force_N", "wheel_steer_rad",
           "wheel_camber_rad", "drawbar_pull_N")
 
 VEHICLE = (("Speed", ("speed_m_s", "target_speed_m_per_s")),
@@ -77,9 +76,8 @@ def plain(table, groups, window, errors=None):
             levels = [level for name in names for level in (errors or {}).get(name, ())]
             if title == "Drawbar pull" and "drawbar_pull_N" not in names:
                 title = "Tractive effort and terrain resistance"
-            items.append({**blocks.chart(title, "time", "s", naming(names[0])[1],
-                                         [table.line(name) for name in names], window, levels),
-                          "whole": names == ["gear"]})
+            items.append({**blocks.chart(title, "time", "s", naming(names[0])[1], [table.line(name) for name in names],
+                                         window, levels), "whole": names == ["gear"]})
             limit_slip(items[-1], names[0], table)
     return items
 

@@ -56,9 +56,8 @@ def read_tire(path):
     with h5py.File(path, "r") as file:
         position = np.nan_to_num(table(file, "position", 3).astype(float))
         triangle = table(file, "triangle", 3).astype(int)
-        vectors = [np.linalg.norm(np.nan_to_num(table(file, name, 3).astype(float)), axis=1)
-                   if name in file else np.zeros(len(position))
-                   for name in ("force", "velocity")]
+        vectors = [np.linalg.norm(np.nan_to_num(table(file, name, 3).astype(float)), axis=1) if name in file
+                   else np.zeros(len(position)) for name in ("force", "velocity")]
         time = float(np.asarray(file.attrs.get("time_s", np.nan), float).ravel()[0])
     if not (0 < len(position) <= 65000 and len(triangle)) or triangle.min() < 0 or triangle.max() >= len(position):
         raise Damaged(f"{path.name} holds no surface that could be drawn")

@@ -5,7 +5,6 @@ from plot.run_data import Missing
 
 from . import blocks
 from .frames import pack
-from .names import is_number
 
 
 def chassis(run, times, arrays):
@@ -19,10 +18,7 @@ def chassis(run, times, arrays):
 
 def profile(run):
     """The profile of hard ground, [[x, z], …] in m; empty without one."""
-    terrain = run.scenario.get("terrain")
-    points = terrain.get("profile") if isinstance(terrain, dict) else None
-    return points if isinstance(points, list) and all(isinstance(point, list) and len(point) == 2
-                                                      and all(map(is_number, point)) for point in points) else []
+    return (run.scenario.get("terrain") or {}).get("profile") or []
 
 
 def meshes(packing, arrays):
@@ -44,12 +40,11 @@ def left_out(packing):
     if bed and len(bed.shown) < bed.total:
         hidden = bed.total - bed.visible
         words.append(f"{len(bed.shown):,} of {bed.total:,} grains are drawn: "
-                     + (f"{hidden:,} are covered by others all the time" if hidden else "")
-                     + (" and " if hidden and bed.visible > len(bed.shown) else "")
+                     + (f"{hidden:,} are covered by others all the time" if hidden else "") + (" and " if hidden
+                                                                                               and bed.visible
+                                                                                               > len(bed.shown) else "")
                      + (f"{bed.visible - len(bed.shown):,} farthest from the wheels were left out to keep the page "
-                        f"small"
-                        if bed.visible > len(bed.shown) else "")
-                     + ". The surface is that of all grains.")
+                        "small" if bed.visible > len(bed.shown) else "") + ". The surface is that of all grains.")
     return words
 
 
@@ -65,8 +60,7 @@ def playback(run, arrays, budget):
     if bed := packing.bed:
         block["bed"] = {"grains": len(bed.shown), "radius": arrays.add(bed.radius), "speeds": packing.speeds,
                         "low": [float(v) for v in bed.low], "scale": [float(v) for v in bed.scale],
-                        "cell": float(bed.cell),
-                        "nx": bed.nx, "ny": bed.ny, "largest": bed.largest}
+                        "cell": float(bed.cell), "nx": bed.nx, "ny": bed.ny, "largest": bed.largest}
     words = [blocks.text(" ".join(sentences), "note") for sentences in [left_out(packing)] if sentences]
     blobs = {name: stream.base64() for name, stream in packing.stream.items() if packing.bed or name == "tires"}
     return {"id": "playback", "title": "Playback", "blocks": [block, *words]}, blobs

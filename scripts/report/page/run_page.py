@@ -5,9 +5,9 @@ from plot import events
 from plot.digits import digits
 from plot.run_data import Missing, printable
 from plot.vehicle_run import VehicleRun
+from plot.units import is_number, naming
 
 from . import blocks, curves, ground, scenario
-from .names import is_number, naming
 
 # Keys of a wheel that become cards: (key, its standard error, how many independent values, what it is).
 CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
@@ -19,14 +19,11 @@ CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
          ("tractive_efficiency", None, None, "tractive efficiency"))
 EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"),
             ("rut_depth", "rut_depth_m", "rut depth"))
-OF_WHEELS = ("slip", "vertical_force_N", "tractive_effort_N", "terrain_resistance_N",
-             "drive_torque_Nm", "sinkage_m", "rut_depth_m",
-             "lateral_force_N", "tire_deflection_m", "tractive_efficiency")
-PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version",
-              "compiler", "cpu", "terrain_engine", "law", "simulated_s",
-              "wall_s", "settle_wall_s", "wall_s_per_simulated_s", "grains",
-              "contacts_mean", "active_share_mean", "substeps_added",
-              "substeps_refined_share", "substeps_most_parts")
+OF_WHEELS = ("slip", "vertical_force_N", "tractive_effort_N", "terrain_resistance_N", "drive_torque_Nm", "sinkage_m",
+             "rut_depth_m", "lateral_force_N", "tire_deflection_m", "tractive_efficiency")
+PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version", "compiler", "cpu",
+              "terrain_engine", "law", "simulated_s", "wall_s", "settle_wall_s", "wall_s_per_simulated_s", "grains",
+              "contacts_mean", "active_share_mean", "substeps_added", "substeps_refined_share", "substeps_most_parts")
 ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", "tire_residual_J", "rig_residual_J")),
             ("Work", ("drive_work_J", "tow_work_J", "guide_work_J", "wall_work_J")),
             ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J",
@@ -78,8 +75,7 @@ def steady_words(pull):
         if is_number(pull.get("halves_differ_N")):
             details.append(f"the halves of the window differ by {digits(pull['halves_differ_N'])} N")
         return "good", ("Steady: within the averaging window the pull neither drifts nor changes between its halves by "
-                        "more than its own noise"
-                        + (f" ({'; '.join(details)})" if details else "")
+                        "more than its own noise" + (f" ({'; '.join(details)})" if details else "")
                         + ". A longer window would give the same mean within the interval.")
     reasons = "; ".join(map(printable, pull.get("unsteady_because")
                             or ["the averaging window is not long or even enough"]))
@@ -135,9 +131,8 @@ def vehicle_answer(run):
             speed, load = values.get("speed_m_s"), values.get("wheel_power_W")
             if is_number(speed):
                 made.append(blocks.text(f"In the averaging window the {subject} drives at {digits(speed)} m/s on "
-                                        f"average"
-                                        + (f"; {digits(1e-3 * load)} kW reach its wheels." if is_number(load) else "."),
-                                        "lead"))
+                                        "average" + (f"; {digits(1e-3 * load)} kW reach its wheels." if is_number(load)
+                                                     else "."), "lead"))
             change = values.get("acceleration_m_per_s2")
             if is_number(change) and abs(change) > CHANGING:
                 made.append(blocks.text(f"The {subject} is not in a steady state: on average its speed changes by "
@@ -249,10 +244,8 @@ def series(run, arrays):
                                                                       for name in run.wheel_names]), table.note + more))
     made.append(curves.explorer(table, window))
     shaded = "Shaded: the averaging window. " if window else ""
-    made.insert(0,
-                blocks.text(shaded
-                            + "Drag across a plot to zoom, double-click to see all. Click a name in the legend to hide "
-                              "its curve.", "note"))
+    made.insert(0, blocks.text(shaded + "Drag across a plot to zoom, double-click to see all. Click a name in the "
+                               "legend to hide its curve.", "note"))
     return {"id": "series", "title": "Curves", "blocks": list(filter(None, made))}
 
 
@@ -315,10 +308,9 @@ def accounts(run, arrays):
 def rut(run, arrays):
     if not run.told.get("grains") and (profile := ground.unchanged(run, arrays)):
         return {"id": "rut", "title": "Ground", "blocks": [blocks.charts([profile])]} if profile["lines"] else None
-    return {"id": "rut", "title": "Rut", "blocks": [
-        blocks.text("Height of the surface after the run, against that before it. Move over the map for values, click "
-                    "for cross-sections.", "note"),
-        ground.rut(run, arrays)]}
+    return {"id": "rut", "title": "Rut", "blocks": [blocks.text("Height of the surface after the run, against that "
+                                                                "before it. Move over the map for values, click for "
+                                                                "cross-sections.", "note"), ground.rut(run, arrays)]}
 
 
 def ranks(run):
@@ -349,9 +341,8 @@ def provenance(run):
         rows.append(("scenario completed by", str(run.scenario["completed_by"])))
     segments = [s for s in summary.get("segments") or [] if isinstance(s, dict)]
     for segment in segments if len(segments) > 1 else []:
-        rows.append(("segment",
-                     f"steps {segment.get('from_step')} to {segment.get('to_step')}, {segment.get('threads')} threads, "
-                     f"{segment.get('wall_s')} s"))
+        rows.append(("segment", f"steps {segment.get('from_step')} to {segment.get('to_step')}, "
+                     f"{segment.get('threads')} threads, {segment.get('wall_s')} s"))
     if not rows:
         raise Missing("there is no summary")
     rows.append(("folder", run.directory.name))

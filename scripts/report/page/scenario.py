@@ -74,8 +74,7 @@ def section(scenario):
     words = []
     if isinstance(scenario.get("description"), str):
         words.append(blocks.text(scenario["description"]))
-    words.append(blocks.table(["key", "value", "unit", "default", "meaning"],
-                              rows, marked=marked, only_marked="only keys that differ from the default",
-                              note="Highlighted keys differ from the default. Derived values, such as a start "
-                                   "position, also differ."))
+    words.append(blocks.table(["key", "value", "unit", "default", "meaning"], rows, marked=marked,
+                              only_marked="only keys that differ from the default", note="Highlighted keys differ from "
+                              "the default. Derived values, such as a start position, also differ."))
     return {"id": "scenario", "title": "Scenario", "blocks": words}

@@ -6,9 +6,9 @@ import numpy as np
 from plot import sweep as studies
 from plot.digits import with_error
 from plot.run_data import Missing
+from plot.units import naming
 
 from . import blocks
-from .names import naming
 from .scenario import unit_of
 
 PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"),
@@ -94,9 +94,8 @@ def passes(sweep, arrays):
     made = [blocks.charts(items, f"Whiskers: 95 % interval of the mean over {over}."
                           if over else "Whiskers: standard error of each run.")]
     if unsteady := sum(map(studies.unsteady, sweep.rows)):
-        made.insert(0,
-                    blocks.text(f"The pull is not steady in {unsteady} of {len(sweep.rows)} passes: its error is too "
-                                f"small there.", "warn"))
+        made.insert(0, blocks.text(f"The pull is not steady in {unsteady} of {len(sweep.rows)} passes: its error is "
+                                   "too small there.", "warn"))
     return {"id": "passes", "title": "Passes", "blocks": made}
 
 
@@ -123,9 +122,8 @@ def beds(sweep, arrays):
                         "intervals that such sets of beds give, 95 % hold the true mean.", "note")
     made = [blocks.cards(cards), words, blocks.charts(items)]
     if unsteady := sum(map(studies.unsteady, sweep.rows)):
-        made.insert(0,
-                    blocks.text(f"The pull is not steady on {unsteady} of {len(sweep.rows)} beds: the means are over "
-                                f"these beds too.", "warn"))
+        made.insert(0, blocks.text(f"The pull is not steady on {unsteady} of {len(sweep.rows)} beds: the means are "
+                                   "over these beds too.", "warn"))
     return {"id": "beds", "title": "Result", "blocks": made}
 
 

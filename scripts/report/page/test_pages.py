@@ -1,12 +1,11 @@
 """The pages of soil tests, of a pressed tire, of its frequencies and of a vehicle's suspensions."""
 import numpy as np
 
-from plot import kinematics as suspensions
 from plot.run_data import Missing
 from plot.soil import runs
+from plot.units import is_number, naming
 
 from . import blocks, scenario
-from .names import is_number, naming
 
 # Soil values: key, words, unit, factor.
 SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 1e-3), ("n", "sinkage exponent n", "", 1.0),
@@ -104,9 +103,8 @@ def press_answer(run):
             items.append(blocks.card(f"footprint {naming(key)[0]}", value, unit))
     made = [blocks.cards(items)]
     if is_number(values.get("deflection_m")) and is_number(values.get("load_N")):
-        made.insert(0,
-                    blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by "
-                                f"{1e3 * values['deflection_m']:.4g} mm.", "lead"))
+        made.insert(0, blocks.text(f"Under {values['load_N']:.4g} N the tire deflects by "
+                                   f"{1e3 * values['deflection_m']:.4g} mm.", "lead"))
     if isinstance(values.get("statically_stable"), bool):
         made.append(blocks.text(*stability(values)))
     return {"id": "answer", "title": "Result", "blocks": made}
@@ -196,6 +194,5 @@ def motion(run, arrays, name):
 
 def kinematics(page, arrays, run, sections):
     page["title"] = f"{run.values.get('vehicle', '')} · suspensions"
-    sections(page, [(name, lambda name=name: motion(run, arrays, name))
-                    for name in ("parallel", "opposite", "steering") if name in run.motions]
-             + [("all values", lambda: provenance(run.values))])
+    sections(page, [(name, lambda name=name: motion(run, arrays, name)) for name in ("parallel", "opposite", "steering")
+                    if name in run.motions] + [("all values", lambda: provenance(run.values))])

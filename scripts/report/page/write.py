@@ -1,11 +1,10 @@
 """Puts a page together and writes it."""
-import csv
 import json
 import pathlib
 import sys
 
 from plot.own_files import write_whole
-from plot.run_data import Damaged, Missing, Run, printable, why_no_folder
+from plot.run_data import PROBLEMS, Missing, Run, in_words, printable, why_no_folder
 
 from . import kinds, run_page
 from .blobs import Arrays
@@ -14,8 +13,6 @@ from .playback import playback
 NAME = "report.html"
 LARGEST = 14.6e6  # bytes of a page
 BUNDLE = pathlib.Path(__file__).resolve().parents[1] / "bundle"
-PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError,
-            TypeError, ValueError, RuntimeError, OSError, csv.Error, Missing, Damaged)
 
 HEAD = """<!DOCTYPE html>
 <html lang="en">
@@ -53,7 +50,7 @@ def sections(page, makers):
             page["left_out"].append(f"{title}: {printable(reason)}.")
             continue
         except PROBLEMS as error:
-            page["left_out"].append(f"{title}: could not be read: {printable(error or repr(error))[:300]}.")
+            page["left_out"].append(f"{title}: could not be read: {in_words(error)}.")
             continue
         if section and section["blocks"]:
             page["sections"].append(section)
@@ -82,7 +79,7 @@ def write(folder, runs, may_write):
             return []
         write_whole(folder / NAME, content)
     except PROBLEMS as error:
-        print(f"report: no {NAME}: {printable(error or repr(error))[:300]}", file=sys.stderr)
+        print(f"report: no {NAME}: {in_words(error)}", file=sys.stderr)
         return []
     return [NAME]
 
@@ -94,7 +91,7 @@ def compare(directories, folder, may_write):
         try:
             runs.append(Run(directory))
         except PROBLEMS as error:
-            print(f"furrow: error: {directory}: {printable(error or repr(error))}", file=sys.stderr)
+            print(f"furrow: error: {directory}: {in_words(error)}", file=sys.stderr)
             return 5
         if not runs[-1].scenario or not run_page.wheel_tables(runs[-1]):
             print(f"furrow: error: {directory}: holds no results of a run, expected scenario.json and a table of a "

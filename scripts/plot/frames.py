@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from ._scripts import Missing, run_data
+from .run_data import Missing, table
 
 Numbers = NDArray[np.float32]
 
@@ -31,8 +31,7 @@ class Frame:
     def dataset(self, name: str, columns: int) -> NDArray[np.generic]:
         """An array of the file; of shape (n,) where `columns` is 0. Raises Damaged (a ValueError)."""
         with h5py.File(self.path, "r") as file:
-            values: NDArray[np.generic] = run_data.table(file, name, columns)
-        return values
+            return table(file, name, columns)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.index} at {self.time:g} s>"
@@ -44,22 +43,22 @@ class TireFrame(Frame):
     @cached_property
     def position(self) -> Numbers:
         """Nodes, shape (n, 3), m."""
-        return self.dataset("position", 3)  # type: ignore[return-value]
+        return self.dataset("position", 3)
 
     @cached_property
     def velocity(self) -> Numbers:
         """Of the nodes, shape (n, 3), m/s."""
-        return self.dataset("velocity", 3)  # type: ignore[return-value]
+        return self.dataset("velocity", 3)
 
     @cached_property
     def force(self) -> Numbers:
         """On the nodes by the terrain, shape (n, 3), N."""
-        return self.dataset("force", 3)  # type: ignore[return-value]
+        return self.dataset("force", 3)
 
     @cached_property
     def triangle(self) -> NDArray[np.int32]:
         """Indices of the nodes of each triangle, shape (m, 3)."""
-        return self.dataset("triangle", 3)  # type: ignore[return-value]
+        return self.dataset("triangle", 3)
 
 
 class GrainFrame(Frame):
@@ -68,17 +67,17 @@ class GrainFrame(Frame):
     @cached_property
     def position(self) -> Numbers:
         """Centres, shape (n, 3), m."""
-        return self.dataset("position", 3)  # type: ignore[return-value]
+        return self.dataset("position", 3)
 
     @cached_property
     def speed(self) -> Numbers:
         """Shape (n,), m/s."""
-        return self.dataset("speed", 0)  # type: ignore[return-value]
+        return self.dataset("speed", 0)
 
     @cached_property
     def radius(self) -> Numbers:
         """Shape (n,), m."""
-        return self.dataset("radius", 0)  # type: ignore[return-value]
+        return self.dataset("radius", 0)
 
 
 F = TypeVar("F", bound=Frame)

@@ -6,16 +6,13 @@ import base64
 import pathlib
 import zlib
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .frames import Frame, GrainFrame, TireFrame
-
-if TYPE_CHECKING:
-    from .runs import Run
 
 TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64"}
 Array = NDArray[Any]
@@ -43,13 +40,12 @@ def polydata(position: Array, cells: Mapping[str, Array], values: Mapping[str, A
         ends = corners.shape[1] * np.arange(1, len(corners) + 1, dtype="i4")
         parts += [f"<{kind}>", data_array("connectivity", corners.astype("i4").ravel()),
                   data_array("offsets", ends), f"</{kind}>"]
-    return "\n".join([
-        '<?xml version="1.0"?>',
-        '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" '
-        'compressor="vtkZLibDataCompressor">', "<PolyData>", "<FieldData>",
-        f'<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:.17g}</DataArray>',
-        "</FieldData>",
-        f'<Piece NumberOfPoints="{len(position)}" {counts}>', *parts, "</Piece>", "</PolyData>", "</VTKFile>", ""])
+    return "\n".join(['<?xml version="1.0"?>', '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" '
+                      'header_type="UInt64" compressor="vtkZLibDataCompressor">', "<PolyData>", "<FieldData>",
+                      '<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '
+                      f'format="ascii">{time:.17g}</DataArray>', "</FieldData>",
+                      f'<Piece NumberOfPoints="{len(position)}" {counts}>', *parts, "</Piece>", "</PolyData>",
+                      "</VTKFile>", ""])
 
 
 def text_of(frame: Frame) -> str:
@@ -70,10 +66,9 @@ def write_kind(folder: pathlib.Path, kind: str, frames: Iterable[Frame]) -> None
         (folder / name).write_text(text_of(type(frame)(frame.path, frame.index)))  # a copy, so that no arrays are kept
         entries.append(f'<DataSet timestep="{frame.time:.17g}" file="{name}"/>')
     if entries:
-        (folder / f"{kind}.pvd").write_text("\n".join(
-            ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">',
-             "<Collection>", *entries, "</Collection>",
-             "</VTKFile>", ""]))
+        (folder / f"{kind}.pvd").write_text("\n".join(['<?xml version="1.0"?>',
+                                                       '<VTKFile type="Collection" version="0.1">', "<Collection>",
+                                                       *entries, "</Collection>", "</VTKFile>", ""]))
 
 
 def write_kinds(folder: pathlib.Path, kinds: Mapping[str, Iterable[Frame]]) -> pathlib.Path:
@@ -82,9 +77,3 @@ def write_kinds(folder: pathlib.Path, kinds: Mapping[str, Iterable[Frame]]) -> p
     for kind, frames in kinds.items():
         write_kind(folder, kind, frames)
     return folder
-
-
-def write_run(run: Run, folder: pathlib.Path) -> pathlib.Path:
-    """All frames of a run."""
-    wheels = range(max(1, sum(name.startswith("wheel") for name in run.subjects)))
-    return write_kinds(folder, {**{f"tire{wheel}": run.tire(wheel) for wheel in wheels}, "terrain": run.grains})

@@ -161,10 +161,10 @@ def finished_runs(results, cases):
 # ---- write ----------------------------------------------------------------------------------------------------------
 
 def short(value, digits=4):
-    """Of a table: numbers with so many digits; nothing for what is unknown."""
+    """Of a table: numbers with so many digits (all of them without `digits`); nothing for what is unknown."""
     if value is None or isinstance(value, float) and value != value:
         return ""
-    return f"{value:.{digits}g}" if isinstance(value, float) else value
+    return f"{value:.{digits}g}" if digits and isinstance(value, float) else value
 
 
 def write(table, rows, made=None, digits=4, names=None, told=False):

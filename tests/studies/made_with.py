@@ -18,6 +18,9 @@ import provenance
 
 def main():
     words = sys.argv[1:]
+    if words[:1] in (["-h"], ["--help"]):
+        print(__doc__)
+        return
     cut = words.index("--") if "--" in words else 0
     command = words[cut + 1:]
     if not cut or not command or not all("=" in word for word in words[:cut]):

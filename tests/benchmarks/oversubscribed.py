@@ -25,8 +25,7 @@ SMALL = {
     "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28, "ramp": 0.01, "carrier_mass": 450},
     "tire": {"file": "hmmwv_layered.json", "rigid": True},
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4, "width": 0.4},
-    "run": {"step": 1e-4, "end": 0.2, "average_from": 0.1},
-    "output": {"series_interval": 1e-3, "frame_interval": 0},
+    "run": {"step": 1e-4, "end": 0.2, "average_from": 0.1}, "output": {"series_interval": 1e-3, "frame_interval": 0},
     "checkpoint": {"at_end": False},
 }
 BUSY = "while True: pass"

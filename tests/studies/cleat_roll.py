@@ -52,9 +52,8 @@ PLANAR = {
     "tire": {"density": 104, "young_modulus": 1e6, "poisson_ratio": 0.45, "viscosity": 500},
     "law": "consistent", "volume": "element", "integrator": "semi_implicit_euler",
     "step_share": 0.5, "contact_stiffness": 2e7,
-    "contact": {"young_modulus": 2.47e7, "poisson_ratio": 0.45, "friction": 0.9,
-                "restitution": 0.2, "normal_stiffness": 2.0e6,
-                "normal_damping": 13},
+    "contact": {"young_modulus": 2.47e7, "poisson_ratio": 0.45, "friction": 0.9, "restitution": 0.2,
+                "normal_stiffness": 2.0e6, "normal_damping": 13},
 }
 COLOURS = {"shell": style.BLUE, "light": style.SKY, "planar": style.ORANGE}
 

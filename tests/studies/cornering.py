@@ -27,9 +27,8 @@ from plot.student import student
 RESULTS = driver.ROOT / "results"
 SWEEPS = {"study_slip_angle": "rig.toe_angle", "study_camber": "rig.camber_angle", "study_hard_slip": "rig.slip"}
 COLUMNS = {"Fx_N": "iso_w.force_N.0", "Fy_N": "iso_w.force_N.1", "Fz_N": "iso_w.force_N.2",
-           "Fy_sem_N": "iso_w.force_sem_N.1",
-           "Mx_Nm": "iso_w.moment_Nm.0", "My_Nm": "iso_w.moment_Nm.1", "Mz_Nm": "iso_w.moment_Nm.2",
-           "Mz_sem_Nm": "iso_w.moment_sem_Nm.2", "slip_angle_rad": "iso_w.slip_angle_rad",
+           "Fy_sem_N": "iso_w.force_sem_N.1", "Mx_Nm": "iso_w.moment_Nm.0", "My_Nm": "iso_w.moment_Nm.1",
+           "Mz_Nm": "iso_w.moment_Nm.2", "Mz_sem_Nm": "iso_w.moment_sem_Nm.2", "slip_angle_rad": "iso_w.slip_angle_rad",
            "camber_angle_rad": "iso_w.camber_angle_rad", "loaded_radius_m": "iso_w.loaded_radius_m",
            "effective_rolling_radius_m": "effective_rolling_radius_m", "pull_N": "drawbar_pull_N.mean",
            "pull_sem_N": "drawbar_pull_N.sem", "vertical_balance_residual": "vertical_balance_residual"}

@@ -53,9 +53,8 @@ def road():
 
 
 def scenario(kind, rigid):
-    rig = {"type": kind, "speed": SPEED, "ramp": 0, "touchdown_time": 0.45,
-           "suspension_stiffness": SUSPENSION, "suspension_damping": DAMPER,
-           "unsprung_mass": UNSPRUNG, "rim_mass": RIM}
+    rig = {"type": kind, "speed": SPEED, "ramp": 0, "touchdown_time": 0.45, "suspension_stiffness": SUSPENSION,
+           "suspension_damping": DAMPER, "unsprung_mass": UNSPRUNG, "rim_mass": RIM}
     rig |= {"body_mass": BODY} if kind == "quarter_car" else {
         "body_mass": 2 * BODY, "wheelbase": WHEELBASE, "pitch_inertia": PITCH_INERTIA}
     tire = {"file": "aligator_planar.json", "rigid": rigid, **({"elements_circumference": 240} if rigid else {})}

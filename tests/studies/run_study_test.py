@@ -54,9 +54,8 @@ class RunStudy(unittest.TestCase):
                                                             "cases": cases, "columns": ["pull"]}))
 
     def run_study(self, *arguments):
-        done = subprocess.run([sys.executable, HERE / "run_study.py", self.folder / "small.json",
-                               "--results", self.folder / "results",
-                               *arguments], capture_output=True, text=True,
+        done = subprocess.run([sys.executable, HERE / "run_study.py", self.folder / "small.json", "--results",
+                               self.folder / "results", *arguments], capture_output=True, text=True,
                               env={**os.environ, "FURROW": str(self.folder / "furrow")})
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stderr

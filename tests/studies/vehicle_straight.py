@@ -120,8 +120,7 @@ def picture(v, name):
     for axis, title, unit in ((speed, "Speed", "m/s"), (pitch, "Pitch, nose down positive", "°"),
                               (height, "Height of the origin above the soil", "mm"),
                               (engine, "Engine, converter's turbine and gear", "1/min"),
-                              (force, "Longitudinal forces by axle (mean of 0.1 s)", "kN"),
-                              (sinkage, "Sinkage", "mm")):
+                              (force, "Longitudinal forces by axle (mean of 0.1 s)", "kN"), (sinkage, "Sinkage", "mm")):
         driver.label(axis, "time, s" if axis in grid[-1] else "", unit, title)
         axis.grid(alpha=0.3)
     figure.tight_layout()

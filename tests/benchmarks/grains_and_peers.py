@@ -8,7 +8,6 @@ and 0.6 m, periodic along x over whole metres. Every engine first steps the bed 
 LAMMPS are Debian's packages `liggghts` and `lammps`; MPI ranks are bound to the same cores that furrow's threads get.
 Nothing else may run meanwhile. One row per engine and law: the median over rounds, its range, and the ratios.
 """
-import argparse
 import csv
 import json
 import math
@@ -20,9 +19,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "studies"))
-import provenance  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "studies"))
+import driver  # noqa: E402
 
 RADIUS, DENSITY, STEP = 0.006, 2500.0, 4e-5  # m, kg/m³, s
 WARM = 500  # steps before the clock starts
@@ -70,7 +68,16 @@ fix side2 all wall/gran model hertz tangential {tangential} primitive type 1 ypl
 LAMMPS_HERTZ = "hertz/history 1.8242e7 2.2536e7 7.5e6 NULL 0.9 1"
 
 
-def write_data(positions, file, lammps):
+# furrow's law, cohesion in Pa and precision
+FURROW = {"furrow hertz_tanh, cohesion 80 kPa": ("hertz_tanh", 80e3, "mixed"),
+          "furrow mindlin": ("mindlin", 0.0, "mixed"), "furrow mindlin, double precision": ("mindlin", 0.0, "double")}
+# program and tangential model
+PEERS = {"LIGGGHTS hertz/no_history": ("liggghts", "no_history"), "LAMMPS gran/hertz/history": ("lmp", ""),
+         "LIGGGHTS hertz/history": ("liggghts", "history")}
+CASES = [case for pair in zip(FURROW, PEERS) for case in pair]  # in turn
+
+
+def write_data(positions, file):
     length = math.ceil(max(p[0] for p in positions))
     with open(file, "w") as out:
         out.write(f"spheres\n\n{len(positions)} atoms\n1 atom types\n\n0 {length} xlo xhi\n0 0.6 ylo yhi\n")
@@ -79,84 +86,80 @@ def write_data(positions, file, lammps):
             out.write(f"{n} 1 {2 * RADIUS} {DENSITY} {x:.10g} {y:.10g} {z:.10g}\n")
 
 
-def run_peer(program, tangential, data, ranks, steps, folder):
+def run_deck(program, text, ranks, folder, *options):
+    """The log of LIGGGHTS or LAMMPS: what it says of the last `run`."""
+    deck, log = folder / "deck.in", folder / "deck.log"
+    deck.write_text(text)
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+    subprocess.run(["mpirun", "--oversubscribe", *options, "-np", str(ranks), program, "-in", deck, "-log", log,
+                    "-screen", "none"], check=True, env=environment, stdout=subprocess.DEVNULL)
+    text = log.read_text()
+    seconds, done, atoms = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", text)[-1]
+    return text, float(seconds), int(done), int(atoms), re.findall(r"Neighbor list builds = (\d+)", text)[-1]
+
+
+def run_peer(program, tangential, ranks, steps, folder):
     lammps = program == "lmp"
-    text = COMMON.format(
-        ranks=ranks, data=data, step=STEP, warm=WARM, steps=steps,
+    deck = COMMON.format(
+        ranks=ranks, data=folder / "bed.data", step=STEP, warm=WARM, steps=steps,
         style="sphere" if lammps else "granular",
         ghosts="comm_modify mode single vel yes" if lammps else "communicate single vel yes",
         law=f"pair_style gran/{LAMMPS_HERTZ}\npair_coeff * *" if lammps else LIGGGHTS_LAW.format(tangential=tangential),
         walls=(f"fix floor all wall/gran {LAMMPS_HERTZ} zplane 0.0 NULL\n"
                f"fix sides all wall/gran {LAMMPS_HERTZ} yplane 0.0 0.6" if lammps
                else LIGGGHTS_WALLS.format(tangential=tangential)))
-    deck, log = folder / "deck.in", folder / "deck.log"
-    deck.write_text(text)
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-    subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "core", "-np",
-                    str(ranks), program, "-in", deck, "-log", log,
-                    "-screen", "none"], check=True, env=environment, stdout=subprocess.DEVNULL)
-    text = log.read_text()
-    seconds, done, atoms = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", text)[-1]
-    rebuilds = re.findall(r"Neighbor list builds = (\d+)", text)[-1]
+    text, seconds, done, atoms, rebuilds = run_deck(program, deck, ranks, folder, "--bind-to", "core")
     contacts = float(re.findall(r"^\s*\d+\s+\d+\s+\S+\s+(\S+)\s*$", text, re.M)[-1])
-    return {"grains": int(atoms), "grain_steps_per_s": int(atoms) * int(done) / float(seconds),
-            "coordination": contacts / int(atoms), "list_rebuilds": int(rebuilds)}
+    return {"grains": atoms, "grain_steps_per_s": atoms * done / seconds, "coordination": contacts / atoms,
+            "list_rebuilds": int(rebuilds)}
+
+
+def bench_grains(bed, law, threads, steps, warm=WARM, *more):
+    return json.loads(driver.furrow("bench", "grains", "--bed", bed, "--law", law, "--threads", threads, "--steps",
+                                    steps, "--warm", warm, *more))
 
 
 def run_furrow(law, cohesion, precision, bed, threads, steps, *more):
-    command = [provenance.program(), "bench", "grains", "--bed", bed, "--law",
-               law, "--cohesion", str(cohesion), "--precision",
-               precision, "--threads", str(threads), "--steps", str(steps), "--warm", str(WARM), *more]
-    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    return bench_grains(bed, law, threads, steps, WARM, "--cohesion", cohesion, "--precision", precision, *more)
+
+
+def options(doc, **more):
+    """The beds and tables of this script and of grains_scaling.py."""
+    parser = driver.options(doc, **more)
+    parser.add_argument("bed", type=lambda name: pathlib.Path(name).resolve())
+    parser.add_argument("out", type=lambda name: pathlib.Path(name).resolve())
+    return parser.parse_args()
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("bed", type=pathlib.Path)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--steps", type=int, default=1000)
-    parser.add_argument("--rounds", type=int, default=3)
-    arguments = parser.parse_args()
+    arguments = options(__doc__, threads={"type": int, "default": 2}, steps={"type": int, "default": 1000},
+                        rounds={"type": int, "default": 3})
+    n, steps, results = arguments.threads, arguments.steps, {case: [] for case in CASES}
     with open(arguments.bed) as file:
         positions = [(float(r["x_m"]), float(r["y_m"]), float(r["z_m"])) for r in csv.DictReader(file)]
-    results = {}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        write_data(positions, folder / "bed.data", False)
-        n, steps = arguments.threads, arguments.steps
-        hertz_tanh, mindlin = folder / "hertz_tanh.csv", folder / "mindlin.csv"
-        run_furrow("hertz_tanh", 80e3, "mixed", arguments.bed, n, 1, "--settle", "0.3", "--save-bed", hertz_tanh)
-        run_furrow("mindlin", 0.0, "mixed", arguments.bed, n, 1, "--settle", "0.3", "--save-bed", mindlin)
-        cases = {
-            "furrow hertz_tanh, cohesion 80 kPa": lambda: run_furrow("hertz_tanh", 80e3, "mixed", hertz_tanh, n, steps),
-            "LIGGGHTS hertz/no_history": lambda: run_peer("liggghts", "no_history",
-                                                          folder / "bed.data", n, steps, folder),
-            "furrow mindlin": lambda: run_furrow("mindlin", 0.0, "mixed", mindlin, n, steps),
-            "LAMMPS gran/hertz/history": lambda: run_peer("lmp", "", folder / "bed.data", n, steps, folder),
-            "furrow mindlin, double precision": lambda: run_furrow("mindlin", 0.0, "double", mindlin, n, steps),
-            "LIGGGHTS hertz/history": lambda: run_peer("liggghts", "history", folder / "bed.data", n, steps, folder),
-        }
+        write_data(positions, folder / "bed.data")
+        for law, cohesion, precision in list(FURROW.values())[:2]:
+            run_furrow(law, cohesion, precision, arguments.bed, n, 1, "--settle", "0.3", "--save-bed",
+                       folder / f"{law}.csv")
         for k in range(arguments.rounds):
-            for case, run in cases.items():
-                results.setdefault(case, []).append(run())
+            for case in CASES:
+                results[case].append(run_peer(*PEERS[case], n, steps, folder) if case in PEERS else
+                                     run_furrow(*FURROW[case], folder / f"{FURROW[case][0]}.csv", n, steps))
                 print(f"round {k + 1}: {case}: {results[case][-1]['grain_steps_per_s']:.3g} grain-steps/s", flush=True)
     median = {case: statistics.median(r["grain_steps_per_s"] for r in runs) for case, runs in results.items()}
-    with open(arguments.out, "w", newline="") as file:
-        provenance.write_header(file, provenance.made_here())
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["engine", "threads", "grains", "steps", "rounds",
-                      "grain_steps_per_s", "lowest", "highest", "coordination",
-                      "list_rebuilds", "bytes_per_grain", "over_LIGGGHTS_no_history", "over_LAMMPS_history"])
-        for case, runs in results.items():
-            speeds, last = [r["grain_steps_per_s"] for r in runs], runs[-1]
-            out.writerow([case, n, last["grains"], steps, len(runs)]
-                         + [f"{v:.4g}" for v in (median[case], min(speeds), max(speeds))] +
-                         [f"{last['coordination']:.3f}", f"{last['list_rebuilds']:.2f}",
-                          f"{last['bytes_per_grain']:.0f}" if "bytes_per_grain" in last else "",
-                          f"{median[case] / median['LIGGGHTS hertz/no_history']:.2f}",
-                          f"{median[case] / median['LAMMPS gran/hertz/history']:.2f}"])
-    print(arguments.out.read_text())
+    rows = []
+    for case, runs in results.items():
+        speeds, last = [r["grain_steps_per_s"] for r in runs], runs[-1]
+        rows.append({
+            "engine": case, "threads": n, "grains": last["grains"], "steps": steps, "rounds": len(runs),
+            "grain_steps_per_s": median[case], "lowest": min(speeds), "highest": max(speeds),
+            "coordination": f"{last['coordination']:.3f}", "list_rebuilds": f"{last['list_rebuilds']:.2f}",
+            "bytes_per_grain": f"{last['bytes_per_grain']:.0f}" if "bytes_per_grain" in last else "",
+            "over_LIGGGHTS_no_history": f"{median[case] / median['LIGGGHTS hertz/no_history']:.2f}",
+            "over_LAMMPS_history": f"{median[case] / median['LAMMPS gran/hertz/history']:.2f}"})
+    driver.write(arguments.out, rows, told=True)
 
 
 if __name__ == "__main__":

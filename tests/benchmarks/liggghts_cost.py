@@ -24,7 +24,6 @@ machine drifts from run to run.
 Ranks that are not --timed share cores: of these only the counts mean anything, and no time is given. ghosts and bytes
 are of the rank that has most: position, velocity and spin of each ghost cross in every step.
 """
-import argparse
 import csv
 import io
 import os
@@ -37,16 +36,14 @@ import tempfile
 
 import h5py
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "tests" / "studies"))
-import provenance  # noqa: E402
+from grains_and_peers import driver, run_deck
 
-RIG = str(ROOT / "rigs" / "drawbar_pull_small.json")
+HERE = pathlib.Path(__file__).resolve().parent
+RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small.json")
 STEP, RUN = 6e-5, 0.3  # s: of the rig; of the whole run, in which the wheel comes down and rolls
 GHOST_BYTES = 9 * 8
-ENVIRONMENT = dict(os.environ, FURROW_HOME=str(ROOT), OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                   OMP_NUM_THREADS="1")
+ONE_THREAD = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
+ENVIRONMENT = {**os.environ, "FURROW_HOME": str(driver.ROOT), **ONE_THREAD}
 STOCK = """
 processors {ranks} 1 1
 atom_style granular
@@ -77,72 +74,66 @@ run {steps}
 """
 # The first pattern that a function (or else its library) matches says to which part it belongs.
 PARTS = [("pairs", r"PairFurrow::evaluate"),
-         ("lists",
-          r"PairLists::|FixFurrow::(make_lists|lists_due|strayed|pre_exchange|pre_neighbor|note_exchange|copy|pack_e|unpack_e)|"
-          r"Neighbor::|Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::|RankContacts::lists_made"),
+         ("lists", r"PairLists::|FixFurrow::(make_lists|lists_due|strayed|pre_exchange|pre_neighbor|note_exchange|copy|"
+                   r"pack_e|unpack_e)|Neighbor::|Comm::(exchange|borders)|AtomVec.*(exchange|border|copy)|Atom::|"
+                   r"RankContacts::lists_made"),
          ("motion", r"FixFurrow::(move|final_integrate)|GrainMotion|force_clear|memset|Verlet::"),
          ("walls", r"WallContacts|RankContacts::add_forces|Carried"),
-         ("tire_contact",
-          r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|NodalForceSum|SurfaceTopology|"
-          r"on_edge|spin_about|RankContacts::(begin_|look|any_near)"),
-         ("accounts",
-          r"sample_of|SampleLanes|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|RankContacts::end_step|held"),
+         ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|"
+                          r"NodalForceSum|SurfaceTopology|on_edge|spin_about|RankContacts::(begin_|look|any_near)"),
+         ("accounts", r"sample_of|SampleLanes|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|"
+                      r"RankContacts::end_step|held"),
          ("border_grains", r"Comm::forward_comm|pack_comm|unpack_comm"),
          ("frames_and_files", r"Row\b|hdf5|H5|archive|checkpoint|add_file|state_hash"),
          ("messages_and_polling",
           r"mca_|libmpi|open-pal|open-rte|libevent|MpiWire|Transport|ByteWriter|ByteReader|PMPI|opal_|ompi_|MPI_|"
           r"share_reports|kernel|vdso|pthread_mutex")]
 ENGINE = ("pairs", "lists", "motion", "border_grains")  # what `one run N` does
-COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step",
-           "lowest", "highest", "cpu_us_per_step", "ns_per_grain_step", "over_pairs",
-           "grains_least", "grains_most", "ghosts_most", "bytes_per_step", "list_builds", "contacts"]
+COLUMNS = ["part", "ranks", "grains", "steps", "rounds", "us_per_step", "lowest", "highest", "cpu_us_per_step",
+           "ns_per_grain_step", "over_pairs", "grains_least", "grains_most", "ghosts_most", "bytes_per_step",
+           "list_builds", "contacts"]
+WHOLE = {"whole_run": False, "rigid_tire": True}  # whether the tire is rigid
 
 
-def mpirun(ranks, *words):
-    """The command line: one rank per core; more ranks than cores share them politely."""
-    bound = ["--bind-to", "core"] if ranks <= (os.cpu_count() or 1) else ["--bind-to",
-                                                                          "none", "--mca", "mpi_yield_when_idle", "1"]
-    return ["mpirun", "--oversubscribe", *bound, "-np", str(ranks), *words]
-
-
-def printed(command):
-    done = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
-    # Open MPI 4.1's mpirun at times dies of a signal on its way out: what was printed counts.
-    if done.returncode not in (0, 134):
-        sys.exit(f"{' '.join(command)} ended with {done.returncode}: {done.stderr[-500:]}")
-    return done.stdout
+def binding(ranks):
+    """One rank per core; more ranks than cores share them politely."""
+    alone = ranks <= (os.cpu_count() or 1)
+    return ["--bind-to", "core"] if alone else ["--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
 
 
 def bench_command(ranks, start, steps, rounds):
     """bench_liggghts from a scenario or a run."""
-    program = pathlib.Path(provenance.program()).parent / "bench_liggghts"
-    return mpirun(ranks, str(program), str(start), str(steps), str(rounds))
+    program = pathlib.Path(driver.provenance.program()).parent / "bench_liggghts"
+    return ["mpirun", "--oversubscribe", *binding(ranks), "-np", str(ranks), str(program), str(start), str(steps),
+            str(rounds)]
+
+
+def bench_rows(ranks, steps):
+    done = subprocess.run(bench_command(ranks, RIG, steps, 1), env=ENVIRONMENT, capture_output=True, text=True)
+    # Open MPI 4.1's mpirun at times dies of a signal on its way out: what was printed counts.
+    if done.returncode not in (0, 134):
+        sys.exit(f"bench_liggghts on {ranks} ranks ended with {done.returncode}: {done.stderr[-500:]}")
+    return csv.DictReader(io.StringIO(done.stdout))
 
 
 def whole_run(ranks, out, rigid=False, before=()):
     """Of the ranks of the terrain, those that have most: µs a step by the name of the row."""
-    keys = ["terrain.engine=liggghts", f"terrain.ranks={ranks}", f"run.end={RUN}", f"run.average_from={RUN - 0.05}"]
-    if rigid:
-        keys.append("tire.rigid=true")
-    words = [word for key in keys for word in ("--set", key)]
-    subprocess.run([*before, provenance.program(), "run", RIG, *words, "--out", str(out), "--overwrite", "--no-plots"],
-                   check=True,
-                   env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    rows = [row for row in provenance.read_json(out / "summary.json")["ranks"] if row["node"].startswith("terrain")]
+    keys = {"terrain.engine": "liggghts", "terrain.ranks": ranks, "run.end": RUN, "run.average_from": RUN - 0.05,
+            **({"tire.rigid": True} if rigid else {})}
+    driver.furrow("run", RIG, *driver.settings(keys), "--out", out, "--overwrite", "--no-plots", before=before,
+                  **ONE_THREAD)
+    rows = [row for row in driver.summary(out)["ranks"] if row["node"].startswith("terrain")]
     each = 1e6 / (RUN / STEP)
     return {"": each * max(row["compute_s"] + row["communicate_s"] for row in rows),
-            "_cpu": each * max(row["cpu_s"] for row in rows),
-            "_waiting": each * max(row["wait_s"] for row in rows)}
+            "_cpu": each * max(row["cpu_s"] for row in rows), "_waiting": each * max(row["wait_s"] for row in rows)}
 
 
 def profile(ranks, folder, rigid):
     """The processor time of the busiest rank of a whole run, by part."""
-    data = folder / "perf.data"
-    most = whole_run(ranks, folder / "run", rigid,
-                     before=("perf", "record", "-q", "-F", "499", "-o", str(data)))["_cpu"]
-    text = subprocess.run(["perf", "report", "-i", str(data), "--stdio",
-                           "-g", "none", "--sort", "pid,dso,sym", "-F", "sample,pid,dso,sym", "-t", "|"],
-                          capture_output=True, text=True, check=True).stdout
+    data = str(folder / "perf.data")
+    most = whole_run(ranks, folder / "run", rigid, before=("perf", "record", "-q", "-F", "499", "-o", data))["_cpu"]
+    text = subprocess.run(["perf", "report", "-i", data, "--stdio", "-g", "none", "--sort", "pid,dso,sym",
+                           "-F", "sample,pid,dso,sym", "-t", "|"], capture_output=True, text=True, check=True).stdout
     found = {}
     for line in text.splitlines():
         words = line.split("|")
@@ -152,8 +143,7 @@ def profile(ranks, folder, rigid):
         part = next((name for name, pattern in PARTS if re.search(pattern, where)), "other")
         rank = found.setdefault(words[1].strip(), {})
         rank[part] = rank.get(part, 0) + int(words[0])
-    ranks_found = [rank for rank in found.values() if rank.get("pairs")]
-    busiest = max(ranks_found, key=lambda rank: sum(rank.values()))
+    busiest = max((rank for rank in found.values() if rank.get("pairs")), key=lambda rank: sum(rank.values()))
     return {part: most * samples / sum(busiest.values()) for part, samples in busiest.items()}
 
 
@@ -167,83 +157,76 @@ def write_data(frame, file):
 
 
 def stock(ranks, steps, folder):
-    deck, log = folder / "deck.in", folder / "deck.log"
-    deck.write_text(STOCK.format(ranks=ranks, data=folder / "bed.data", step=STEP, steps=steps), encoding="utf-8")
-    printed(mpirun(ranks, "liggghts", "-in", str(deck), "-log", str(log), "-screen", "none"))
-    seconds, done, _ = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms",
-                                  log.read_text())[-1]
-    builds = re.findall(r"Neighbor list builds = (\d+)", log.read_text())[-1]
-    return {"us_per_step": 1e6 * float(seconds) / int(done), "list_builds": builds}
+    deck = STOCK.format(ranks=ranks, data=folder / "bed.data", step=STEP, steps=steps)
+    _, seconds, done, _, builds = run_deck("liggghts", deck, ranks, folder, *binding(ranks))
+    return {"us_per_step": 1e6 * seconds / done, "list_builds": builds}
 
 
-def show(rows):
-    print(f"\n{rows[0]['ranks']} ranks".ljust(40) + "us a step   processor   over pairs alone", flush=True)
-    for row in rows:
-        over = (f"{100 * (float(row['over_pairs']) - 1):+.0f} %" if row["part"].endswith(": all")
-                or row["part"].startswith(("whole", "rigid")) and ": " not in row["part"] else "")
-        print(f"{row['part']:<38} {row['us_per_step']:>10} {row['cpu_us_per_step']:>11} {over:>18}", flush=True)
+def measured(ranks, timed, rounds, steps, folder):
+    """({part: its rows, one a round}, {run: µs a step of its parts that are ENGINE})"""
+    found, engines = {}, {}
+    for _ in range(rounds if timed else 1):
+        for row in bench_rows(ranks, steps):
+            found.setdefault(row["part"], []).append(row)
+        if timed:
+            for name, rigid in WHOLE.items():
+                for kind, time in whole_run(ranks, folder / "run", rigid).items():
+                    found.setdefault(name + kind, []).append({"us_per_step": time})
+            found.setdefault("stock_liggghts", []).append(stock(ranks, steps, folder))
+    for name, rigid in WHOLE.items() if timed else ():
+        runs = [profile(ranks, folder, rigid) for _ in range(rounds)]
+        engines[name] = statistics.median(sum(run.get(part, 0) for part in ENGINE) for run in runs)
+        for part in sorted(set().union(*runs), key=lambda part: -runs[0].get(part, 0)):
+            found[f"{name}: {part}"] = [{"us_per_step": run.get(part, 0)} for run in runs]
+        found[f"{name}: all"] = [{"us_per_step": sum(run.values())} for run in runs]
+    return found, engines
+
+
+def rows_of(ranks, timed, steps, found, engines):
+    def median(part, column):
+        return statistics.median(float(row[column]) for row in found[part])
+    grains = int(found["pairs"][0]["grains"])
+    for part, rounds in found.items():
+        whole = part.startswith(tuple(WHOLE))
+        row = {column: rounds[0].get(column, "") for column in COLUMNS} | {
+            "part": part, "ranks": ranks, "grains": grains, "rounds": len(rounds),
+            "steps": round(RUN / STEP) if whole else steps}
+        if row["ghosts_most"] != "":
+            row["bytes_per_step"] = GHOST_BYTES * int(row["ghosts_most"])
+        if timed:
+            times, time = [float(one["us_per_step"]) for one in rounds], median(part, "us_per_step")
+            over = (engines[part.split(": ")[0]] if ": " in part else
+                    median("pairs", "cpu_us_per_step" if part.endswith("_cpu") else "us_per_step"))
+            if row["cpu_us_per_step"] != "":
+                row["cpu_us_per_step"] = f"{median(part, 'cpu_us_per_step'):.0f}"
+            row |= {"us_per_step": f"{time:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
+                    "ns_per_grain_step": f"{1e3 * time / grains:.0f}", "over_pairs": f"{time / over:.3f}"}
+        else:
+            row |= dict.fromkeys(COLUMNS[5:11], "")
+        yield row
 
 
 def main():
     global RUN
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", type=int, default=200)
-    parser.add_argument("--rounds", type=int, default=2)
-    parser.add_argument("--out", type=pathlib.Path, default=HERE / "liggghts_cost.csv")
-    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 4])
-    parser.add_argument("--timed", type=int, nargs="+", default=[1, 2])
-    parser.add_argument("--end", type=float, default=RUN, help="of the whole run, s")
-    arguments = parser.parse_args()
-    RUN = arguments.end
-    made = provenance.made_here()
-    rows = []
+    arguments = driver.options(
+        __doc__, steps={"type": int, "default": 200}, rounds={"type": int, "default": 2},
+        out={"type": lambda name: pathlib.Path(name).resolve(), "default": HERE / "liggghts_cost.csv"},
+        ranks={"type": int, "nargs": "+", "default": [1, 2, 4]}, timed={"type": int, "nargs": "+", "default": [1, 2]},
+        end={"type": float, "default": RUN, "help": "of the whole run, s"}).parse_args()
+    RUN, steps = arguments.end, arguments.steps
+    made, rows = driver.provenance.made_here(), []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         whole_run(1, folder / "run")
         write_data(folder / "run" / "frames" / "terrain_000000.h5", folder / "bed.data")
         for ranks in arguments.ranks:
-            found = {}
-            rounds = arguments.rounds if ranks in arguments.timed else 1
-            for _ in range(rounds):
-                for row in csv.DictReader(io.StringIO(printed(bench_command(ranks, RIG, arguments.steps, 1)))):
-                    found.setdefault(row["part"], []).append(row)
-                if ranks not in arguments.timed:
-                    continue
-                for name, rigid in (("whole_run", False), ("rigid_tire", True)):
-                    for kind, time in whole_run(ranks, folder / "run", rigid).items():
-                        found.setdefault(name + kind, []).append({"us_per_step": time})
-                found.setdefault("stock_liggghts", []).append(stock(ranks, arguments.steps, folder))
-            engines = {}
-            for name, rigid in (("whole_run", False), ("rigid_tire", True)) if ranks in arguments.timed else ():
-                runs = [profile(ranks, folder, rigid) for _ in range(rounds)]
-                engines[name] = statistics.median(sum(run.get(part, 0) for part in ENGINE) for run in runs)
-                for part in sorted(set().union(*runs), key=lambda part: -runs[0].get(part, 0)):
-                    found[f"{name}: {part}"] = [{"us_per_step": run.get(part, 0)} for run in runs]
-                found[f"{name}: all"] = [{"us_per_step": sum(run.values())} for run in runs]
-            alone = statistics.median(float(row["us_per_step"]) for row in found["pairs"])
-            alone_cpu = statistics.median(float(row["cpu_us_per_step"]) for row in found["pairs"])
-            grains = int(found["pairs"][0]["grains"])
-            for part, measured in found.items():
-                times = [float(row["us_per_step"]) for row in measured]
-                row = {column: measured[0].get(column, "") for column in COLUMNS} | {"part": part,
-                                                                                     "ranks": ranks, "grains": grains,
-                                                                                    "rounds": len(measured)}
-                row["steps"] = round(RUN / STEP) if part.startswith(("whole_run", "rigid_tire")) else arguments.steps
-                median = statistics.median(times)
-                compared = (engines[part.split(": ")[0]] if ": " in part
-                            else alone_cpu if part.endswith("_cpu") else alone)
-                if row["cpu_us_per_step"] != "":
-                    row["cpu_us_per_step"] = (f"{statistics.median(float(one['cpu_us_per_step']) for one in measured):.0f}")
-                row |= {"us_per_step": f"{median:.0f}", "lowest": f"{min(times):.0f}", "highest": f"{max(times):.0f}",
-                        "ns_per_grain_step": f"{1e3 * median / grains:.0f}", "over_pairs": f"{median / compared:.3f}"}
-                if ranks not in arguments.timed:
-                    row |= dict.fromkeys(("us_per_step", "lowest", "highest",
-                                          "cpu_us_per_step", "ns_per_grain_step", "over_pairs"), "")
-                if row["ghosts_most"] != "":
-                    row["bytes_per_step"] = GHOST_BYTES * int(row["ghosts_most"])
-                rows.append(row)
-            provenance.write_table(arguments.out, COLUMNS, rows, made)
-            show([row for row in rows if row["ranks"] == ranks])
+            timed = ranks in arguments.timed
+            found, engines = measured(ranks, timed, arguments.rounds, steps, folder)
+            rows += rows_of(ranks, timed, steps, found, engines)
+            driver.write(arguments.out, rows, made, names=COLUMNS)
+    for row in rows:
+        print(f"{row['ranks']} ranks, {row['part']:<38} {row['us_per_step']:>10} µs a step, "
+              f"processor {row['cpu_us_per_step']:>10}, over pairs alone {row['over_pairs']}")
 
 
 if __name__ == "__main__":

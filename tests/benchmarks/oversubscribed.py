@@ -10,7 +10,6 @@ the others. The busy processes do nothing but arithmetic. Needs a machine that h
 A run among B busy processes per core has a fair share of 1 / (1 + B) of the cores, when its own ranks are as many as
 these; so the step may become about 1 + B times as long. What it becomes longer than that is lost in waiting for a core.
 """
-import argparse
 import json
 import os
 import pathlib
@@ -19,63 +18,50 @@ import subprocess
 import sys
 import tempfile
 
+from start_of_ranks import driver
+
 SMALL = {
     "format_version": 1,
     "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28, "ramp": 0.01, "carrier_mass": 450},
     "tire": {"file": "hmmwv_layered.json", "rigid": True},
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4, "width": 0.4},
-    "run": {"step": 1e-4, "end": 0.2, "average_from": 0.1},
-    "output": {"series_interval": 1e-3, "frame_interval": 0},
+    "run": {"step": 1e-4, "end": 0.2, "average_from": 0.1}, "output": {"series_interval": 1e-3, "frame_interval": 0},
     "checkpoint": {"at_end": False},
 }
 BUSY = "while True: pass"
 
 
-def milliseconds_per_step(program, scenario, settings, folder):
+def milliseconds_per_step(program, words, out):
     """Wall time of the run without settling over its steps, and processor time of all its processes, s."""
-    flags = [word for setting in settings for word in ("--set", setting)]
-    before = os.times().children_user + os.times().children_system
-    done = subprocess.run([program, "run", scenario, *flags, "--no-plots", "--out", folder],
-                          capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{program}: {done.stderr}")
-    processor = os.times().children_user + os.times().children_system - before
-    summary = json.loads((folder / "summary.json").read_text())
-    run = json.loads((folder / "scenario.json").read_text())["run"]
-    steps = round(run["end"] / run["step"])
-    return 1e3 * summary["wall_s"] / steps, processor
+    _, processor, _ = driver.timed("run", *words, "--no-plots", "--out", out, program=os.path.abspath(program),
+                                   XDG_CACHE_HOME=str(out.parent / "cache"))
+    run = driver.read_json(out / "scenario.json")["run"]
+    return 1e3 * driver.summary(out)["wall_s"] / round(run["end"] / run["step"]), processor
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser = driver.options(
+        __doc__, busy={"type": int, "action": "append", "help": "busy processes per core; default: 0 and 4"},
+        rounds={"type": int, "default": 5}, set={"action": "append", "default": [], "metavar": "KEY=VALUE"},
+        scenario={"type": os.path.abspath, "help": "default: a rigid wheel on a few large grains, 2000 steps"})
     parser.add_argument("program", nargs="+", help="builds of furrow to compare")
-    parser.add_argument("--busy", type=int, action="append",
-                        help="busy processes per core; may be repeated (default: 0 and 4)")
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--scenario", type=pathlib.Path,
-                        help="default: a rigid wheel on a few large grains, 2000 steps")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     arguments = parser.parse_args()
-    cores = len(os.sched_getaffinity(0))
+    cores, medians = len(os.sched_getaffinity(0)), {}
     with tempfile.TemporaryDirectory(prefix="oversubscribed-") as holder:
         folder = pathlib.Path(holder)
-        os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
-        scenario = arguments.scenario
-        if not scenario:
-            scenario = folder / "small.json"
-            scenario.write_text(json.dumps(SMALL))
+        (folder / "small.json").write_text(json.dumps(SMALL))
+        words = [arguments.scenario or folder / "small.json"]
+        words += [word for setting in arguments.set for word in ("--set", setting)]
         for number, program in enumerate(arguments.program):
-            milliseconds_per_step(program, scenario, arguments.set, folder / f"warm-{number}")
+            milliseconds_per_step(program, words, folder / f"warm-{number}")
         print("busy per core, program, ms per step, processor time of the run s")
-        medians = {}
         for busy in arguments.busy or [0, 4]:
             crowd = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(busy * cores)]
             try:
                 taken = {program: [] for program in arguments.program}
                 for count in range(arguments.rounds):
-                    for program in arguments.program:
-                        out = folder / f"run-{busy}-{count}-{arguments.program.index(program)}"
-                        step, processor = milliseconds_per_step(program, scenario, arguments.set, out)
+                    for number, program in enumerate(arguments.program):
+                        step, processor = milliseconds_per_step(program, words, folder / f"run-{busy}-{count}-{number}")
                         taken[program].append(step)
                         print(f"{busy}, {program}, {step:.3f}, {processor:.2f}", flush=True)
             finally:
@@ -83,11 +69,11 @@ def main():
                     process.kill()
                     process.wait()
             medians[busy] = {program: statistics.median(steps) for program, steps in taken.items()}
-        for busy, steps in medians.items():
-            for program, step in steps.items():
-                alone = medians.get(0, {}).get(program)
-                share = f", {step / alone:.1f} times as long as alone" if alone and busy else ""
-                print(f"median beside {busy} busy processes per core: {step:.3f} ms per step, {program}{share}")
+    for busy, steps in medians.items():
+        for program, step in steps.items():
+            alone = medians.get(0, {}).get(program)
+            share = f", {step / alone:.1f} times as long as alone" if alone and busy else ""
+            print(f"median beside {busy} busy processes per core: {step:.3f} ms per step, {program}{share}")
 
 
 if __name__ == "__main__":

@@ -8,19 +8,19 @@ Runs 300 steps of N rigid wheels in rows of four (default: 1, 4, 16, 64), which 
 takes less its steps and its bed is the beginning and the end. Prints lines of CSV. Needs a machine that has nothing
 else to do.
 """
-import argparse
 import json
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
-import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "studies"))
+import driver  # noqa: E402
 
 STEP, STEPS = 1e-4, 300
 
 
-def scenario(wheels):
+def scenario(wheels, steps=STEPS, **sections):
     places = [{"start": 0.7 + 1.1 * (k // 4), "lateral": -0.75 + 0.5 * (k % 4)} for k in range(wheels)]
     return {
         "format_version": 1,
@@ -29,43 +29,36 @@ def scenario(wheels):
         "tire": {"file": "hmmwv_layered.json", "rigid": True},
         "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 4, "length": 1.4 + 1.1 * ((wheels + 3) // 4),
                     "width": 2.1},
-        "run": {"step": STEP, "end": STEP * STEPS, "average_from": 0.5 * STEP * STEPS},
+        "run": {"step": STEP, "end": STEP * steps, "average_from": 0.5 * STEP * steps},
         "output": {"series_interval": 1e-3, "frame_interval": 0},
-        "checkpoint": {"at_end": False},
+        "checkpoint": {"at_end": False}, **sections,
     }
 
 
-def times(program, path, out):
-    """(wall time of beginning and end in s, of a step in ms, both as told by `furrow validate`)"""
-    told = json.loads(subprocess.run([program, "validate", path, "--json"],
-                                     capture_output=True, text=True, check=True).stdout)
-    begin = time.monotonic()
-    done = subprocess.run([program, "run", path, "--no-plots", "--out", out], capture_output=True, text=True)
-    wall = time.monotonic() - begin
-    if done.returncode != 0:
-        sys.exit(f"{program}: {done.stderr}")
-    summary = json.loads((out / "summary.json").read_text())
-    return (wall - summary["wall_s"] - summary["settle_wall_s"], 1e3 * summary["wall_s"] / STEPS,
-            told["time"].get("start_s", 0.0), 1e3 * told["time"]["step_s"])
+def run(program, made, out):
+    """(summary, wall time of the command in s, what `furrow validate` tells of its time)"""
+    path = out.with_suffix(".json")
+    path.write_text(json.dumps(made))
+    cache, program = {"XDG_CACHE_HOME": str(out.parent / "cache")}, os.path.abspath(program)
+    told = json.loads(driver.furrow("validate", path, "--json", program=program, **cache))
+    _, _, wall = driver.timed("run", path, "--no-plots", "--quiet", "--out", out, program=program, **cache)
+    return driver.summary(out), wall, told["time"]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser = driver.options(__doc__, rounds={"type": int, "default": 3}, wheels={"type": int, "action": "append"})
     parser.add_argument("program", nargs="+", help="builds of furrow to compare")
-    parser.add_argument("--wheels", type=int, action="append", help="may be repeated (default: 1, 4, 16 and 64)")
-    parser.add_argument("--rounds", type=int, default=3)
     arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="start-of-ranks-") as holder:
-        folder = pathlib.Path(holder)
-        os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
-        path = folder / "wheels.json"
+    with tempfile.TemporaryDirectory(prefix="start-of-ranks-") as folder:
         print("ranks,program,start_s,ms_per_step,told_start_s,told_ms_per_step")
         for wheels in arguments.wheels or [1, 4, 16, 64]:
-            path.write_text(json.dumps(scenario(wheels)))
-            times(arguments.program[0], path, folder / f"bed-{wheels}")
+            run(arguments.program[0], scenario(wheels), pathlib.Path(folder) / f"bed-{wheels}")
             for count in range(arguments.rounds):
                 for number, program in enumerate(arguments.program):
-                    found = times(program, path, folder / f"run-{wheels}-{count}-{number}")
+                    out = pathlib.Path(folder) / f"run-{wheels}-{count}-{number}"
+                    summary, wall, told = run(program, scenario(wheels), out)
+                    found = (wall - summary["wall_s"] - summary["settle_wall_s"], 1e3 * summary["wall_s"] / STEPS,
+                             told.get("start_s", 0.0), 1e3 * told["step_s"])
                     print(f"{wheels + 2},{program}," + ",".join(f"{value:.3g}" for value in found), flush=True)
 
 

@@ -6,55 +6,37 @@ usage: writing_time.py [PROGRAM] [--wheels N]... [--rounds N]
 Runs 600 steps of N rigid wheels in rows of four (default: 1, 16, 64), without frames and checkpoints, with 60 frames,
 and with 60 checkpoints. Prints lines of CSV. Needs a machine that has nothing else to do.
 """
-import argparse
-import json
-import os
 import pathlib
-import subprocess
 import tempfile
 
-import start_of_ranks
+from start_of_ranks import STEP, driver, run, scenario
 
 STEPS, EVERY = 600, 10
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def scenario(wheels, frames, checkpoints):
-    step = start_of_ranks.STEP
-    return {**start_of_ranks.scenario(wheels),
-            "run": {"step": step, "end": step * STEPS, "average_from": 0.5 * step * STEPS},
-            "output": {"series_interval": 1e-3, "frame_interval": EVERY * step if frames else 0},
-            "checkpoint": {"interval": EVERY * step if checkpoints else 0, "wall_interval": 0, "at_end": False}}
-
-
-def times(program, path, out):
+def times(program, wheels, what, out):
     """(wall time of the steps in s, what `furrow validate` tells of writing in s)"""
-    told = json.loads(subprocess.run([program, "validate", path, "--json"],
-                                     capture_output=True, text=True, check=True).stdout)
-    subprocess.run([program, "run", path, "--no-plots", "--quiet", "--out", out], stdout=subprocess.DEVNULL, check=True)
-    return json.loads((out / "summary.json").read_text())["wall_s"], told["time"]["writing_s"]
+    made = scenario(wheels, STEPS,
+                    output={"series_interval": 1e-3, "frame_interval": EVERY * STEP if what == "frames" else 0},
+                    checkpoint={"interval": EVERY * STEP if what == "checkpoints" else 0, "wall_interval": 0,
+                                "at_end": False})
+    summary, _, told = run(program, made, out / f"{what}-{wheels}")
+    return summary["wall_s"], told["writing_s"]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", nargs="?", default=ROOT / "build" / "furrow")
-    parser.add_argument("--wheels", type=int, action="append", help="may be repeated (default: 1, 16 and 64)")
-    parser.add_argument("--rounds", type=int, default=2)
+    parser = driver.options(__doc__, rounds={"type": int, "default": 2}, wheels={"type": int, "action": "append"})
+    parser.add_argument("program", nargs="?", default=driver.ROOT / "build" / "furrow")
     arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="writing-time-") as holder:
-        folder = pathlib.Path(holder)
-        os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
-        path = folder / "wheels.json"
-        print("ranks,written,count,wall_s,without_s,told_s")
-        for wheels in arguments.wheels or [1, 16, 64]:
-            for count in range(arguments.rounds):
-                path.write_text(json.dumps(scenario(wheels, False, False)))
-                without, _ = times(arguments.program, path, folder / f"none-{wheels}-{count}")
-                for what in ("frames", "checkpoints"):
-                    path.write_text(json.dumps(scenario(wheels, what == "frames", what == "checkpoints")))
-                    wall, told = times(arguments.program, path, folder / f"{what}-{wheels}-{count}")
-                    number = STEPS // EVERY + (what == "frames")
-                    print(f"{wheels + 2},{what},{number},{wall:.3g},{without:.3g},{told:.3g}", flush=True)
+    print("ranks,written,count,wall_s,without_s,told_s")
+    for wheels in arguments.wheels or [1, 16, 64]:
+        for _ in range(arguments.rounds):
+            with tempfile.TemporaryDirectory(prefix="writing-time-") as folder:
+                found = {what: times(arguments.program, wheels, what, pathlib.Path(folder))
+                         for what in ("none", "frames", "checkpoints")}
+            for what in ("frames", "checkpoints"):
+                number, (wall, told) = STEPS // EVERY + (what == "frames"), found[what]
+                print(f"{wheels + 2},{what},{number},{wall:.3g},{found['none'][0]:.3g},{told:.3g}", flush=True)
 
 
 if __name__ == "__main__":

@@ -91,9 +91,8 @@ def other_signal(case):
     """One that is not asked for: a terminal that is closed, a pipe that ends, a stray one."""
     started, alive = begin(case)
     if alive:
-        number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT,
-                                  signal.SIGPIPE, signal.SIGALRM, signal.SIGUSR1,
-                                  signal.SIGUSR2, signal.SIGXCPU])
+        number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGPIPE, signal.SIGALRM,
+                                  signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU])
         case.notes["signal"] = number.name
         strike(case, started, number)
     case.finish(started)

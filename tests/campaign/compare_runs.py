@@ -26,10 +26,8 @@ except ImportError as missing:
 
 # What a run that was disturbed and continued need not have in common with one that was not, and why.
 MAY_DIFFER = [
-    ("run.log", "what was said, and when"),
-    ("runs/*.log", "likewise, of a run of a study"),
-    ("seed*.log", "likewise, of a bed"),
-    ("profile.json", "wall times, of the part of a run that was asked for them"),
+    ("run.log", "what was said, and when"), ("runs/*.log", "likewise, of a run of a study"),
+    ("seed*.log", "likewise, of a bed"), ("profile.json", "wall times, of the part of a run that was asked for them"),
     (".furrow-run", "the list of files made so far; a study and a run that was stopped make them in another order"),
     ("ranks.png", "wall times of the ranks"),
     ("report.html", "wall times in the sections Ranks and Provenance; the page of a study holds none and is compared"),

@@ -33,8 +33,7 @@ LOOKED_AT = 0.2  # s by the clock between two looks at the processor time
 FRESH_CACHE = 50  # cases
 
 SMALL = {
-    "rig": {"slip": 0.3, "ramp": 0.01},
-    "tire": {"file": "hmmwv_layered.json", "rigid": True},
+    "rig": {"slip": 0.3, "ramp": 0.01}, "tire": {"file": "hmmwv_layered.json", "rigid": True},
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
     "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
 }
@@ -43,25 +42,20 @@ COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil",
             "bench grains", "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
 # Those that compute get rarely what they need to begin.
 WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 2, 3, 3, 4, 2, 1, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
-FLAGS = ["--set", "--threads", "--out", "--overwrite", "--orders", "--count",
-         "--elements-circumference", "--profile", "--no-plots", "--json", "--until", "--seeds", "--speed", "--only",
-         "--quick", "--on", "--deflection", "--points", "--load", "--cleat-height",
-         "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",
-         "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle",
-         "--save-bed", "--step", "--tire", "--pressure",
-         "--tolerance", "--renewal", "--elements-width", "--quiet", "--vtk",
-         "--cleat-position", "--camber", "--slurm", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
-FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json",
-         "empty.json", "list.json", "binary.json", "folder", "run",
-         "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json",
-         "hmmwv_layered.json", "rover.json", "car.json", "curb.json", "cleat_press.json",
-         "aligator_planar.json", "hmmwv_ring.json", "/dev/null", "/proc/self/mem", "/",
-         ".", "..", "", " ", "a" * 300, "a" * 5000, "folder/", "run/summary.json", "-", "--", "$(touch pwn)", "~"]
-ODD = ["0", "1", "-1", "1e400", "-1e400", "nan", "inf", "1e-320", "0x10",
-       "1e9", "4e-5", "0.3", "true", "null", "[]", "{}", "[[0, 1]]",
-       "[1, 2, 3]", "\"\"", "'x'", "x", "", " ", "[" * 70, "{\"a\": {\"a\": 1}}",
-       "9" * 400, "1,5", "ü", "🚙", "plate", "cleat", "auto", "mindlin",
-       "2147483648", "9223372036854775808", "18446744073709551616", "-0",
+FLAGS = ["--set", "--threads", "--out", "--overwrite", "--orders", "--count", "--elements-circumference", "--profile",
+         "--no-plots", "--json", "--until", "--seeds", "--speed", "--only", "--quick", "--on", "--deflection",
+         "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",
+         "--law", "--precision", "--cohesion", "--steps", "--warm", "--settle", "--save-bed", "--step", "--tire",
+         "--pressure", "--tolerance", "--renewal", "--elements-width", "--quiet", "--vtk", "--cleat-position",
+         "--camber", "--slurm", "--help", "-h", "--version", "--fast", "-x", "--set=", "--out="]
+FILES = ["small.json", "study.json", "tire.json", "soil.json", "deep.json", "empty.json", "list.json", "binary.json",
+         "folder", "run", "bed.csv", "bed.h5", "nowhere.json", "first_look.json", "study_slip.json",
+         "hmmwv_layered.json", "rover.json", "car.json", "curb.json", "cleat_press.json", "aligator_planar.json",
+         "hmmwv_ring.json", "/dev/null", "/proc/self/mem", "/", ".", "..", "", " ", "a" * 300, "a" * 5000, "folder/",
+         "run/summary.json", "-", "--", "$(touch pwn)", "~"]
+ODD = ["0", "1", "-1", "1e400", "-1e400", "nan", "inf", "1e-320", "0x10", "1e9", "4e-5", "0.3", "true", "null", "[]",
+       "{}", "[[0, 1]]", "[1, 2, 3]", "\"\"", "'x'", "x", "", " ", "[" * 70, "{\"a\": {\"a\": 1}}", "9" * 400, "1,5",
+       "ü", "🚙", "plate", "cleat", "auto", "mindlin", "2147483648", "9223372036854775808", "18446744073709551616", "-0",
        "+1", "1.", ".5", "1e", "%s%n", "\\", "\n", "\x1b[31m", "\udcff", "a=b"]
 
 

@@ -28,9 +28,8 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import events  # noqa: E402
 import report  # noqa: E402
 
-ODD = [None, True, False, 0, -1, 3, 1e308, -1e-320, 10 ** 400, float("nan"),
-       float("inf"), "", "x", "\x1b[31m", "ü" * 50, [], [1], [[]], {},
-       {"a": 1}, ["x"], [None], [{}]]
+ODD = [None, True, False, 0, -1, 3, 1e308, -1e-320, 10 ** 400, float("nan"), float("inf"), "", "x", "\x1b[31m",
+       "ü" * 50, [], [1], [[]], {}, {"a": 1}, ["x"], [None], [{}]]
 SUMMARY = {
     "format_version": 1, "scenario": "small", "terrain_engine": "dem",
     "law": "mindlin", "slip": 0.3, "vertical_load_N": 4600.0,
@@ -49,15 +48,13 @@ SUMMARY = {
 }
 SCENARIO = {"rig": {"travel_sign": 1, "wheels": [{"lateral": 0.0}]}, "tire": {"file": "x.json"},
             "terrain": {}, "run": {}}
-COLUMNS = ["time_s", "drawbar_pull_N", "drawbar_pull_raw_N", "slip", "sinkage_m",
-           "force_z_N", "force_x_N", "force_y_N", "position_m",
-           "drive_torque_Nm", "spindle_work_J", "pull_work_J"]
+COLUMNS = ["time_s", "drawbar_pull_N", "drawbar_pull_raw_N", "slip", "sinkage_m", "force_z_N", "force_x_N", "force_y_N",
+           "position_m", "drive_torque_Nm", "spindle_work_J", "pull_work_J"]
 SOIL = {"format_version": 1, "scenario": "small", "quick": True, "grains": {"radius_m": 0.006, "cohesion_Pa": 0.0},
         "n": 1.0, "k_c": 1.0,
         "k_phi": 1.0, "cohesion_Pa": 1.0, "friction_angle_deg": 30.0, "janosi_K_m": 0.01, "standard_error": {"n": 0.1}}
-PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01,
-         "load_N": 1e3, "secant_stiffness_N_per_m": 1e5,
-         "sticking_stiffness": {"lateral_N_per_m": 1e5},
+PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 0.01, "load_N": 1e3,
+         "secant_stiffness_N_per_m": 1e5, "sticking_stiffness": {"lateral_N_per_m": 1e5},
          "footprint": {"force_N": 1e3, "length_m": 0.1, "width_m": 0.1, "mean_pressure_Pa": 1e5}}
 MODES = {"tire": "x", "details": "y", "pressure_Pa": 1e5, "mass_kg": 10.0, "stable": True}
 KINEMATICS = {"vehicle": "car", "at_rest": {"wheels": [{"name": "front left", "travel_m": 0.01}]}}
@@ -71,16 +68,14 @@ VEHICLE_SUMMARY = {"scenario": "car", "terrain_engine": "dem", "law": "mindlin",
                               for k in range(4)],
                    "ranks": [{"rank": 1, "node": "tire 0", "kind": "ancf",
                               "threads": 1, "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 0.1}]}
-VEHICLE = ["time_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad",
-           "distance_m", "speed_m_s", "throttle", "brake", "steering",
-           "gear", "shifting", "engine_speed_rpm", "turbine_speed_rpm",
-           "power_W", "wheel_power_W", "soil_power_W", "target_speed_m_per_s",
-           "path_distance_m", "cross_track_error_m", "heading_error_rad", "drive_work_J"]
-VEHICLE_WHEEL = ["time_s", "slip", "sinkage_m", "sinkage_in_rut_m", "force_z_N",
-                 "iso_force_x_N", "iso_force_y_N", "iso_force_z_N",
-                 "tractive_effort_N", "terrain_resistance_N", "spindle_torque_Nm",
-                 "speed_m_per_s", "spin_rad_per_s", "position_m",
-                 "axle_height_m", "lowest_point_m", "sinkage_kinematic_m", "suspension_travel_m"]
+VEHICLE = ["time_s", "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "distance_m", "speed_m_s", "throttle",
+           "brake", "steering", "gear", "shifting", "engine_speed_rpm", "turbine_speed_rpm", "power_W", "wheel_power_W",
+           "soil_power_W", "target_speed_m_per_s", "path_distance_m", "cross_track_error_m", "heading_error_rad",
+           "drive_work_J"]
+VEHICLE_WHEEL = ["time_s", "slip", "sinkage_m", "sinkage_in_rut_m", "force_z_N", "iso_force_x_N", "iso_force_y_N",
+                 "iso_force_z_N", "tractive_effort_N", "terrain_resistance_N", "spindle_torque_Nm", "speed_m_per_s",
+                 "spin_rad_per_s", "position_m", "axle_height_m", "lowest_point_m", "sinkage_kinematic_m",
+                 "suspension_travel_m"]
 
 
 def places(value, path=()):

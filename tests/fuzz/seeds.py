@@ -4,16 +4,14 @@ import random
 import re
 
 SMALL = {
-    "rig": {"slip": 0.3, "ramp": 0.01},
-    "tire": {"file": "hmmwv_layered.json", "rigid": True},
+    "rig": {"slip": 0.3, "ramp": 0.01}, "tire": {"file": "hmmwv_layered.json", "rigid": True},
     "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
     "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
 }
 GROUND = {"tire": {"file": "toroidal.json"}, "terrain": {"engine": "rigid"}, "run": {"end": 0.1}}
 SUMMARY = {
-    "format_version": 1, "scenario": "small", "scenario_digest": "0123456789abcdef",
-    "tire_radius_m": 0.47, "tread_width_m": 0.25,
-    "vertical_load_N": 4600.0, "slip": 0.3, "sinkage_m": 0.02, "bed_clearance_m": 0.1,
+    "format_version": 1, "scenario": "small", "scenario_digest": "0123456789abcdef", "tire_radius_m": 0.47,
+    "tread_width_m": 0.25, "vertical_load_N": 4600.0, "slip": 0.3, "sinkage_m": 0.02, "bed_clearance_m": 0.1,
     "drawbar_pull_N": {"mean": 100.0, "sem": 5.0},
     "segments": [{"from_step": 0, "to_step": 100, "wall_s": 1.0, "threads": 1, "finer_than": "0123"}],
     "failed": {"exit_code": 3, "time_s": 0.01, "error": "a contact that no step can hold"},
@@ -33,8 +31,7 @@ ROAD = ("$ROAD_CRG\nREFERENCE_LINE_START_U = 2.0\nREFERENCE_LINE_END_U = 4.0 ! m
         "LONG_SECTION_V_INCREMENT = 0.5\n$!***\n$KD_DEFINITION\n")
 CUTS = "".join(f"D:long section {k},m\n" for k in (1, 2, 3)) + "D:reference line slope,m/m\n$\n$$$$\n"
 ROWS = {"LRFI": 3 * " 0.0000000 0.0100000 0.0200000 0.0300000\n", "LDFI": 3 * (4 * "                0.01" + "\n"),
-        "KRBI": 48 * "\0",
-        "KDBI": 96 * "\0"}
+        "KRBI": 48 * "\0", "KDBI": 96 * "\0"}
 
 
 def documents(root, *patterns):
@@ -90,9 +87,8 @@ def checkpoints(root):
     mark = {"subject": "wheel0", "bytes": len(",".join(names)) + 1 + len(lines), "lines": 2, "checksum": ""}
     manifest = {**MANIFEST, "series": [mark]}
     return [{"scenario": SMALL, "settings": {"run.end": 0.03}, "manifest": manifest, "lines": lines},
-            {"scenario": SMALL, "settings": {"run.step": 5e-5, "terrain.substeps": 2},
-             "manifest": manifest, "lines": lines,
-             "before": {"run": {"threads": 2}}, "failed": SUMMARY}]
+            {"scenario": SMALL, "settings": {"run.step": 5e-5, "terrain.substeps": 2}, "manifest": manifest,
+             "lines": lines, "before": {"run": {"threads": 2}}, "failed": SUMMARY}]
 
 
 def vehicles(root):

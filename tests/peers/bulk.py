@@ -64,9 +64,8 @@ def bed(a, rows):
                     continue
                 begun, folder = time.monotonic(), a.out / f"runs/bed-{engine}-{seed}-{cohesion:g}"
                 if engine == "furrow":
-                    job = {"test": "fall", "length": length, "width": width,
-                           "periodic_y": False, "step": STEP, "steps": steps,
-                           "every": steps, "cohesion": cohesion}
+                    job = {"test": "fall", "length": length, "width": width, "periodic_y": False, "step": STEP,
+                           "steps": steps, "every": steps, "cohesion": cohesion}
                     frames, series = run_furrow(folder, job, [FREE] * count, x)
                 else:
                     box = {"length": length, "width": width, "height": height + 10 * R, "periodic_y": False}
@@ -152,8 +151,7 @@ STAGES = ((0.4, 5), (0.15, 4), (0.4, 4), (1.0, 4))
 SJKR = 1.127e6
 # The engine with parts of LIGGGHTS's tangential law: all of it, its spring alone, its damper alone.
 VARIANTS = {"furrow_switched": {"switches": ALL_SWITCHES, "damper_mass": "full"},
-            "furrow_spring": {"switches": ALL_SWITCHES},
-            "furrow_damper": {"switches": 0, "damper_mass": "full"}}
+            "furrow_spring": {"switches": ALL_SWITCHES}, "furrow_damper": {"switches": 0, "damper_mass": "full"}}
 LID_SPEED = 0.4  # at which the lid falls under its load, m/s
 
 

@@ -54,8 +54,7 @@ def bed_rows(folder):
     rows = rows_of(folder, "bed")
     quantities = (("height_m", "height", "mm", 1e3), ("solid_fraction", "solid fraction, middle half", "-", 1.0),
                   ("coordination", "contacts per grain, middle half", "-", 1.0),
-                  ("mean_overlap_m", "mean overlap", "µm", 1e6),
-                  ("floor_pressure_Pa", "floor pressure", "Pa", 1.0),
+                  ("mean_overlap_m", "mean overlap", "µm", 1e6), ("floor_pressure_Pa", "floor pressure", "Pa", 1.0),
                   ("floor_share_of_weight", "floor force / weight", "-", 1.0),
                   ("side_pressure_Pa", "side wall pressure", "Pa", 1.0))
     for cohesion in sorted({r["cohesion_Pa"] for r in rows}):

@@ -48,9 +48,8 @@ def main():
     kinds = [FREE] * a.grains
     steps = round(a.end / a.step)
     every = max(1, steps // a.frames)
-    job = {"test": "fall", "length": SIDE, "width": SIDE, "step": a.step,
-           "steps": steps, "every": every, "precision": "double",
-           "wall_friction": 0.0}
+    job = {"test": "fall", "length": SIDE, "width": SIDE, "step": a.step, "steps": steps, "every": every,
+           "precision": "double", "wall_friction": 0.0}
     box = {"length": SIDE, "width": SIDE, "height": 2.0 * height}
 
     def furrow(name, **more):

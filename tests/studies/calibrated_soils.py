@@ -7,21 +7,17 @@ usage: calibrated_soils.py [lete_sand] [sandy_loam]
 """
 import csv
 import json
-import pathlib
-import subprocess
-import sys
 
+import driver
 import provenance
-from provenance import ROOT
+from driver import RESULTS, ROOT, read_json
 
-HERE = pathlib.Path(__file__).resolve().parent
 SOILS = ("lete_sand", "sandy_loam")
 
 
 def evaluations(folder, names):
     """One row for each evaluation of the fitted targets: parameters, figures with their errors, processor time."""
     lines = (folder / "evaluations.csv").read_text(encoding="utf-8").splitlines()
-    rows = []
     for line in csv.DictReader(lines[1:]):
         if line.pop("set") != "fitted":
             continue
@@ -31,24 +27,22 @@ def evaluations(folder, names):
         for k, name in enumerate(names):
             row[name] = f"{float(values[k]):.5g}" if values else ""
             row[f"{name}_se"] = f"{float(errors[k]):.2g}" if errors else ""
-        rows.append({**row, "processor_s": time, "problem": problem})
-    return rows
+        yield {**row, "processor_s": time, "problem": problem}
 
 
 def main():
-    soils = sys.argv[1:] or SOILS
+    parser = driver.options(__doc__)
+    parser.add_argument("soils", nargs="*", default=SOILS)
+    soils, made = parser.parse_args().soils, provenance.made_here()
     if unknown := [soil for soil in soils if soil not in SOILS]:
-        sys.exit(f"{unknown[0]}: is unknown, expected {' or '.join(SOILS)}")
-    made = provenance.made_here()
+        parser.error(f"{unknown[0]}: is unknown, expected {' or '.join(SOILS)}")
     for soil in soils:
-        out = ROOT / "results" / "studies" / f"calibrated_{soil}"
+        out = RESULTS / f"calibrated_{soil}"
         out.parent.mkdir(parents=True, exist_ok=True)
-        subprocess.run([provenance.program(), "calibrate", str(ROOT / "rigs" / f"calibrate_{soil}.json"),
-                        "--out", str(out)], check=True)
-        result = provenance.read_json(out / "calibration.json")
-        rows = evaluations(out, [target["name"] for target in result["targets"]])
-        provenance.write_table(HERE / f"calibrated_{soil}.csv", list(rows[0]), rows, made)
-        fitted = provenance.read_json(out / result["result"])
+        driver.furrow("calibrate", f"rigs/calibrate_{soil}.json", "--out", out)
+        result = read_json(out / "calibration.json")
+        driver.write(f"calibrated_{soil}.csv", evaluations(out, [target["name"] for target in result["targets"]]), made)
+        fitted = read_json(out / result["result"])
         fitted["measured"] = {"made": made, **fitted["measured"]}
         (ROOT / "terrain" / "data" / result["result"]).write_text(json.dumps(fitted, indent=2, ensure_ascii=False)
                                                                   + "\n", encoding="utf-8")

@@ -10,41 +10,37 @@ height of the axle, in which the ground does not give. Writes cleat_ground.csv b
 force with the cleat's middle under the axle and 120 mm from there, and both over that of the press.
 """
 import math
-import pathlib
-import sys
 
 import numpy as np
 
+import driver
 import provenance
-from cleat_roll import HEIGHTS, KEPT, RESULTS, SLOW, Passage, fitted_planar, scenario, statically
+from cleat_roll import HEIGHTS, RESULTS, SLOW, Passage, fitted_planar, scenario, statically
 
 FACTORS = (0.25, 1.0, 4.0, 16.0)
 LAYER, DAMPING = 4e8, 2e4  # N/m³, N s/m³
 PLACES = (0.0, 0.12)  # m
 
 
-def passage(factor):
+def rows_of(factor):
     made = scenario("planar", SLOW, HEIGHTS[0], friction=0.0)
     made["terrain"] |= {"ground_stiffness": factor * LAYER, "ground_damping": math.sqrt(factor) * DAMPING}
     made["run"]["step"] = 2e-5 / max(1.0, 2.0 ** math.ceil(0.5 * math.log2(factor)))
-    return Passage(KEPT.folder_of(f"planar_ground_{factor:g}", made, "run", "--no-plots"), SLOW), made["run"]["step"]
+    slow = Passage(driver.kept(RESULTS / f"planar_ground_{factor:g}", "run", scenario=made), SLOW)
+    for place in PLACES:
+        # The press depends on the height at which the axle is held, and that a little on the layer.
+        still = statically(slow.height, HEIGHTS[0], place)
+        found = float(np.mean([np.interp(side * place, slow.way, slow.ground["z"]) for side in (-1.0, 1.0)]))
+        yield {"ground_stiffness_N_per_m3": f"{factor * LAYER:g}", "step_s": f"{made['run']['step']:g}",
+               "place_mm": f"{1e3 * place:.0f}", "run_N": f"{found:.0f}", "press_N": f"{still:.0f}",
+               "beside": f"{found / still - 1.0:.4f}"}
 
 
 def main():
-    RESULTS.mkdir(parents=True, exist_ok=True)
-    made, rows = provenance.made_here(), []
+    driver.options(__doc__).parse_args()
+    made = provenance.made_here()
     fitted_planar()
-    for factor in FACTORS:
-        slow, step = passage(factor)
-        for place in PLACES:
-            # The press depends on the height at which the axle is held, and that a little on the layer.
-            still = statically(slow.height, HEIGHTS[0], place)
-            found = float(np.mean([np.interp(side * place, slow.way, slow.ground["z"]) for side in (-1.0, 1.0)]))
-            rows.append({"ground_stiffness_N_per_m3": f"{factor * LAYER:g}",
-                         "step_s": f"{step:g}", "place_mm": f"{1e3 * place:.0f}",
-                         "run_N": f"{found:.0f}", "press_N": f"{still:.0f}", "beside": f"{found / still - 1.0:.4f}"})
-            print(rows[-1], file=sys.stderr, flush=True)
-    provenance.write_table(pathlib.Path(__file__).with_suffix(".csv"), list(rows[0]), rows, made)
+    driver.write("cleat_ground.csv", [row for factor in FACTORS for row in rows_of(factor)], made, told=True)
 
 
 if __name__ == "__main__":

@@ -12,24 +12,15 @@ before the curb.
       --set run.end=4.6 --set run.average_from=4.3 --out results/curb_axle
     /usr/bin/python3 tests/studies/curb.py
 """
-import argparse
-import csv
-import json
 import pathlib
-import sys
 
 import h5py
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "scripts"))
-import plot.style as style  # noqa: E402
-import provenance  # noqa: E402
+import driver
+import plot.style as style
+import provenance
+from driver import ROOT, read_json
 
 TIRE_SPRING, TIRE_DAMPER = 639782.0, 3e3  # N/m, N s/m
 GRAVITY = 9.80665
@@ -60,6 +51,7 @@ def linear(times, road, body_mass, wheel_mass, stiffness, damping):
 
 def draw_wheel(axis, run, profile, edge):
     """The rim of the deformed tire in several frames, over the ground."""
+    from matplotlib.cm import viridis
     shown, last = [], None
     for file in sorted((run / "frames").glob("tire0_*.h5")):
         with h5py.File(file) as frame:
@@ -73,112 +65,88 @@ def draw_wheel(axis, run, profile, edge):
         around = np.argsort(np.arctan2(rim[:, 2] - middle[2], rim[:, 0] - middle[0]))
         shown.append(rim[np.append(around, around[0])])
     for k, rim in enumerate(shown):
-        axis.plot(rim[:, 0] - edge, rim[:, 2], color=plt.cm.viridis(k / max(1, len(shown) - 1)), lw=1.2)
+        axis.plot(rim[:, 0] - edge, rim[:, 2], color=viridis(k / max(1, len(shown) - 1)), lw=1.2)
     axis.plot([-2.0, *(profile[:, 0] - edge), 2.0], [profile[0, 1], *profile[:, 1], profile[-1, 1]], color="0.3", lw=2)
-    axis.set(xlabel="from the edge, m", ylabel="height, m", xlim=(-1.75, 1.45),
-             ylim=(-0.1, 1.6), aspect="equal", title="deformed tire")
-
-
-def stretches(times, flags):
-    """Time during which the flag is set, s."""
-    return float(np.sum(np.diff(times)[flags[:-1]])) if len(times) > 1 else 0.0
+    driver.label(axis, "from the edge, m", "height, m", "deformed tire", xlim=(-1.75, 1.45), ylim=(-0.1, 1.6),
+                 aspect="equal")
 
 
 class Passage:
     """A run over the curb beside the linear model; places count from the edge, heights from rest."""
 
     def __init__(self, name, run):
-        scenario = json.loads((run / "scenario.json").read_text(encoding="utf-8"))
-        series = np.genfromtxt(run / "timeseries.csv", delimiter=",", names=True)
+        scenario, series = read_json(run / "scenario.json"), driver.series(run)
         rig = scenario["rig"]
-        self.name, self.run, self.speed, self.profile = (name, run, rig["speed"],
-                                                         np.array(scenario["terrain"]["profile"]))
+        self.name, self.run, self.speed = name, run, rig["speed"]
+        self.profile = np.array(scenario["terrain"]["profile"])
         self.edge, self.height = self.profile[1]
         self.time, self.x = series["time_s"], series["position_m"] - self.edge
-        self.load = json.loads((run / "summary.json").read_text(encoding="utf-8"))["vertical_load_N"]
+        self.load = driver.summary(run)["vertical_load_N"]
         before = int(np.searchsorted(self.x, -REST - 0.522))
         self.axle = series["axle_height_m"] - series["axle_height_m"][before]
         self.body = series["body_height_m"] - series["body_height_m"][before]
         self.force, self.push = series["force_z_N"], series["force_x_N"]
         self.simple = linear(self.time, lambda t: self.height if np.interp(t, self.time, self.x) > 0.0 else 0.0,
-                             rig["body_mass"],
-                             self.load / GRAVITY - rig["body_mass"], rig["suspension_stiffness"],
-                             rig["suspension_damping"])
+                             rig["body_mass"], self.load / GRAVITY - rig["body_mass"],
+                             rig["suspension_stiffness"], rig["suspension_damping"])
         self.near = (self.x > -1.2) & (self.x < 3.0)
 
     def rows(self):
-        for k in np.flatnonzero(self.near)[::2]:
-            yield [self.name,
-                   *(f"{value:.5g}" for value in (self.time[k], self.x[k], self.axle[k], self.body[k], self.force[k],
-                                                  *self.simple[k]))]
+        columns = {"time_s": self.time, "x_from_edge_m": self.x, "axle_m": self.axle, "body_m": self.body,
+                   "ground_force_N": self.force, "simple_axle_m": self.simple[:, 0], "simple_body_m": self.simple[:, 1],
+                   "simple_force_N": self.simple[:, 2]}
+        return [{"case": self.name, **{name: float(values[k]) for name, values in columns.items()}}
+                for k in np.flatnonzero(self.near)[::2]]
 
     def figures(self):
         """(what, unit, planar tire, spring and damper)"""
-        after, over = self.x > -1.2, int(np.searchsorted(self.x, 0.0))
+        after, beyond, over = self.x > -1.2, self.x > 0.0, int(np.searchsorted(self.x, 0.0))
         felt = np.flatnonzero(after & (np.abs(self.push) > FELT * self.load))[0]
+        off = self.force[after] < AIR * self.load
+        yield "contact with the curb begins, before the edge", "m", -self.x[felt], 0.0
 
-        def risen(axle):
-            return -self.x[np.flatnonzero(after & (axle > FELT * self.height))[0]]
-
-        return [("contact with the curb begins, before the edge", "m", -self.x[felt], 0.0),
-                ("the centre has risen 2 % of the curb, before the edge",
-                 "m", risen(self.axle), risen(self.simple[:, 0])),
-                ("height of the centre over the edge, of the curb's", "-",
-                 self.axle[over] / self.height, self.simple[over, 0] / self.height),
-                ("highest centre over the curb", "m", np.max(self.axle[after]) - self.height,
-                 np.max(self.simple[after, 0]) - self.height),
-                ("least force of the ground after the edge, of the load",
-                 "-", np.min(self.force[self.x > 0.0]) / self.load,
-                 np.min(self.simple[self.x > 0.0, 2]) / self.load),
-                ("time off the ground", "s", stretches(self.time[after], self.force[after] < AIR * self.load), None),
-                ("largest force of the ground, of the load", "-", np.max(self.force[after]) / self.load,
-                 np.max(self.simple[after, 2]) / self.load)]
+        def both(what, unit, of):
+            return what, unit, *(of(axle, force) for axle, force in ((self.axle, self.force),
+                                                                     (self.simple[:, 0], self.simple[:, 2])))
+        yield both("the centre has risen 2 % of the curb, before the edge", "m", lambda axle, _:
+                   -self.x[np.flatnonzero(after & (axle > FELT * self.height))[0]])
+        yield both("height of the centre over the edge, of the curb's", "-", lambda axle, _: axle[over] / self.height)
+        yield both("highest centre over the curb", "m", lambda axle, _: np.max(axle[after]) - self.height)
+        yield both("least force of the ground after the edge, of the load", "-",
+                   lambda _, force: np.min(force[beyond]) / self.load)
+        yield "time off the ground", "s", float(np.sum(np.diff(self.time[after])[off[:-1]])), None
+        yield both("largest force of the ground, of the load", "-", lambda _, force: np.max(force[after]) / self.load)
 
     def draw(self, height, force, wheel):
         draw_wheel(wheel, self.run, self.profile, self.edge)
+        time = self.time[self.near]
         for axis, mine, theirs, factor in ((height, self.axle, self.simple[:, 0], 1e3),
                                            (force, self.force, self.simple[:, 2], 1e-3)):
-            axis.plot(self.time[self.near], factor * mine[self.near], color=style.SKY, label="planar finite elements")
-            axis.plot(self.time[self.near], factor * theirs[self.near],
-                      "--", color=style.ORANGE, label="spring and damper")
+            axis.plot(time, factor * mine[self.near], color=style.SKY, label="planar finite elements")
+            axis.plot(time, factor * theirs[self.near], "--", color=style.ORANGE, label="spring and damper")
             axis.axvline(np.interp(0.0, self.x, self.time), color="0.6", lw=0.8)
-            axis.set_xlabel("time, s")
         lifted = self.near & (self.force < AIR * self.load)
         if lifted.any():
             height.plot(self.time[lifted], 1e3 * self.axle[lifted], ".", ms=3, color=style.BLUE, label="off the ground")
-        height.set(ylabel="height of the centre over rest, mm",
-                   title=f"{self.name}, {self.speed:g} m/s; grey: centre over the edge")
-        force.set(ylabel="force of the ground, kN", title="vertical force")
-        height.legend(fontsize=9)
+        driver.label(height, "time, s", "height of the centre over rest, mm",
+                     f"{self.name}, {self.speed:g} m/s; grey: centre over the edge", 9)
+        driver.label(force, "time, s", "force of the ground, kN", "vertical force", None)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results",
-                        help="folder of the runs curb and curb_axle")
-    results = parser.parse_args().results
+    results = driver.options(__doc__, results={"type": pathlib.Path, "default": ROOT / "results",
+                                               "help": "folder of the runs curb and curb_axle"}).parse_args().results
     passages = [Passage("quarter car", results / "curb"), Passage("mass on the axle", results / "curb_axle")]
-    made = provenance.made_here(provenance.program())
-    with open(HERE / "curb.csv", "w", newline="", encoding="utf-8") as file:
-        provenance.write_header(file, made)
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("case", "time_s", "x_from_edge_m", "axle_m", "body_m",
-                         "ground_force_N", "simple_axle_m", "simple_body_m",
-                         "simple_force_N"))
-        for passage in passages:
-            writer.writerows(passage.rows())
-    with open(HERE / "curb_figures.csv", "w", newline="", encoding="utf-8") as file:
-        provenance.write_header(file, made)
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("case", "what", "unit", "planar_tire", "spring_and_damper"))
-        for passage in passages:
-            for what, unit, *values in passage.figures():
-                writer.writerow((passage.name, what, unit,
-                                 *("" if value is None else f"{value:.4g}" for value in values)))
-    figure, grid = plt.subplots(len(passages), 3, figsize=(17, 9.6), layout="constrained", width_ratios=(1, 1, 1.4))
+    made = provenance.made_here()
+    driver.write("curb.csv", [row for passage in passages for row in passage.rows()], made, 5)
+    driver.write("curb_figures.csv", [
+        {"case": passage.name, "what": what, "unit": unit, "planar_tire": float(mine), "spring_and_damper": theirs}
+        for passage in passages for what, unit, mine, theirs in passage.figures()], made)
+    figure, grid = driver.subplots(len(passages), 3, figsize=(17, 9.6), layout="constrained",
+                                   gridspec_kw={"width_ratios": (1, 1, 1.4)})
     for passage, row in zip(passages, grid):
         passage.draw(*row)
-    figure.savefig(HERE / "curb.png", dpi=62)
+    driver.save(figure, "curb", 62)
 
 
 if __name__ == "__main__":

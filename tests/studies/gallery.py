@@ -8,20 +8,15 @@ NAME is one of CASES without its ending. Without names all are made. A case that
 The rows of other cases stay as they are: the column commit says which program made each row.
 """
 import json
-import pathlib
-import resource
-import subprocess
 import sys
-import time
 
-import provenance
 from PIL import Image
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-RESULTS = ROOT / "results" / "studies" / "gallery"
+import driver
+import provenance
+from driver import HERE, ROOT, read_json
+
 TABLE, PICTURES = HERE / "gallery.csv", ROOT / "scripts" / "docs" / "pictures"
-COLUMNS = ("case", "processor_s", "wall_s", "figure", "value", "commit")
 WIDTH, MOST_BYTES = 800, 100_000  # of a picture: pixels, bytes
 TIMES = "time.json"  # in a folder of results: what it took
 
@@ -65,47 +60,30 @@ CASES = {
 def made(name):
     """The folder of results of a case, made unless this program made it."""
     command, _, _, *options = CASES[name]
-    folder = RESULTS / name
-    taken = folder / TIMES
-    build = provenance.build_of(provenance.program())
-    if provenance.read_json(taken).get("build") == build:
+    folder, build = driver.RESULTS / "gallery" / name, provenance.build_of(provenance.program())
+    if read_json(folder / TIMES).get("build") == build:
         return folder
-    RESULTS.mkdir(parents=True, exist_ok=True)
-    before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    folder.parent.mkdir(parents=True, exist_ok=True)
     later = [] if command == "press" else ["--no-plots"]
-    subprocess.run([provenance.program(), command, f"{name}.json", *options,
-                    "--out", folder, "--overwrite", "--quiet", *later], check=True,
-                   stdout=subprocess.DEVNULL)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    taken.write_text(json.dumps({"build": build, "commit": provenance.commit(), "processor_s": round(seconds, 1),
-                                 "wall_s": round(time.monotonic() - begin, 1)}) + "\n")
-    subprocess.run([provenance.program(), "report", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    _, processor, wall = driver.timed(command, f"{name}.json", *options, *later, "--out", folder, "--overwrite",
+                                      "--quiet")
+    (folder / TIMES).write_text(json.dumps({"build": build, "commit": provenance.commit(),
+                                            "processor_s": round(processor, 1), "wall_s": round(wall, 1)}) + "\n")
+    driver.furrow("report", folder, "--quiet")
     return folder
-
-
-def value_of(summary, path):
-    """What the summary says at a dotted path; None where it says nothing."""
-    for part in path.split("."):
-        if isinstance(summary, list):
-            summary = summary[int(part)] if int(part) < len(summary) else None
-        else:
-            summary = summary.get(part) if isinstance(summary, dict) else None
-    return len(summary) if isinstance(summary, list) else summary
 
 
 def figures_of(folder, keys):
     """[(name, value)] of a run or a press, or of a calibration."""
-    fitted = provenance.read_json(folder / "calibration.json")
+    fitted = read_json(folder / "calibration.json")
     found = [(f"{name} fitted", entry["value"]) for name, entry in fitted.get("parameters", {}).items()]
     for what, key in (("fitted", "targets"), ("predicted", "held_out_targets")):
         found += [(f"{what} {entry['name']}: R²", entry["r_squared"])
                   for entry in fitted.get(key, []) if entry.get("r_squared") is not None]
         found += [(f"{what} {entry['name']}", entry["figures"][0]["surrogate"]["value"])
-                  for entry in fitted.get(key, [])
-                  if entry["points"] == 1 and "surrogate" in entry["figures"][0]]
-    summary = provenance.read_json(folder / "summary.json")
-    return found + [(key, value_of(summary, key)) for key in keys]
+                  for entry in fitted.get(key, []) if entry["points"] == 1 and "surrogate" in entry["figures"][0]]
+    values = [(key, driver.value_of(driver.summary(folder), key)) for key in keys]
+    return found + [(key, len(value) if isinstance(value, list) else value) for key, value in values]
 
 
 def picture_of(folder, name, plot):
@@ -124,37 +102,27 @@ def picture_of(folder, name, plot):
 
 
 def rows_of(name, folder):
-    times = provenance.read_json(folder / TIMES)
-    rows = figures_of(folder, CASES[name][2]) or [("", "")]
-    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"],
-             "figure": figure, "value": value,
-             "commit": times["commit"]} for figure, value in rows]
-
-
-def kept_rows(name):
-    """Of gallery.csv, of cases that are not `name`."""
-    if not TABLE.exists():
-        return []
-    return [row for row in provenance.read_table(TABLE) if row["case"] in CASES and row["case"] != name]
-
-
-def origin(rows):
-    """Of the table."""
-    return {"commit": ", ".join(sorted({row["commit"] for row in rows})),
-            "compiler": provenance.compiler_of(provenance.program()),
-            "processor": provenance.processor(), "command": "gallery.py",
-            "note": "wall times of a machine that ran other programs too"}
+    times = read_json(folder / TIMES)
+    return [{"case": name, "processor_s": times["processor_s"], "wall_s": times["wall_s"], "figure": figure,
+             "value": value, "commit": times["commit"]}
+            for figure, value in figures_of(folder, CASES[name][2]) or [("", "")]]
 
 
 def main():
-    names = sys.argv[1:] or list(CASES)
+    parser = driver.options(__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    names = parser.parse_args().names or list(CASES)
     if unknown := [name for name in names if name not in CASES]:
         sys.exit(f"{unknown[0]}: is no case, expected one of: {', '.join(CASES)}")
+    order = list(CASES)
     for name in names:
         folder = made(name)
         picture_of(folder, name, CASES[name][1])
-        rows = sorted(kept_rows(name) + rows_of(name, folder), key=lambda row: list(CASES).index(row["case"]))
-        provenance.write_table(TABLE, COLUMNS, rows, origin(rows))
+        others = provenance.read_table(TABLE) if TABLE.exists() else []
+        rows = rows_of(name, folder) + [row for row in others if row["case"] in CASES and row["case"] != name]
+        driver.write(TABLE, sorted(rows, key=lambda row: order.index(row["case"])), provenance.made_here() | {
+            "commit": ", ".join(sorted({row["commit"] for row in rows})), "command": "gallery.py",
+            "note": "wall times of a machine that ran other programs too"}, None)
         print(name, flush=True)
 
 

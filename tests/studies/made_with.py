@@ -18,23 +18,25 @@ import provenance
 
 def main():
     words = sys.argv[1:]
-    if "--" not in words or not 0 < words.index("--") < len(words) - 1 or not all("=" in word
-                                                                                  for word in words[: words.index("--")]):
+    if words[:1] in (["-h"], ["--help"]):
+        print(__doc__)
+        return
+    cut = words.index("--") if "--" in words else 0
+    command = words[cut + 1:]
+    if not cut or not command or not all("=" in word for word in words[:cut]):
         sys.exit(__doc__)
-    cut = words.index("--")
     given = dict(word.split("=", 1) for word in words[:cut])
-    tables = {variable: value for variable, value in given.items() if value.endswith(".csv")}
-    made = provenance.made_here(words[cut + 1])  # before a table is written, which makes the checkout dirty
+    made = provenance.made_here(command[0])  # before a table is written, which makes the checkout dirty
     with tempfile.TemporaryDirectory() as name:
-        bare = {variable: pathlib.Path(name) / f"{variable}.csv" for variable in tables}
-        subprocess.run(words[cut + 1:], check=True,
-                       env={**os.environ, **given, **{variable: str(file) for variable, file in bare.items()}})
-        for variable, table in tables.items():
-            if not bare[variable].exists():
-                sys.exit(f"{words[cut + 1]}: wrote no file for {variable}")
-            with open(table, "w", newline="", encoding="utf-8") as file:
-                provenance.write_header(file, made)
-                file.write(bare[variable].read_text(encoding="utf-8"))
+        bare = {variable: pathlib.Path(name) / f"{variable}.csv" for variable, value in given.items()
+                if value.endswith(".csv")}
+        subprocess.run(command, check=True, env={**os.environ, **given, **{key: str(bare[key]) for key in bare}})
+        for variable, file in bare.items():
+            if not file.exists():
+                sys.exit(f"{command[0]}: wrote no file for {variable}")
+            with open(given[variable], "w", newline="", encoding="utf-8") as table:
+                provenance.write_header(table, made)
+                table.write(file.read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

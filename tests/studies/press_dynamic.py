@@ -13,19 +13,15 @@ over the last 10 ms less the load, `moved_um` how far the axle moved in that tim
 when the tire is lowered half as fast, less the other. Static: deflection of `furrow press --load` on the same mesh.
 `force_error` is the static force at the dynamic deflection over the load, less one.
 """
-import argparse
-import csv
-import json
+import itertools
 import pathlib
-import subprocess
 
 import numpy as np
 
+import driver
 import provenance
-from provenance import ROOT
+from driver import ROOT, read_json
 
-HERE = pathlib.Path(__file__).resolve().parent
-RESULTS = ROOT / "results" / "studies" / "press_dynamic"
 TIRES = ("hmmwv_lumped.json", "hmmwv_layered.json")
 LOADS = {200e3: (2000.0, 4561.65), 70e3: (1000.0, 2500.0)}  # Pa: N
 MESHES = ("60x12", "90x24", "120x32")
@@ -34,11 +30,7 @@ SPEED, END = 0.15, 0.45  # m/s, s: nearly critical damping of the load on the ti
 STEP = 2e-5  # s; forces of a ground as stiff come one step late
 
 
-def furrow(*arguments):
-    subprocess.run([provenance.program(), *map(str, arguments)], check=True)
-
-
-def scenario(tire, pressure, mesh, load, speed):
+def scenario(tire, pressure, mesh, load, speed=SPEED):
     around, across = map(int, mesh.split("x"))
     end = END * SPEED / speed
     return {
@@ -52,88 +44,53 @@ def scenario(tire, pressure, mesh, load, speed):
     }
 
 
-class Unfinished(Exception):
-    pass
+def folder_of(case, ending, command, *words, finished_only=False, **more):
+    tire, pressure, mesh, load = case
+    name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_{ending}"
+    return driver.kept(driver.RESULTS / "press_dynamic" / name, command, *words, scenario=scenario(*case, **more),
+                       finished_only=finished_only)
 
 
-only_finished = False
+def stood(folder):
+    """Height of the axle, m, mean force of the ground, N, and way of the axle, m, of the last 10 ms."""
+    last = driver.series(folder)[-6:]
+    heights = last["axle_height_m"]
+    return heights[-1], np.mean(last["force_z_N"]), heights[-1] - heights[0]
 
 
-def folder_of(name, made, *command):
-    """Of the results, made unless this build made them already from the same scenario."""
-    folder, stamp = RESULTS / name, RESULTS / f"{name}.stamp"
-    key = json.dumps([provenance.build_of(provenance.program()), made, command])
-    if not (folder / "summary.json").exists() or not stamp.exists() or stamp.read_text() != key:
-        if only_finished:
-            raise Unfinished
-        RESULTS.mkdir(parents=True, exist_ok=True)
-        file = RESULTS / f"{name}.json"
-        file.write_text(json.dumps(made))
-        furrow(command[0], file, *command[1:], "--out", folder, "--overwrite", "--quiet")
-        stamp.write_text(key)
-    return folder
-
-
-def stood(tire, pressure, mesh, load, speed=SPEED):
-    """Height of the axle, m, mean force of the ground less the load, N, and way of the axle, m, of the last 10 ms."""
-    name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_{speed:g}"
-    folder = folder_of(name, scenario(tire, pressure, mesh, load, speed), "run", "--no-plots")
-    with open(folder / "timeseries.csv", newline="") as file:
-        last = list(csv.DictReader(file))[-6:]
-    heights = [float(line["axle_height_m"]) for line in last]
-    return heights[-1], np.mean([float(line["force_z_N"]) for line in last]) - load, heights[-1] - heights[0]
-
-
-def pressed(tire, pressure, mesh, load):
-    """The summary of the press and its curve (deflection, m; force, N)."""
-    name = f"{pathlib.Path(tire).stem}_{pressure / 1e3:.0f}_{mesh}_{load:.0f}_press"
-    made = scenario(tire, pressure, mesh, load, SPEED)
-    folder = folder_of(name, made, "press", "--load", load, "--deflection",
-                       0.016 if pressure > 1e5 else 0.02, "--points", 16)
-    with open(folder / "press.csv", newline="") as file:
-        curve = [(float(line["deflection_m"]), float(line["force_N"]))
-                 for line in csv.DictReader(file) if line["unloading"] == "0"]
-    summary = json.loads((folder / "summary.json").read_text())
-    radius = json.loads((ROOT / "tire" / "data" / tire).read_text())["radius"]
-    return summary, np.array(curve), radius + summary["inflation_growth_m"]
+def row_of(case, finished_only):
+    """None where --finished finds no runs."""
+    tire, pressure, mesh, load = case
+    slowly = mesh == MESHES[0] and load == LOADS[pressure][-1]
+    deep = 0.016 if pressure > 1e5 else 0.02
+    run = folder_of(case, f"{SPEED:g}", "run", finished_only=finished_only)
+    press = folder_of(case, "press", "press", "--load", load, "--deflection", deep, "--points", 16,
+                      finished_only=finished_only)
+    slower = folder_of(case, f"{SPEED / 2:g}", "run", speed=SPEED / 2, finished_only=finished_only) if slowly else run
+    if not (run and press and slower):
+        return None
+    (height, force, moved), summary, curve = stood(run), driver.summary(press), driver.press_curve(press)
+    dynamic = read_json(ROOT / "tire" / "data" / tire)["radius"] + summary["inflation_growth_m"] - height
+    return {"tire": tire, "pressure_kPa": str(pressure / 1e3), "mesh": mesh, "load_N": str(load),
+            "rest_N": f"{force - load:.2g}",
+            "moved_um": f"{1e6 * moved:.2g}", "dynamic_mm": 1e3 * dynamic, "static_mm": 1e3 * summary["deflection_m"],
+            "force_error": f"{np.interp(dynamic, curve['deflection_m'], curve['force_N']) / load - 1:.4f}",
+            "half_speed_mm": f"{1e3 * (height - stood(slower)[0]):.2g}" if slowly else "",
+            "failed_factorizations": summary["failed_factorizations"],
+            "statically_stable": summary["statically_stable"], "runout_mm": f"{1e3 * summary['runout_m']:.3g}",
+            "loading_unloading": f"{summary['loading_unloading_difference']:.2g}"}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--meshes", nargs="+", choices=MESHES, default=MESHES)
-    parser.add_argument("--finished", action="store_true", help="only lines whose runs are there")
-    parser.add_argument("--only", choices=TIRES, nargs="+", default=TIRES, metavar="TIRE")
-    arguments = parser.parse_args()
-    global only_finished
-    only_finished = arguments.finished
-    origin = provenance.made_here()
-    rows = []
-    for tire in arguments.only:
-        for pressure, loads in LOADS.items():
-            for load in loads:
-                for mesh in arguments.meshes:
-                    try:
-                        height, rest, moved = stood(tire, pressure, mesh, load)
-                        summary, curve, touching = pressed(tire, pressure, mesh, load)
-                    except Unfinished:
-                        continue
-                    dynamic = touching - height
-                    row = {"tire": tire, "pressure_kPa": pressure / 1e3,
-                           "mesh": mesh, "load_N": load, "rest_N": f"{rest:.2g}",
-                           "moved_um": f"{1e6 * moved:.2g}",
-                           "dynamic_mm": f"{1e3 * dynamic:.4g}", "static_mm": f"{1e3 * summary['deflection_m']:.4g}",
-                           "force_error": f"{np.interp(dynamic, curve[:, 0], curve[:, 1]) / load - 1:.4f}",
-                           "half_speed_mm": "",
-                           "failed_factorizations": summary["failed_factorizations"],
-                           "statically_stable": summary["statically_stable"],
-                           "runout_mm": f"{1e3 * summary['runout_m']:.3g}",
-                           "loading_unloading": f"{summary['loading_unloading_difference']:.2g}"}
-                    if mesh == MESHES[0] and load == loads[-1]:
-                        slower = stood(tire, pressure, mesh, load, SPEED / 2)[0]
-                        row["half_speed_mm"] = f"{1e3 * (height - slower):.2g}"
-                    rows.append(row)
-                    print(" ".join(f"{key}={value}" for key, value in row.items()), flush=True)
-                    provenance.write_table(HERE / "press_dynamic.csv", list(row), rows, origin)
+    arguments = driver.options(__doc__, meshes={"nargs": "+", "choices": MESHES, "default": MESHES},
+                               only={"choices": TIRES, "nargs": "+", "default": TIRES, "metavar": "TIRE"},
+                               finished={"action": "store_true"}).parse_args()
+    made, rows = provenance.made_here(), []
+    for tire, (pressure, loads) in itertools.product(arguments.only, LOADS.items()):
+        for load, mesh in itertools.product(loads, arguments.meshes):
+            if row := row_of((tire, pressure, mesh, load), arguments.finished):
+                rows.append(row)
+                driver.write("press_dynamic.csv", rows, made)
 
 
 if __name__ == "__main__":

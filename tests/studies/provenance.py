@@ -4,9 +4,9 @@ compiler, the processor and the command that makes the table anew. Readers of th
     # commit: 1a2b3c4d
     # compiler: g++ 12.2.0
     # processor: AMD EPYC 7763 64-Core Processor
-    # command: run_study.py behaviour.json
-    # made before: ffb94a1, what sleeps follows the load          (only where the program of today would give other
-    bits) # note: what else has to be known
+    # command: run_study.py budget.json
+    # made before: ffb94a1, what sleeps follows the load        (only where the program of today would give other bits)
+    # note: what else has to be known
 
 A committed JSON file of results has an object `made` with the same keys. scripts/check_docs.py checks both.
 """
@@ -19,7 +19,8 @@ import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 KEYS = ("commit", "compiler", "processor", "command")
 UNKNOWN = "unknown (before provenance was written)"
 RECORD = "case.json"  # beside the summary of a run: build and commit of the program that made it
@@ -27,7 +28,7 @@ RECORD = "case.json"  # beside the summary of a run: build and commit of the pro
 
 def program():
     """The program that studies run."""
-    return os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
+    return os.path.abspath(os.environ.get("FURROW", ROOT / "build" / "furrow"))
 
 
 def build_of(file):
@@ -85,11 +86,10 @@ def read_json(path):
     return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
 
-def record_run(folder, made_at=None):
+def record_run(folder, made_at=None, **more):
     """Notes in the folder of a run which program has made it, just now. `made_at`: the commit, of the present files if
-    None; a script that writes its table between runs names the one at its start, for its table makes the checkout
-    dirty."""
-    record = {"build": build_of(program()), "commit": made_at or commit()}
+    None; a script that writes its table between runs names the one at its start, for its table makes files differ."""
+    record = {"build": build_of(program()), "commit": made_at or commit(), **more}
     if "compiler" not in read_json(folder / "summary.json"):  # of `furrow press`
         record |= {"compiler": compiler_of(program()), "cpu": processor()}
     (folder / RECORD).write_text(json.dumps(record) + "\n", encoding="utf-8")
@@ -137,10 +137,6 @@ def write_table(path, columns, rows, made):
         writer.writerows(rows)
 
 
-def data_lines(lines):
-    return [line for line in lines if not line.startswith("#")]
-
-
 def read_origin(path):
     """{key: value} of the leading comment lines."""
     with open(path, newline="", encoding="utf-8") as file:
@@ -151,4 +147,4 @@ def read_origin(path):
 def read_table(path):
     """The rows of a table as dictionaries."""
     with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(data_lines(file)))
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))

@@ -19,29 +19,16 @@ Two ways lead from (1) of the closed form to the body's acceleration: the height
 function, and integration in time (Runge and Kutta). Errors are the rms difference of run and model over the rms of the
 run, of what lies below 20 Hz, from 1.5 s after the road begins.
 """
-import argparse
-import csv
-import json
-import pathlib
-import sys
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-RESULTS = ROOT / "results" / "studies" / "ride_transfer"
-sys.path.insert(0, str(ROOT / "scripts"))
-import plot.style as style  # noqa: E402
-import provenance  # noqa: E402
-from kept_results import KeptResults  # noqa: E402
-from plot.ride_values import ride_values  # noqa: E402
+import driver
+import plot.style as style
+import provenance
+from cleat_roll import stiffness_of
+from curb import TIRE_DAMPER
+from plot.ride_values import ride_values
 
-KEPT = KeptResults(RESULTS)
-
+RESULTS = driver.RESULTS / "ride_transfer"
 GRAVITY = 9.80665
 SPEED, ROAD_FROM, ROAD_LENGTH, SPACING = 10.0, 8.0, 60.0, 0.05  # m/s, m
 END = (ROAD_FROM + ROAD_LENGTH + 3.3 + 4.0) / SPEED  # s
@@ -49,7 +36,6 @@ BODY, UNSPRUNG, RIM, SUSPENSION, DAMPER = 1290.0, 1.0, 150.0, 115e3, 7.5e3  # of
 WHEELBASE, PITCH_INERTIA = 3.3, 4200.0  # m, kg m²
 # of tire and the ground under the rigid wheel: m, N/m³, N s/m³
 RADIUS, WIDTH, STIFFNESS, DAMPING = 0.522, 1.0, 2e7, 1e4
-TIRE_DAMPER = 3e3  # N s/m, of the elastic tire
 BAND = 20.0  # Hz
 SETTLED = 1.5  # s on the road, by when the body has forgotten that it was let down
 
@@ -67,14 +53,11 @@ def road():
 
 
 def scenario(kind, rigid):
-    rig = {"type": kind, "speed": SPEED, "ramp": 0, "touchdown_time": 0.45,
-           "suspension_stiffness": SUSPENSION, "suspension_damping": DAMPER,
-           "unsprung_mass": UNSPRUNG, "rim_mass": RIM}
-    rig |= {"body_mass": BODY} if kind == "quarter_car" else {"body_mass": 2 * BODY,
-                                                              "wheelbase": WHEELBASE, "pitch_inertia": PITCH_INERTIA}
-    tire = {"file": "aligator_planar.json", "rigid": rigid}
-    if rigid:
-        tire |= {"elements_circumference": 240}
+    rig = {"type": kind, "speed": SPEED, "ramp": 0, "touchdown_time": 0.45, "suspension_stiffness": SUSPENSION,
+           "suspension_damping": DAMPER, "unsprung_mass": UNSPRUNG, "rim_mass": RIM}
+    rig |= {"body_mass": BODY} if kind == "quarter_car" else {
+        "body_mass": 2 * BODY, "wheelbase": WHEELBASE, "pitch_inertia": PITCH_INERTIA}
+    tire = {"file": "aligator_planar.json", "rigid": rigid, **({"elements_circumference": 240} if rigid else {})}
     return {
         "format_version": 1, "rig": rig, "tire": tire,
         "terrain": {"engine": "rigid", "friction": 0.8, "friction_velocity_scale": 20,
@@ -90,23 +73,15 @@ class Linear:
     """(1) of half_car.hpp or quarter_car.hpp: M q̈ + C q̇ + K q = k_t r + c_t ṙ of each wheel."""
 
     def __init__(self, kind, wheel_mass, tire_stiffness, tire_damping):
-        self.wheels = 1 if kind == "quarter_car" else 2
-        if self.wheels == 1:
-            self.mass = np.diag([BODY, wheel_mass])
-            rows = [np.array([-1.0, 1.0])]
-        else:
-            self.mass = np.diag([2 * BODY, PITCH_INERTIA, wheel_mass, wheel_mass])
-            half = 0.5 * WHEELBASE
-            rows = [np.array([-1.0, half, 1.0, 0.0]), np.array([-1.0, -half, 0.0, 1.0])]
-        size = len(self.mass)
-        self.spring = SUSPENSION * sum(np.outer(row, row) for row in rows)
-        self.damper = DAMPER * sum(np.outer(row, row) for row in rows)
-        self.tire = tire_stiffness, tire_damping
-        self.push = np.zeros((size, self.wheels))
-        for k in range(self.wheels):
-            self.push[size - self.wheels + k, k] = 1.0
-            self.spring[size - self.wheels + k, size - self.wheels + k] += tire_stiffness
-            self.damper[size - self.wheels + k, size - self.wheels + k] += tire_damping
+        half = 0.5 * WHEELBASE
+        masses, rows = (([BODY, wheel_mass], [[-1.0, 1.0]]) if kind == "quarter_car" else
+                        ([2 * BODY, PITCH_INERTIA, wheel_mass, wheel_mass],
+                         [[-1.0, half, 1.0, 0.0], [-1.0, -half, 0.0, 1.0]]))
+        self.mass, self.tire = np.diag(masses), (tire_stiffness, tire_damping)
+        self.push = np.eye(len(masses))[:, -len(rows):]  # the wheels are the last coordinates
+        struts, wheels = sum(np.outer(row, row) for row in rows), self.push @ self.push.T
+        self.spring = SUSPENSION * struts + tire_stiffness * wheels
+        self.damper = DAMPER * struts + tire_damping * wheels
 
     def transfer(self, frequency):
         """q of each wheel's road of amplitude 1, frequency × coordinate × wheel."""
@@ -172,24 +147,19 @@ def cross(step, road_heights, response, segments=6):
     return np.fft.rfftfreq(length, step), above / under
 
 
-def column(folder, name, of):
-    table = np.genfromtxt(folder / name, delimiter=",", names=True)
-    return table[of]
-
-
 class Case:
     def __init__(self, name, kind, folder, model, half, x, z):
         self.name, self.kind, self.model = name, kind, model
-        series = "timeseries.csv" if kind == "quarter_car" else "timeseries_wheel0.csv"
-        body = series if kind == "quarter_car" else "timeseries_body.csv"
-        self.time, place = column(folder, series, "time_s"), column(folder, series, "position_m")
+        quarter = kind == "quarter_car"
+        wheel, body = (driver.series(folder, None if quarter else subject) for subject in ("wheel0", "body"))
+        self.time, place = wheel["time_s"], wheel["position_m"]
         self.step = float(np.median(np.diff(self.time)))
-        self.found = {"body's centre": column(folder, body, "body_acceleration_m_per_s2")}
-        if kind == "half_car":
-            self.found["pitch"] = column(folder, body, "pitch_acceleration_rad_per_s2")
-        places = [place] if kind == "quarter_car" else [place, place - WHEELBASE]
-        self.heights = {key: np.array([patch_mean(x, z, width)(p) for p in places]) for key,
-                        width in (("point", 0.0), ("patch", half))}
+        self.found = {"body's centre": body["body_acceleration_m_per_s2"]}
+        if not quarter:
+            self.found["pitch"] = body["pitch_acceleration_rad_per_s2"]
+        places = [place] if quarter else [place, place - WHEELBASE]
+        self.heights = {key: np.array([patch_mean(x, z, width)(p) for p in places])
+                        for key, width in (("point", 0.0), ("patch", half))}
         self.on_road = (self.time > ROAD_FROM / SPEED + SETTLED) & (self.time < (ROAD_FROM + ROAD_LENGTH) / SPEED + 0.5)
         self.predicted = {(key, way): model_way(self.step, heights) for key, heights in self.heights.items()
                           for way, model_way in (("frequency", model.by_frequency), ("time", model.by_time))}
@@ -198,12 +168,10 @@ class Case:
         return list(self.found).index(what)
 
     def error(self, what, key, way):
-        found = below(self.step, self.found[what])[self.on_road]
-        wanted = below(self.step, self.predicted[key, way][self.row(what)])[self.on_road]
+        found, wanted = self.found[what], self.predicted[key, way][self.row(what)]
         if way == "frequency":  # instants at the ends of intervals; the run's are means over them
-            shifted = below(self.step, 0.5 * (self.predicted[key, way][self.row(what)]
-                                              + np.roll(self.predicted[key, way][self.row(what)], 1)))
-            wanted = shifted[self.on_road]
+            wanted = 0.5 * (wanted + np.roll(wanted, 1))
+        found, wanted = (below(self.step, values)[self.on_road] for values in (found, wanted))
         return float(np.sqrt(np.mean((found - wanted) ** 2)) / np.sqrt(np.mean(found ** 2)))
 
     def rms(self, what):
@@ -217,103 +185,101 @@ class Case:
         return frequency, found, exact
 
 
-def plate():
+def folder_of(kind, rigid, name=None, command="run", *words, finished_only=False):
+    return driver.kept(RESULTS / (name or f"{kind}_{'rigid' if rigid else 'planar'}"), command, *words,
+                       scenario=scenario(kind, rigid), finished_only=finished_only)
+
+
+def plate(finished_only):
     """Static stiffness of the elastic tire at its load, N/m, and half the length of its footprint there, m."""
     load = (BODY + UNSPRUNG + RIM + 60.0) * GRAVITY
-    folder = KEPT.folder_of("plate", scenario("quarter_car", False), "press",
-                            "--on", "plate", "--deflection", 0.04, "--points", 10, "--load", f"{load:.0f}")
+    folder = folder_of("quarter_car", False, "plate", "press", "--on", "plate", "--deflection", 0.04, "--points", 10,
+                       "--load", f"{load:.0f}", finished_only=finished_only)
     if folder is None:
         return None
-    rows = [row for row in csv.DictReader(open(folder / "press.csv", newline="")) if row["unloading"] == "0"]
-    deflection, force = (np.array([float(row[key]) for row in rows]) for key in ("deflection_m", "force_N"))
-    at = np.interp(load, force, deflection)
-    half = 0.5 * float(np.ptp([float(row["x_m"]) for row in csv.DictReader(open(folder / "footprint.csv", newline=""))
-                               if float(row["pressure_Pa"]) > 0.0]))
-    return (np.interp(at + 1e-3, deflection, force) - np.interp(at - 1e-3, deflection, force)) / 2e-3, half
+    foot = driver.columns(folder / "footprint.csv")
+    return stiffness_of(folder, load)[0], 0.5 * float(np.ptp(foot["x_m"][foot["pressure_Pa"] > 0.0]))
 
 
-def tire_mass(folder):
-    summary = json.loads((folder / "summary.json").read_text())
-    wheel = summary["wheels"][0] if "wheels" in summary else summary
-    return wheel["vertical_load_N"] / GRAVITY - BODY - UNSPRUNG - RIM
+def case_of(name, kind, rigid, x, z, finished_only):
+    """None where --finished finds no runs."""
+    folder = folder_of(kind, rigid, finished_only=finished_only)
+    pressed = None if rigid else plate(finished_only)
+    if not folder or not (rigid or pressed):
+        return None
+    summary = driver.summary(folder)
+    load = summary.get("wheels", [summary])[0]["vertical_load_N"]
+    wheel_mass = load / GRAVITY - BODY
+    if rigid:
+        deep = (load / (4.0 / 3.0 * STIFFNESS * WIDTH * np.sqrt(2.0 * RADIUS))) ** (2.0 / 3.0)
+        half = np.sqrt(2.0 * RADIUS * deep)
+        spring, damper = 1.5 * load / deep, DAMPING * WIDTH * 2.0 * half
+    else:
+        (spring, half), damper = pressed, TIRE_DAMPER
+    return Case(name, kind, folder, Linear(kind, wheel_mass, spring, damper), half, x, z)
 
 
 def draw(cases):
-    figure, axes = plt.subplots(2, len(cases), figsize=(6.2 * len(cases), 8.5), layout="constrained", squeeze=False)
+    figure, axes = driver.subplots(2, len(cases), figsize=(6.2 * len(cases), 8.5), layout="constrained", squeeze=False)
     for (top, bottom), case in zip(axes.T, cases):
         shown = case.on_road & (case.time < ROAD_FROM / SPEED + SETTLED + 2.0)
-        top.plot(case.time[shown], below(case.step, case.found["body's centre"])[shown],
-                 color=style.BLUE, lw=1.6, label="run")
-        top.plot(case.time[shown], below(case.step, case.predicted["patch", "time"][0])[shown],
-                 "--", color=style.ORANGE, lw=1.1, label="closed form")
-        top.set(xlabel="time, s", ylabel="acceleration of the body, m/s²",
-                title=f"{case.name}; error {100 * case.error(list(case.found)[0], 'patch', 'time'):.1f} %")
-        top.legend(fontsize=8)
+        closed = {"ls": "--", "color": style.ORANGE}
+        top.plot(case.time[shown], below(case.step, case.found["body's centre"])[shown], color=style.BLUE, lw=1.6,
+                 label="run")
+        top.plot(case.time[shown], below(case.step, case.predicted["patch", "time"][0])[shown], lw=1.1,
+                 label="closed form", **closed)
+        driver.label(top, "time, s", "acceleration of the body, m/s²",
+                     f"{case.name}; error {100 * case.error(list(case.found)[0], 'patch', 'time'):.1f} %", 8)
+        fine = np.geomspace(0.5, 25.0, 400)
+        q, late = case.model.transfer(fine), np.exp(-2j * np.pi * fine * WHEELBASE / SPEED)
         for what, colour in zip(case.found, (style.BLUE, style.GREEN)):
-            frequency, found, exact = case.transfer(what)
+            frequency, found, _ = case.transfer(what)
             inner = (frequency > 0.5) & (frequency < 25.0)
             bottom.loglog(frequency[inner], np.abs(found[inner]), color=colour, lw=1.6, label=f"{what}, run")
-            fine = np.geomspace(0.5, 25.0, 400)
-            q = case.model.transfer(fine)
-            late = np.exp(-2j * np.pi * fine * WHEELBASE / SPEED)
             whole = q[:, case.row(what), 0] + (q[:, case.row(what), 1] * late if case.kind == "half_car" else 0.0)
-            bottom.loglog(fine, np.abs((2 * np.pi * fine) ** 2 * whole),
-                          "--", color=style.ORANGE, lw=1.0, label=f"{what}, closed form")
-        bottom.set(xlabel="frequency, Hz", ylabel="acceleration per height of the road, 1/s² and rad/(s² m)")
-        bottom.legend(fontsize=8)
-    figure.savefig(HERE / "ride_transfer.png", dpi=62)
+            bottom.loglog(fine, np.abs((2 * np.pi * fine) ** 2 * whole), lw=1.0, label=f"{what}, closed form", **closed)
+        driver.label(bottom, "frequency, Hz", "acceleration per height of the road, 1/s² and rad/(s² m)", None, 8)
+    driver.save(figure, "ride_transfer", 62)
+
+
+def figures_of(case):
+    """(what, unit, value)"""
+    yield "tire stiffness of the closed form", "N/m", case.model.tire[0]
+    yield "tire damping of the closed form", "N s/m", case.model.tire[1]
+    for what in case.found:
+        yield f"{what}, rms", "m/s²" if what != "pitch" else "rad/s²", case.rms(what)
+        for key, told in (("point", "heights under the centre"), ("patch", "heights over the patch")):
+            for way in ("time", "frequency"):
+                yield f"{what}, error, {told}, by {way}", "-", case.error(what, key, way)
+        frequency, found, exact = case.transfer(what)
+        for low, high in ((0.8, 3.0), (3.0, 8.0), (8.0, 15.0)):
+            band = (frequency >= low) & (frequency < high)
+            yield (f"{what}, transfer function, rms error from {low:g} to {high:g} Hz", "-",
+                   np.sqrt(np.sum(np.abs(found - exact)[band] ** 2) / np.sum(np.abs(exact)[band] ** 2)))
+    for of, values in (("run", case.found["body's centre"]), ("closed form", case.predicted["patch", "time"][0])):
+        yield (f"body's centre, weighted by W_k, rms, {of}", "m/s²",
+               ride_values(case.time[case.on_road], values[case.on_road])["weighted_rms"])
+
+
+def curves_of(case):
+    return [{"case": case.name, "what": what, "frequency_Hz": f"{f:.4g}", "run": abs(a), "closed_form": abs(b)}
+            for what in case.found for f, a, b in zip(*case.transfer(what)) if 0.5 < f < 25.0]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--finished", action="store_true", help="only what is there")
-    KEPT.finished_only = parser.parse_args().finished
+    finished = driver.options(__doc__, finished={"action": "store_true"}).parse_args().finished
     RESULTS.mkdir(parents=True, exist_ok=True)
     made = provenance.made_here()
     x, z = road()
     (RESULTS / "road.csv").write_text("x_m,z_m\n" + "".join(f"{a:.3f},{b:.9f}\n" for a, b in zip(x, z)))
-    cases = []
-    for name, kind, rigid in (("quarter car, rigid wheel", "quarter_car", True),
-                              ("half car, rigid wheels", "half_car", True),
-                              ("quarter car, planar tire", "quarter_car", False)):
-        folder = KEPT.folder_of(f"{kind}_{'rigid' if rigid else 'planar'}", scenario(kind, rigid), "run", "--no-plots")
-        if folder is None:
-            continue
-        wheel = UNSPRUNG + RIM + tire_mass(folder)
-        load = (BODY + wheel) * GRAVITY
-        if rigid:
-            deep = (load / (4.0 / 3.0 * STIFFNESS * WIDTH * np.sqrt(2.0 * RADIUS))) ** (2.0 / 3.0)
-            half = np.sqrt(2.0 * RADIUS * deep)
-            spring, damper = 1.5 * load / deep, DAMPING * WIDTH * 2.0 * half
-        else:
-            (spring, half), damper = plate(), TIRE_DAMPER
-        cases.append(Case(name, kind, folder, Linear(kind, wheel, spring, damper), half, x, z))
-    figures, curves = [], []
-    for case in cases:
-        def add(what, unit, value):
-            figures.append({"case": case.name, "what": what, "unit": unit, "value": f"{value:.4g}"})
-        add("tire stiffness of the closed form", "N/m", case.model.tire[0])
-        add("tire damping of the closed form", "N s/m", case.model.tire[1])
-        for what in case.found:
-            unit = "m/s²" if what != "pitch" else "rad/s²"
-            add(f"{what}, rms", unit, case.rms(what))
-            for key, told in (("point", "heights under the centre"), ("patch", "heights over the patch")):
-                for way in ("time", "frequency"):
-                    add(f"{what}, error, {told}, by {way}", "-", case.error(what, key, way))
-            frequency, found, exact = case.transfer(what)
-            for low, high in ((0.8, 3.0), (3.0, 8.0), (8.0, 15.0)):
-                band = (frequency >= low) & (frequency < high)
-                add(f"{what}, transfer function, rms error from {low:g} to {high:g} Hz", "-",
-                    np.sqrt(np.sum(np.abs(found - exact)[band] ** 2) / np.sum(np.abs(exact)[band] ** 2)))
-            curves += [{"case": case.name, "what": what, "frequency_Hz": f"{f:.4g}",
-                        "run": f"{abs(a):.5g}", "closed_form": f"{abs(b):.5g}"}
-                       for f, a, b in zip(frequency, found, exact) if 0.5 < f < 25.0]
-        run = ride_values(case.time[case.on_road], case.found["body's centre"][case.on_road])["weighted_rms"]
-        model = ride_values(case.time[case.on_road], case.predicted["patch", "time"][0][case.on_road])["weighted_rms"]
-        add("body's centre, weighted by W_k, rms, run", "m/s²", run)
-        add("body's centre, weighted by W_k, rms, closed form", "m/s²", model)
-    provenance.write_table(HERE / "ride_transfer.csv", list(curves[0]), curves, made)
-    provenance.write_table(HERE / "ride_transfer_figures.csv", list(figures[0]), figures, made)
+    cases = [case_of(*case, x, z, finished) for case in (("quarter car, rigid wheel", "quarter_car", True),
+                                                         ("half car, rigid wheels", "half_car", True),
+                                                         ("quarter car, planar tire", "quarter_car", False))]
+    cases = [case for case in cases if case]
+    driver.write("ride_transfer.csv", [row for case in cases for row in curves_of(case)], made, 5)
+    driver.write("ride_transfer_figures.csv", [
+        {"case": case.name, "what": what, "unit": unit, "value": float(value)} for case in cases
+        for what, unit, value in figures_of(case)], made)
     draw(cases)
 
 

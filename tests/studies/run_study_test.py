@@ -28,7 +28,8 @@ else:
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "runs", "a") as file:
         file.write("{build}\\n")
-    summary = {{"scenario_digest": digest, "pull": {build}, "drawbar_pull_N": {{"steady": False, "n_eff": 8.5}}, "compiler": "g++ 12.2.0", "cpu": "a processor, 2.5 GHz"}}
+    summary = {{"scenario_digest": digest, "pull": {build}, "drawbar_pull_N": {{"steady": False, "n_eff": 8.5}},
+               "compiler": "g++ 12.2.0", "cpu": "a processor, 2.5 GHz"}}
     (out / "summary.json").write_text(json.dumps(summary))
 """
 
@@ -53,9 +54,8 @@ class RunStudy(unittest.TestCase):
                                                             "cases": cases, "columns": ["pull"]}))
 
     def run_study(self, *arguments):
-        done = subprocess.run([sys.executable, HERE / "run_study.py", self.folder / "small.json",
-                               "--results", self.folder / "results",
-                               *arguments], capture_output=True, text=True,
+        done = subprocess.run([sys.executable, HERE / "run_study.py", self.folder / "small.json", "--results",
+                               self.folder / "results", *arguments], capture_output=True, text=True,
                               env={**os.environ, "FURROW": str(self.folder / "furrow")})
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stderr
@@ -133,18 +133,11 @@ class Tables(unittest.TestCase):
             for file, key, value in ((provenance.RECORD, "build", "another"), ("summary.json", "cpu", "another"),
                                      ("summary.json", "compiler", None), (provenance.RECORD, "build", None)):
                 before = (runs[1] / file).read_text()
-                (runs[1] / file).write_text(json.dumps({k: v for k,
-                                                        v in {**json.loads(before), key: value}.items() if v}))
+                (runs[1] / file).write_text(json.dumps({**json.loads(before), key: value}))
                 with self.assertRaises(SystemExit) as refused:
                     provenance.origin_of_runs(runs)
                 self.assertIn("second", str(refused.exception))
                 (runs[1] / file).write_text(before)
-
-    def test_what_is_pooled_is_what_the_tables_hold(self):
-        with tempfile.TemporaryDirectory() as name:
-            again = pathlib.Path(name) / "pooled.csv"
-            subprocess.run([sys.executable, HERE / "pooled.py", "--out", again], check=True, stdout=subprocess.DEVNULL)
-            self.assertEqual(provenance.read_table(again), provenance.read_table(HERE / "pooled.csv"))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ runs    a study of 1,000 runs
 `--scale 0.01` makes a case that much shorter. Prints JSON, and writes it with its commit, processor and command to
 FILE; exits with 1 when memory or open files grew, or a step came to take more than twice as long.
 """
-import argparse
 import json
 import os
 import pathlib
@@ -22,9 +21,13 @@ import sys
 import tempfile
 import time
 
+import driver
 import provenance
+from driver import ROOT, read_json
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "campaign"))
+from processes import living  # noqa: E402
+
 PROGRAM = provenance.program()
 STEP = 1e-4  # s
 GROWN_MB, GROWN_SHARE = 1.0, 0.02  # of memory between the second and the last quarter of the samples
@@ -48,7 +51,7 @@ def case_steps(scale):
 
 def case_grains(scale):
     """2,000,000 grains of 10 mm: 40 m of bed, 3 m wide; the wheel runs as in drawbar_pull_small."""
-    scenario = json.loads((ROOT / "rigs" / "drawbar_pull_small.json").read_text())
+    scenario = read_json(ROOT / "rigs" / "drawbar_pull_small.json")
     scenario.pop("expected")
     scenario["tire"]["rigid"] = True
     scenario["terrain"].update(length=47.0, width=3.0)
@@ -71,21 +74,6 @@ def case_frames(scale):
     return small(steps, output={"series_interval": 1e-3, "frame_interval": STEP})
 
 
-def ranks(mark):
-    """{rank: pid} of the ranks whose command line holds `mark`."""
-    found = {}
-    for entry in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            if mark not in (entry / "cmdline").read_bytes().decode(errors="replace"):
-                continue
-            for variable in (entry / "environ").read_bytes().split(b"\0"):
-                if variable.startswith(b"OMPI_COMM_WORLD_RANK="):
-                    found[int(variable.split(b"=")[1])] = int(entry.name)
-        except OSError:
-            continue
-    return found
-
-
 def sample(pid):
     """(resident memory in MB of 2^20 bytes, open files)"""
     status = pathlib.Path(f"/proc/{pid}/status").read_text()
@@ -100,8 +88,7 @@ def newest_step(out):
 
 
 def watch(command, mark, out, every):
-    """Runs the command. @returns (samples (wall time, memory, open files) by process, [(wall time, step)], wall
-    time)"""
+    """@returns (samples (wall time, memory, open files) by process, [(wall time, step)], wall time) of the command"""
     samples, steps, begin = {}, [], time.monotonic()
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while True:
@@ -110,7 +97,8 @@ def watch(command, mark, out, every):
             break
         except subprocess.TimeoutExpired:
             pass
-        for name, pid in {"furrow": run.pid, **{f"rank {rank}": pid for rank, pid in ranks(mark).items()}}.items():
+        ranks = {role: pid for pid, role in living(mark).items() if role.startswith("rank ")}
+        for name, pid in {"furrow": run.pid, **ranks}.items():
             try:
                 samples.setdefault(name, []).append((time.monotonic() - begin, *sample(pid)))
             except (OSError, IndexError):
@@ -172,73 +160,64 @@ def run_case(scenario, folder, every):
     path.write_text(json.dumps({"format_version": 1, **scenario}))
     check = subprocess.run([PROGRAM, "validate", str(path)], capture_output=True, text=True)
     samples, steps, wall = watch([PROGRAM, "run", str(path), "--out", str(out), "--no-plots"], str(folder), out, every)
-    summary = json.loads((out / "summary.json").read_text())
+    summary, files = driver.summary(out), [path for path in out.rglob("*") if path.is_file()]
     report = {"steps": round(summary["simulated_s"] / scenario["run"]["step"]), "wall_s": round(wall, 1),
               "settle_wall_s": round(summary["settle_wall_s"], 1), "run_wall_s": round(summary["wall_s"], 1),
               "grains": summary["grains"], "active_share_mean": summary["active_share_mean"],
-              "series_MB": round(series_size(out), 2),
-              "compiler": summary["compiler"], "processor": summary["cpu"], "cores": os.cpu_count(),
-              "files": sum(len(files) for _, _, files in os.walk(out)),
-              "bytes": sum(os.path.getsize(os.path.join(top, name)) for top,
-                           _, files in os.walk(out) for name in files),
+              "series_MB": round(series_size(out), 2), "cores": os.cpu_count(), "files": len(files),
+              "bytes": sum(path.stat().st_size for path in files),
               "said_before": [line for line in check.stdout.splitlines() if "core" in line or "memory" in line],
               "processes": []}
     judge(report, samples, "step", steps, wall - summary["wall_s"], report["series_MB"])
-    return report
+    return report, summary
 
 
 def run_study(scale, folder, every):
     """Runs of at most a second each."""
-    count = round(1000 * scale)
+    count, study, out = round(1000 * scale), folder / "study.json", folder / "out"
     scenario = small(200, output={"series_interval": 1e-3, "frame_interval": 0}, checkpoint={"at_end": False})
     (folder / "small.json").write_text(json.dumps({"format_version": 1, **scenario}))
     slips = [round(0.6 * k / count, 6) for k in range(count)]
-    study = folder / "study.json"
     study.write_text(json.dumps({"scenario": "small.json", "grid": {"rig.slip": slips}}))
-    out = folder / "out"
-    samples, _, wall = watch([PROGRAM, "sweep", str(study), "--out", str(out)], str(folder / "nobody"), out, every)
+    command = [PROGRAM, "sweep", str(study), "--out", str(out)]
+    samples, _, wall = watch(command, str(folder / "nobody"), out, every)
     begin = time.monotonic()
-    again = subprocess.run([PROGRAM, "sweep", str(study), "--out", str(out)], capture_output=True, text=True)
-    summary = json.loads(next(out.glob("runs/*/summary.json")).read_text())
-    report = {"compiler": summary["compiler"], "processor": summary["cpu"],
-              "runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
+    again = subprocess.run(command, capture_output=True, text=True)
+    done = sorted(out.glob("runs/*/summary.json"), key=lambda path: path.stat().st_mtime)
+    report = {"runs": len((out / "sweep.csv").read_text().splitlines()) - 1, "wall_s": round(wall, 1),
               "again_wall_s": round(time.monotonic() - begin, 1), "again_exit_code": again.returncode, "processes": []}
-    done = sorted(path.stat().st_mtime for path in out.glob("runs/*/summary.json"))
-    judge(report, samples, "run", [(when, run) for run, when in enumerate(done, 1)])
-    return report
+    judge(report, samples, "run", [(path.stat().st_mtime, run) for run, path in enumerate(done, 1)])
+    return report, read_json(done[0])
 
 
 CASES = {"steps": case_steps, "grains": case_grains, "wheels": case_wheels, "frames": case_frames, "runs": None}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = driver.options(
+        __doc__, scale={"type": float, "default": 1.0},
+        every={"type": float, "default": 2.0, "help": "wall seconds between samples"},
+        json={"type": pathlib.Path, "help": "file that holds the reports of all cases; this one's is replaced"},
+        keep={"type": pathlib.Path, "help": "work here and leave the results"})
     parser.add_argument("case", choices=CASES)
-    parser.add_argument("--scale", type=float, default=1.0)
-    parser.add_argument("--every", type=float, default=2.0, help="wall seconds between samples")
-    parser.add_argument("--json", type=pathlib.Path,
-                        help="file that holds the reports of all cases; this one's is replaced")
-    parser.add_argument("--keep", type=pathlib.Path, help="work here and leave the results")
     arguments = parser.parse_args()
     folder = (arguments.keep or pathlib.Path(tempfile.mkdtemp(prefix="furrow_soak_"))).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     try:
         if arguments.case == "runs":
-            report = run_study(arguments.scale, folder, arguments.every)
+            report, summary = run_study(arguments.scale, folder, arguments.every)
         else:
-            report = run_case(CASES[arguments.case](arguments.scale), folder, arguments.every)
+            report, summary = run_case(CASES[arguments.case](arguments.scale), folder, arguments.every)
     finally:
         if not arguments.keep:
             shutil.rmtree(folder, ignore_errors=True)
-    report["scale"] = arguments.scale
-    report["made"] = {"commit": provenance.commit(), "compiler": report.pop("compiler"),
-                      "processor": report.pop("processor"),
-                      "command": f"soak.py {arguments.case}"
-                      + (f" --scale {arguments.scale:g}" if arguments.scale != 1.0 else "")}
+    scale = f" --scale {arguments.scale:g}" if arguments.scale != 1.0 else ""
+    report |= {"scale": arguments.scale,
+               "made": {"commit": provenance.commit(), "compiler": summary["compiler"], "processor": summary["cpu"],
+                        "command": f"soak.py {arguments.case}{scale}"}}
     print(json.dumps(report, indent=1))
     if arguments.json:
-        reports = json.loads(arguments.json.read_text()) if arguments.json.exists() else {}
-        reports[arguments.case] = report
+        reports = read_json(arguments.json) | {arguments.case: report}
         reports["made"] = {**report["made"], "command": "soak.py CASE --json FILE"}
         arguments.json.write_text(json.dumps(reports, indent=1) + "\n")
     return 1 if report["grew"] else 0

@@ -1,62 +1,50 @@
 #!/usr/bin/python3
 """What the HMMWV does on hard ground, from the runs of vehicle_hard_ground.json, beside what its engine map, its gears
-and the ground's friction alone say. Writes vehicle_hard_ground_figures.csv.
+and the ground's friction alone give. Writes vehicle_hard_ground_figures.csv.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_hard_ground.json
     /usr/bin/python3 tests/studies/vehicle_hard_ground.py
 
 Expected, each from the vehicle's file and as little as possible of the run:
   top speed     engine T_e(u) = converter T_i = (u/K(R))², T_t = T(R) T_i = i F r, v = R u i r: u speed of the crank, R
-  of the
-                turbine over it, i speed of the wheels over the turbine's in the highest gear, r rolling radius, F what
-                rolling takes, not below 0, both of the run. Near R = 1 the converter's torque is a straight line
-                (torque_converter.hpp). `speed at the end` likewise, F the force that the wheels gave then
+                of the turbine over it, i speed of the wheels over the turbine's in the highest gear, r rolling radius,
+                F what rolling takes, not below 0, both of the run. `speed at the end` likewise, F the force that the
+                wheels gave then
   braking       v²/(2 μ g) from the speed at which the pedal is touched
   energy        none of the residual: every entry comes from its own mechanism, none is a difference; sums since the
-  start
+                start
   cornering     L/tan δ to the middle of the rear axle, cot δ the mean of the steered wheels' cotangents; the understeer
-  gradient
-                is the slope of δ − L/R against v²/R
+                gradient is the slope of δ − L/R against v²/R
 """
-import argparse
 import json
 import math
 import pathlib
 
 import numpy as np
 
+import driver
 import provenance
-from provenance import ROOT, read_json
+from driver import ROOT, read_json, series
+from plot.gear_balance import Driveline
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
-TABLE = STUDY.with_name("vehicle_hard_ground_figures.csv")
-COLUMNS = ("case", "quantity", "value", "expected", "unit", "how")
-BLEND = 0.02  # of the speed ratio on each side of 1, as vehicle/driveline/torque_converter.hpp has it
 RPM = math.pi / 30.0
 GRAVITY = 9.80665
 STANDS = 0.1  # m/s
 LAST = 1.0  # s over which the top speed is a mean
 
 
-def series(folder, subject):
-    return np.genfromtxt(folder / f"timeseries_{subject}.csv", delimiter=",", names=True)
-
-
 class Runs:
     """The finished cases of the study."""
 
     def __init__(self, results):
-        cases = json.loads(STUDY.read_text())["cases"]
-        self.folders = {name: results / name for name in cases if (results / name / "summary.json").exists()}
+        self.folders = driver.finished_runs(results, json.loads(STUDY.read_text())["cases"])
         self.rows = []
 
     def add(self, case, quantity, value, expected, unit, how):
-        self.rows.append({"case": case, "quantity": quantity, "value": number(value),
-                          "expected": number(expected), "unit": unit, "how": how})
-
-
-def number(value):
-    return "" if value is None or not math.isfinite(value) else f"{value:.4g}"
+        value, expected = (None if one is None or not math.isfinite(one) else float(one) for one in (value, expected))
+        self.rows.append({"case": case, "quantity": quantity, "value": value, "expected": expected, "unit": unit,
+                          "how": how})
 
 
 def reached(time, values, level):
@@ -68,40 +56,15 @@ def reached(time, values, level):
     return float(time[0]) if k == 0 else float(np.interp(level, values[k - 1:k + 1], time[k - 1:k + 1]))
 
 
-def interpolated(points):
-    x, y = np.array(points, float).T
-    return lambda at: float(np.interp(at, x, y))
-
-
-def converter_turbine(line, crank, torque):
-    """(speed ratio, torque of the turbine) of a converter that takes `torque`, N m, at `crank`, rad/s."""
-    capacity, ratio = interpolated(line["converter"]["capacity"]), interpolated(line["converter"]["torque_ratio"])
-    edge = (crank / capacity(1.0 - BLEND)) ** 2
-    if torque <= edge:
-        found = 1.0 - BLEND * torque / edge
-        return found, torque * ratio(found)
-    low, high = 0.0, 1.0 - BLEND
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if (crank / capacity(middle)) ** 2 > torque else (low, middle)
-    return low, torque * ratio(low)
-
-
 def top_speed(line, force, radius):
     """At full throttle in the highest gear against a force, m/s."""
-    full, losses = interpolated(line["engine"]["torque"]), interpolated(line["engine"]["losses"])
     gears = line["gearbox"]["ratios"][-1] * line["gears"][1]["ratio"]
-    need = gears * force * radius
-
-    def left(rpm):
-        return converter_turbine(line, rpm * RPM, max(full(rpm) + losses(rpm), 0.0))[1] - need
-    low, high = 2000.0, 2700.0  # the torque falls between them
+    driveline = Driveline(line["engine"], line["converter"], gears, 0.0)
+    low, high = 1.0, 2700.0 * RPM * gears  # of the wheels, rad/s; the torque on them falls with it
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if left(middle) > 0.0 else (low, middle)
-    crank = low * RPM
-    share, _ = converter_turbine(line, crank, max(full(low) + losses(low), 0.0))
-    return share * crank * gears * radius
+        low, high = (middle, high) if driveline.wheel_torque(middle, 1.0) > force * radius else (low, middle)
+    return low * radius
 
 
 def acceleration(runs, line):
@@ -159,20 +122,19 @@ def energy(runs):
     for case in ("acceleration", "braking_from_15", "flexible_tires"):
         if case not in runs.folders:
             continue
-        summary = read_json(runs.folders[case] / "summary.json")
+        summary = driver.summary(runs.folders[case])
         vehicle, accounts = summary["vehicle"]["energy_J"], summary["accounts"]["energy"]
         lost, stored = accounts["lost"], accounts["stored"]
         entries = {
             "work of the engine": accounts["work"]["drive_work"],
             "gained: vehicle, motion and height": stored["rig_kinetic_and_potential"],
-            "gained: tires": sum(value for name, value in stored.items() if name.startswith("tire_")),
-            "gained: springs of the ground": sum(value for name,
-                                                 value in stored.items() if name.startswith("terrain_")),
-            **{f"lost: {name}": vehicle[name] for name in ("converter",
-                                                           "clutch", "shift", "brake", "shock", "lowering")},
+            "gained: tires": sum(stored[name] for name in stored if name.startswith("tire_")),
+            "gained: springs of the ground": sum(stored[name] for name in stored if name.startswith("terrain_")),
+            **{f"lost: {name}": vehicle[name]
+               for name in ("converter", "clutch", "shift", "brake", "shock", "lowering")},
             "lost: tires, viscous": lost["tire_viscous_loss"], "lost: sliding": lost["sliding_loss"],
-            "lost: dampers of the ground": lost["normal_damping_loss"]
-            + lost["tangential_damping_loss"] + lost["opening_loss"],
+            "lost: dampers of the ground":
+                lost["normal_damping_loss"] + lost["tangential_damping_loss"] + lost["opening_loss"],
             "lost: numerical, of tires": lost["tire_numerical_loss"] + lost["tire_solver_loss"],
             "lost: numerical, one step late": lost["surface_lag_loss"] + lost["rim_lag_loss"]}
         for name, value in entries.items():
@@ -208,21 +170,14 @@ def cornering(runs, base):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / STUDY.stem,
-                        help="folder of the cases")
-    arguments = parser.parse_args()
-    runs, vehicle = Runs(arguments.results), read_json(ROOT / "vehicle" / "data" / "hmmwv.json")
-    if not runs.folders:
-        raise SystemExit(f"{arguments.results}: holds no finished case, expected those of run_study.py {STUDY.name}")
+    parser = driver.options(__doc__, results={"type": pathlib.Path, "default": driver.RESULTS / STUDY.stem})
+    runs, vehicle = Runs(parser.parse_args().results), read_json(ROOT / "vehicle" / "data" / "hmmwv.json")
     acceleration(runs, vehicle["driveline"])
     braking(runs)
     energy(runs)
     cornering(runs, wheelbase(vehicle))
-    for row in runs.rows:
-        print(f"{row['case']:<16} {row['quantity']:<36} {row['value']:>8} {row['unit']:<14} expected "
-              f"{row['expected'] or '-':>8}  {row['how']}")
-    provenance.write_table(TABLE, COLUMNS, runs.rows, provenance.origin_of_runs(runs.folders.values()))
+    driver.write("vehicle_hard_ground_figures.csv", runs.rows, provenance.origin_of_runs(runs.folders.values()),
+                 told=True)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ the way uphill from then on over the time; `speed at the end` is a mean over the
 up at the end than 1 s before; otherwise it stands with spinning wheels, or slides. Between the last slope that it
 climbs and the first that it does not, bisection comes to 1 %.
 """
-import argparse
 import concurrent.futures
 import math
 import pathlib
@@ -16,16 +15,11 @@ import sys
 
 import numpy as np
 
+import driver
 import provenance
-import run_study
-from provenance import ROOT
 
-TABLE = pathlib.Path(__file__).with_suffix(".csv")
-COLUMNS = ("slope_percent", "go", "speed_made_good_m_s", "speed_at_the_end_m_s",
-           "gear_at_the_end", "slip_front", "slip_rear", "found_by")
 GRID = (0, 10, 20, 30, 40, 50, 60, 70, 80)  # per cent
 BEGIN, END = 0.5, 5.0  # s
-STUDY = {"scenario": "rigs/hmmwv_slope.json"}
 SET = {"tire.rigid": True, "run.step": 4e-4, "output.frame_interval": 0, "output.series_interval": 0.01, "run.end": END,
        "run.average_from": END - 1.0,
        "rig.driver": {"inputs": {"throttle": [[0, 0], [BEGIN, 0], [BEGIN + 0.2, 1]],
@@ -33,43 +27,34 @@ SET = {"tire.rigid": True, "run.step": 4e-4, "output.frame_interval": 0, "output
 FINEST = 1.0  # per cent
 
 
-def scenario_of(percent):
-    return run_study.scenario_of(STUDY, {"set": {**SET, "rig.slope": math.atan(0.01 * percent)}})
-
-
 def finished(results, percent):
     """The folder of the run on a slope; it is run unless this program has made it before."""
-    out, scenario = results / f"{percent:g}_percent", scenario_of(percent)
-    if run_study.stale_because(scenario, out) and not run_study.run_case(f"{percent:g} %", scenario, out):
-        sys.exit(f"{out}: failed")
-    return out
+    words = [str(driver.ROOT / "rigs" / "hmmwv_slope.json"),
+             *driver.settings(SET, {"rig.slope": math.atan(0.01 * percent)})]
+    return driver.finished_case(f"{percent:g} %", words, results / f"{percent:g}_percent")
 
 
 def line_of(folder, percent, how):
-    v, *wheels = (np.genfromtxt(folder / f"timeseries_{name}.csv", delimiter=",", names=True)
-                  for name in ("vehicle", "wheel0", "wheel1", "wheel2", "wheel3"))
+    v, *wheels = (driver.series(folder, name) for name in ("vehicle", "wheel0", "wheel1", "wheel2", "wheel3"))
     time, x = v["time_s"], v["x_m"]
     last = time > time[-1] - 0.5
     slip = [np.mean([np.mean(wheel["slip"][last]) for wheel in wheels[k:k + 2]]) for k in (0, 2)]
     made_good = (x[-1] - np.interp(BEGIN, time, x)) / (time[-1] - BEGIN)
     return {"slope_percent": f"{percent:g}", "go": "yes" if x[-1] > np.interp(time[-1] - 1.0, time, x) else "no",
-            "speed_made_good_m_s": f"{made_good:.3g}", "speed_at_the_end_m_s": f"{np.mean(v['speed_m_s'][last]):.3g}",
-            "gear_at_the_end": f"{v['gear'][-1]:.0f}", "slip_front": f"{slip[0]:.3g}",
-            "slip_rear": f"{slip[1]:.3g}", "found_by": how}
+            "speed_made_good_m_s": made_good, "speed_at_the_end_m_s": np.mean(v["speed_m_s"][last]),
+            "gear_at_the_end": v["gear"][-1], "slip_front": slip[0], "slip_rear": slip[1], "found_by": how}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / "vehicle_slopes",
-                        help="folder of the runs")
-    parser.add_argument("--jobs", type=int, default=1, help="runs of the grid at a time")
-    arguments = parser.parse_args()
+    arguments = driver.options(
+        __doc__, jobs={"type": int, "default": 1, "help": "runs of the grid at a time"},
+        results={"type": pathlib.Path, "default": driver.RESULTS / "vehicle_slopes"}).parse_args()
     arguments.results.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         folders = dict(zip(GRID, pool.map(lambda percent: finished(arguments.results, percent), GRID)))
     lines = {percent: line_of(folder, percent, "grid") for percent, folder in folders.items()}
-    goes, stays = (pick(percent for percent in GRID if lines[percent]["go"] == word) for pick,
-                   word in ((max, "yes"), (min, "no")))
+    goes = max(percent for percent in GRID if lines[percent]["go"] == "yes")
+    stays = min(percent for percent in GRID if lines[percent]["go"] == "no")
     if goes > stays:
         sys.exit(f"it climbs {goes} % and not {stays} %, expected one limit")
     while stays - goes > FINEST:
@@ -77,12 +62,9 @@ def main():
         folders[percent] = finished(arguments.results, percent)
         lines[percent] = line_of(folders[percent], percent, "bisection")
         goes, stays = (percent, stays) if lines[percent]["go"] == "yes" else (goes, percent)
-    for percent in sorted(lines):
-        print("  ".join(lines[percent].values()))
+    driver.write("vehicle_slopes.csv", [lines[percent] for percent in sorted(lines)],
+                 provenance.origin_of_runs(folders.values()) | {"command": "vehicle_slopes.py"}, digits=3, told=True)
     print(f"climbs {goes:g} %, not {stays:g} %")
-    origin = provenance.origin_of_runs(folders.values())
-    origin["command"] = pathlib.Path(__file__).name
-    provenance.write_table(TABLE, COLUMNS, [lines[percent] for percent in sorted(lines)], origin)
 
 
 if __name__ == "__main__":

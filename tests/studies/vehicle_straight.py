@@ -13,47 +13,40 @@ stands in the names of the files:
   vehicle_straight_series.csv  means of 20 ms of what the figures show
   vehicle_straight.png         speeds, pitch, height, engine and gear, forces, sinkages (of the first case)
 """
-import argparse
 import json
 import pathlib
-import sys
 
 import numpy as np
 
+import driver
 import provenance
-from provenance import ROOT, read_json
-
-sys.path.insert(0, str(ROOT / "scripts"))
-import matplotlib  # noqa: E402
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-
-from plot import axles, events, gear_balance  # noqa: E402
-from plot.run_data import Run  # noqa: E402
-from plot.vehicle_run import VehicleRun, running_mean  # noqa: E402
+from plot import axles, events, gear_balance
+from plot.run_data import Run
+from plot.vehicle_run import VehicleRun, running_mean
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
 INTERVAL = 0.02  # s, of the thinned series
 # column of the vehicle's table: name and factor here
 VEHICLE = {"x_m": ("x_m", 1.0), "z_m": ("height_mm", 1e3), "speed_m_s": ("speed_m_s", 1.0),
-           "pitch_rad": ("pitch_deg", 180.0 / np.pi),
-           "throttle": ("throttle", 1.0), "gear": ("gear", 1.0), "engine_speed_rpm": ("engine_rpm", 1.0),
-           "power_W": ("power_kW", 1e-3)}
+           "pitch_rad": ("pitch_deg", 180.0 / np.pi), "throttle": ("throttle", 1.0), "gear": ("gear", 1.0),
+           "engine_speed_rpm": ("engine_rpm", 1.0), "power_W": ("power_kW", 1e-3)}
 # column of the wheels' tables: name here, factor, whether an axle has the sum of its wheels
 AXLE = {"spin_rad_per_s": ("spin_rad_s", 1.0, False), "iso_force_x_N": ("force_x_N", 1.0, True),
-        "iso_force_z_N": ("force_z_N", 1.0, True),
-        "terrain_resistance_N": ("resistance_N", 1.0, True), "spindle_torque_Nm": ("torque_Nm", 1.0, True),
-        "sinkage_m": ("sinkage_mm", 1e3, False), "sinkage_in_rut_m": ("sinkage_in_rut_mm", 1e3, False)}
+        "iso_force_z_N": ("force_z_N", 1.0, True), "terrain_resistance_N": ("resistance_N", 1.0, True),
+        "spindle_torque_Nm": ("torque_Nm", 1.0, True), "sinkage_m": ("sinkage_mm", 1e3, False),
+        "sinkage_in_rut_m": ("sinkage_in_rut_mm", 1e3, False)}
 STEPPED = ("gear", "throttle")  # not to be averaged
+GEAR = {"shift_wheel_speed_m_s": "shift_speed", "limit_over_weight": "limit", "throttle": "throttle",
+        "largest_wheel_speed_m_s": "reached", "at_s": "time", "gross_traction_over_weight": "gross",
+        "torque_over_radius_and_weight": "torque"}
 
 
-def short(value):
-    return f"{value:.4g}" if np.isfinite(value) else ""
+def finite(value):
+    return float(value) if np.isfinite(value) else None
 
 
-def thinned(v):
-    """{name: values} every INTERVAL s: means over as long."""
+def series_rows(v):
+    """Every INTERVAL s: means over as long."""
     at = np.arange(0.0, v.time[-1], INTERVAL)
     found = {"time_s": at}
     for column, (name, factor) in VEHICLE.items():
@@ -63,60 +56,57 @@ def thinned(v):
         for column, (name, factor, total) in AXLE.items():
             values = running_mean(v.time, axles.axle_series(v, axle, column, total), INTERVAL)
             found[f"{v.axles[axle]}_{name}"] = factor * values[np.searchsorted(v.time, at)]
-    return found
+    return [{name: finite(values[k]) for name, values in found.items()} for k in range(len(at))]
 
 
-def axle_rows(case, v):
+def axle_rows(v):
     compared = axles.compare(v)
     for row in compared.rows:
-        line = {"case": case, "from_s": short(compared.begin), "to_s": short(compared.end),
-                "steady": not compared.unsteady,
+        line = {"from_s": finite(compared.begin), "to_s": finite(compared.end), "steady": not compared.unsteady,
                 "quantity": row.what, "unit": row.unit}
         for name, one in zip(compared.names, row.axles):
-            line |= {name: short(one.mean), f"{name}_sem": short(one.sem), f"{name}_n_eff": short(one.n_eff)}
+            line |= {name: finite(one.mean), f"{name}_sem": finite(one.sem), f"{name}_n_eff": finite(one.n_eff)}
         for name, one in zip(compared.names[1:], row.differences):
-            line |= {f"{name}_less_the_one_before": short(one.mean), f"{name}_less_sem": short(one.sem)}
+            line |= {f"{name}_less_the_one_before": finite(one.mean), f"{name}_less_sem": finite(one.sem)}
         yield line
 
 
-def gear_row(case, v):
-    b = gear_balance.balance(v)
-    return {"case": case, "shift_wheel_speed_m_s": short(b.shift_speed),
-            "limit_over_weight": short(b.limit), "throttle": short(b.throttle),
-            "largest_wheel_speed_m_s": short(b.reached), "at_s": short(b.time),
-            "gross_traction_over_weight": short(b.gross),
-            "torque_over_radius_and_weight": short(b.torque), "changed": b.changed}
+def gear_row(v):
+    balance = gear_balance.balance(v)
+    return {name: finite(getattr(balance, key)) for name, key in GEAR.items()} | {"changed": balance.changed}
 
 
-def node_rows(case, summary):
+def node_rows(summary):
     for rank in summary["ranks"]:
         times = {key: rank[key] for key in ("compute_s", "communicate_s", "wait_s")}
-        yield {"case": case, **{key: rank[key] for key in ("node", "kind", "threads")},
-               "unknowns_or_grains": rank["size"],
-               "step_s": short(rank["step_s"]), "cpu_s": short(rank["cpu_s"]),
-               **{key: short(value) for key, value in times.items()},
-               "busy_share": short(times["compute_s"] / sum(times.values()))}
+        yield {**{key: rank[key] for key in ("node", "kind", "threads")}, "unknowns_or_grains": rank["size"],
+               **{key: float(rank[key]) for key in ("step_s", "cpu_s", *times)},
+               "busy_share": times["compute_s"] / sum(times.values())}
 
 
-def picture(v, path):
-    figure, grid = plt.subplots(3, 2, figsize=(12, 11), sharex=True)
+def event_rows(v):
+    return [{"time_s": f"{e.time:.3f}", "event": e.what, "of": e.subject, "value": finite(float(e.value)),
+             "unit": e.unit, "threshold": e.threshold} for e in events.events(v)]
+
+
+def picture(v, name):
+    figure, grid = driver.subplots(3, 2, figsize=(12, 11), sharex=True)
     (speed, pitch), (height, engine), (force, sinkage) = grid
-    colours = ("tab:blue", "tab:orange", "tab:green")
-    for axle, colour in zip(v.order, colours):
-        name, wheels = v.axles[axle], v.of_axle(axle)
+    for axle, colour in zip(v.order, ("tab:blue", "tab:orange", "tab:green")):
+        of, wheels, look = v.axles[axle], v.of_axle(axle), {"color": colour}
+        below, dashed = v.order[-1] == axle, {"ls": "--", "lw": 1}
         speed.plot(v.time, running_mean(v.time, sum(w["spin_rad_per_s"] * w.radius for w in wheels) / len(wheels)),
-                   color=colour, lw=1, label=f"ω R, {name}")
-        force.plot(v.time, 1e-3 * running_mean(v.time, axles.axle_series(v, axle, "iso_force_x_N", True), 0.1),
-                   color=colour, label=f"net force, {name}")
-        force.plot(v.time, -1e-3 * running_mean(v.time, axles.axle_series(v, axle, "terrain_resistance_N", True), 0.1),
-                   color=colour, ls="--", lw=1,
-                   label=f"resistance, {name}, drawn downward")
-        sinkage.plot(v.time, 1e3 * axles.axle_series(v, axle, "sinkage_m", False),
-                     color=colour, label=f"{name}, below the undisturbed surface")
-    last = v.order[-1]
-    sinkage.plot(v.time, 1e3 * axles.axle_series(v, last, "sinkage_in_rut_m", False),
-                 color=colours[len(v.order) - 1], ls="--", lw=1,
-                 label=f"{v.axles[last]}, below the rut before it")
+                   lw=1, label=f"ω R, {of}", **look)
+        for column, factor, what, more in (
+                ("iso_force_x_N", 1e-3, f"net force, {of}", {}),
+                ("terrain_resistance_N", -1e-3, f"resistance, {of}, drawn downward", dashed)):
+            force.plot(v.time, factor * running_mean(v.time, axles.axle_series(v, axle, column, True), 0.1),
+                       label=what, **look, **more)
+        sinkage.plot(v.time, 1e3 * axles.axle_series(v, axle, "sinkage_m", False), **look,
+                     label=f"{of}, below the undisturbed surface")
+        if below:
+            sinkage.plot(v.time, 1e3 * axles.axle_series(v, axle, "sinkage_in_rut_m", False), **look, **dashed,
+                         label=f"{of}, below the rut before it")
     speed.plot(v.time, v["speed_m_s"], color="black", lw=1.6, label="vehicle")
     pitch.plot(v.time, np.degrees(v["pitch_rad"]), color="black")
     height.plot(v.time, 1e3 * (v["z_m"] - v.wheels[0].surface), color="black")
@@ -130,50 +120,34 @@ def picture(v, path):
     for axis, title, unit in ((speed, "Speed", "m/s"), (pitch, "Pitch, nose down positive", "°"),
                               (height, "Height of the origin above the soil", "mm"),
                               (engine, "Engine, converter's turbine and gear", "1/min"),
-                              (force, "Longitudinal forces by axle (mean of 0.1 s)", "kN"),
-                              (sinkage, "Sinkage", "mm")):
-        axis.set_title(title, fontsize=10)
-        axis.set_ylabel(unit)
+                              (force, "Longitudinal forces by axle (mean of 0.1 s)", "kN"), (sinkage, "Sinkage", "mm")):
+        driver.label(axis, "time, s" if axis in grid[-1] else "", unit, title)
         axis.grid(alpha=0.3)
-        if axis.get_legend_handles_labels()[0]:
-            axis.legend(fontsize=7.5)
-    for axis in grid[-1]:
-        axis.set_xlabel("time, s")
     figure.tight_layout()
-    figure.savefig(path, dpi=80)
+    driver.save(figure, name, 80)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "results" / "studies" / STUDY.stem,
-                        help="folder of the cases")
     cases = list(json.loads(STUDY.read_text())["cases"])
+    parser = driver.options(__doc__, results={"type": pathlib.Path, "default": driver.RESULTS / STUDY.stem})
     parser.add_argument("case", nargs="?", choices=cases, help="the only case of the tables; all by default")
     arguments = parser.parse_args()
-    stem = f"{STUDY.stem}_{arguments.case}" if arguments.case else STUDY.stem
-    folders = [arguments.results / case for case in ([arguments.case] if arguments.case else cases)]
-    folders = [folder for folder in folders if (folder / "summary.json").exists()]
-    if not folders:
-        raise SystemExit(f"{arguments.results}: holds no finished case, expected those of run_study.py {STUDY.name}")
-    origin = provenance.origin_of_runs(folders)
-    origin["command"] = " ".join([pathlib.Path(__file__).name, *([arguments.case] if arguments.case else [])])
+    only = [arguments.case] if arguments.case else []
+    stem = "_".join([STUDY.stem, *only])
+    folders = driver.finished_runs(arguments.results, only or cases)
+    origin = provenance.origin_of_runs(folders.values())
+    origin["command"] = " ".join([pathlib.Path(__file__).name, *only])
     tables = {"events": [], "axles": [], "gear": [], "nodes": [], "series": []}
-    for folder in folders:
+    for case, folder in folders.items():
         v = VehicleRun(Run(folder))
-        tables["events"] += [{"case": folder.name, "time_s": f"{e.time:.3f}",
-                              "event": e.what, "of": e.subject, "value": short(float(e.value)),
-                              "unit": e.unit, "threshold": e.threshold} for e in events.events(v)]
-        tables["axles"] += axle_rows(folder.name, v)
-        tables["gear"].append(gear_row(folder.name, v))
-        tables["nodes"] += node_rows(folder.name, read_json(folder / "summary.json"))
-        series = thinned(v)
-        tables["series"] += [{"case": folder.name, **{name: short(values[k]) for name, values in series.items()}}
-                             for k in range(len(series["time_s"]))]
-        if folder == folders[0]:
-            picture(v, STUDY.with_name(f"{stem}.png"))
+        found = {"events": event_rows(v), "axles": axle_rows(v), "gear": [gear_row(v)],
+                 "nodes": node_rows(driver.summary(folder)), "series": series_rows(v)}
+        for name, rows in found.items():
+            tables[name] += [{"case": case, **row} for row in rows]
+        if folder == next(iter(folders.values())):
+            picture(v, stem)
     for name, rows in tables.items():
-        columns = list(dict.fromkeys(key for row in rows for key in row))
-        provenance.write_table(STUDY.with_name(f"{stem}_{name}.csv"), columns, rows, origin)
+        driver.write(f"{stem}_{name}.csv", rows, origin)
 
 
 if __name__ == "__main__":

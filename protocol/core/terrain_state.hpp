@@ -97,6 +97,14 @@ void visit_fields(Visit&& visit, FieldsOf<TerrainMomenta> auto& s) {
   visit(Field{"sleep_impulse", "N s"}, s.sleep_impulse);
 }
 
+/// Of a terrain without momentum of its own, which the world holds: the walls give it what tires take.
+inline TerrainMomenta held_by_the_world(const Vec3& surface_impulse) {
+  TerrainMomenta momenta;
+  momenta.surface_impulse = surface_impulse;
+  momenta.wall_impulse = -surface_impulse;
+  return momenta;
+}
+
 /// What a terrain measures of itself; cumulative since the run began unless stated.
 struct TerrainState {
   double kinetic_energy = 0.0;           // J, now

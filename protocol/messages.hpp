@@ -23,7 +23,7 @@
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 8;
+inline constexpr std::int32_t kProtocolVersion = 9;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".

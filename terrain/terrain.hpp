@@ -1,9 +1,9 @@
 // The interface of every terrain: something that pushes back on the contact surfaces of tires.
 //
-// A terrain may span several ranks (TerrainContext::group). Each rank then has an object of its own, and every verb but
-// save, restore and grains_here is called on all of them, in the same order and with the same arguments. What the verbs
-// return holds for the whole terrain and counts on the leader, rank 0; frame gives each rank's own share. An advance
-// that fails returns the same outcome on every rank; a rank that fails alone throws.
+// A terrain may span several ranks (TerrainContext::group). Each rank then has an object of its own. Every rank calls
+// prepare, attach, advance and whatever is named gather_…, in the same order and with the same arguments. What they
+// return holds for the whole terrain and counts on the leader, rank 0. An advance that fails returns the same outcome
+// on every rank; a rank that fails alone throws.
 #pragma once
 
 #include <memory>
@@ -14,6 +14,7 @@
 #include "protocol/core/archive.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/core/progress_call.hpp"
+#include "protocol/core/stated_contact.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 
@@ -32,37 +33,59 @@ class Terrain {
 
   /// Generates and settles the bed, or loads it from the cache. Returns its wall time, s.
   /// @throws Error(physics) when it cannot settle.
-  virtual double prepare(const ProgressCall& progress) = 0;
+  double prepare(const ProgressCall& progress);
 
   /// Highest point over the rectangle, m.
-  virtual double top_height(double x_min, double x_max, double y_min, double y_max) const = 0;
+  virtual double gather_top_height(double x_min, double x_max, double y_min, double y_max) const = 0;
   /// Mean surface height over the rectangle, m: mean over cells of 2r of the highest grain top.
-  virtual double mean_height(double x_min, double x_max, double y_min, double y_max) const = 0;
-  virtual double floor_height() const = 0;
-  virtual HeightField height_field() const = 0;
+  virtual double gather_mean_height(double x_min, double x_max, double y_min, double y_max) const = 0;
+  virtual HeightField gather_height_field() const = 0;
+  virtual double floor_height() const = 0;  // m
 
   /// Declares the surface of tire `k` (k = 0, 1, … in order) before the first advance.
   /// @throws Error(bad_input) when mesh and positions do not belong together (terrain/surface/surface_check.hpp), the
   /// terrain's law has no use for the material, or the surface starts inside the terrain's solid boundary.
-  virtual void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) = 0;
+  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start);
+
+  /// For the next advance, one for each attached surface: a surface whose contact is given gets its forces and no
+  /// others. @pre none is given unless TerrainDescription::takes_stated_contacts; vertices of their surfaces
+  virtual void state_contacts(std::span<const StatedContact> contacts);
 
   /// Advances by `duration` in `substeps` equal steps, or in more where its contacts need it. Each vertex moves
   /// linearly from where the terrain last had it to x + v·duration of targets[k], and its contact velocity is that
   /// motion's. forces[k] and contact[k] receive the interval's means.
   /// @returns failure when a grain is lost, a surface leaves the terrain or is not finite, or no step is stable
-  /// @pre targets, forces and contact have one entry for each attached surface; duration > 0, substeps > 0
-  virtual Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                          std::span<NodalForces> forces, std::span<ContactSums> contact) = 0;
+  /// @pre prepared or restored; targets, forces and contact have one entry for each attached surface, of all its
+  /// vertices; duration > 0, substeps > 0
+  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
+                  std::span<ContactSums> contact);
 
-  virtual TerrainState state() const = 0;
+  virtual TerrainState gather_state() const = 0;
+  /// Each rank gets its share of the frame, or the leader all of it.
+  virtual void gather_frame(TerrainFrame& out) const = 0;
   virtual std::int64_t size() const = 0;                       // grains
   virtual std::int64_t grains_here() const { return size(); }  // on this rank now
-  virtual void frame(TerrainFrame& out) const = 0;
 
   /// State for a continuation, including contact history and attached surfaces' last positions: of several ranks each
   /// its own. Bit for bit where the engine says so (TerrainDescription::exact_restart).
   virtual void save(Archive& archive) const = 0;
-  virtual void restore(const Archive& archive) = 0;
+  void restore(const Archive& archive);
+
+ protected:
+  /// @param prepared  there is nothing to prepare
+  explicit Terrain(bool prepared = false) : prepared_(prepared) {}
+
+ private:
+  virtual double do_prepare(const ProgressCall& progress) = 0;
+  virtual void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) = 0;
+  /// Of what advance() has checked.
+  virtual Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                             std::span<NodalForces> forces, std::span<ContactSums> contact) = 0;
+  virtual void do_restore(const Archive& archive) = 0;
+  virtual std::size_t attached() const = 0;               // surfaces
+  virtual std::size_t vertices(std::size_t k) const = 0;  // of attached surface k
+
+  bool prepared_;
 };
 
 }  // namespace furrow::terrain

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
@@ -14,6 +15,8 @@ struct TerrainEntry {
   KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) for a file that does not exist
   std::unique_ptr<TerrainSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
+  /// True for keys of others that this engine cannot honour, even with their defaults; null: there are none.
+  bool (*denies)(std::string_view key) = nullptr;
 };
 
 }  // namespace furrow::terrain

@@ -60,6 +60,9 @@ struct TerrainDescription {
   bool core_per_rank = false;                // each rank computes on one core, and no grain sleeps
   bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
   bool gives_tangents = false;               // sends contact tangents beside forces where tires ask for them
+  bool yields = true;                        // under a wheel; false: a wheel can climb it
+  bool takes_stated_contacts = false;        // of tires that know the ground by themselves: Terrain::state_contacts
+  std::string uneven_key;                    // of the section, whose value makes it uneven; empty: it is level ground
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
   std::optional<TerrainBounds> bounds;       // none: unbounded
   std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured
@@ -95,12 +98,15 @@ class TerrainSpec {
   virtual std::vector<TerrainFile> files() const { return {}; }
   /// What this program lacks to run it, and what is expected, for people; empty: nothing.
   virtual std::string lacking() const { return {}; }
+  /// @param width overall, of one tire, m
+  /// @throws Error(bad_input) naming the key of the terrain that such a tire does not go with
+  virtual void check_tire_width(double) const {}
 
-  /// What tools that need our grains (beds, soil tests, passes) work on; null: this terrain has none.
+  /// The grains, for tools that work on them (beds, soil tests, passes); null: this terrain has none.
   virtual const dem::DemOptions* grains() const { return nullptr; }
-  /// What Terrain::save of engine dem would say of the grains, from the parts of all ranks.
+  /// The saved states of all ranks as one, which a bed can be made of (terrain/dem/beds/bed_after_run.hpp).
   /// @pre grains() is not null. @throws Error(io) when the parts do not hold together
-  virtual Archive grain_state(std::vector<Archive> parts, const TerrainContext& context) const;
+  virtual Archive joined_state(std::vector<Archive> parts, const TerrainContext& context) const;
 };
 
 }  // namespace furrow::terrain

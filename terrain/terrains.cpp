@@ -24,7 +24,7 @@ namespace {
 constexpr auto kTerrains = std::to_array<TerrainEntry>({
     {"dem", key_list<dem::DemOptions>(), dem::read_dem_spec},
     {"rigid", key_list<GroundOptions>(), read_ground_spec},
-    {"liggghts", key_list<liggghts::LiggghtsOptions>(), liggghts::read_liggghts_spec},
+    {"liggghts", key_list<liggghts::LiggghtsOptions>(), liggghts::read_liggghts_spec, liggghts::is_key_of_dem_only},
     {"scm", key_list<scm::ScmOptions>(), scm::read_scm_spec},
 });
 
@@ -75,12 +75,24 @@ std::vector<std::string> terrain_keys(unsigned roles) {
   return keys;
 }
 
+bool engine_denies(std::string_view engine, std::string_view key) {
+  return std::ranges::any_of(terrains(), [&](const TerrainEntry& entry) {
+    return engine == entry.name && entry.denies != nullptr && entry.denies(key);
+  });
+}
+
 std::string engines_with_grains() {
   return names_of(
       [](const TerrainEntry& entry) { return entry.read(nlohmann::json::object(), {})->grains() != nullptr; });
 }
 
-Archive TerrainSpec::grain_state(std::vector<Archive> parts, const TerrainContext&) const {
+std::string engines_with_stated_contacts() {
+  return names_of([](const TerrainEntry& entry) {
+    return entry.read(nlohmann::json::object(), {})->describe().takes_stated_contacts;
+  });
+}
+
+Archive TerrainSpec::joined_state(std::vector<Archive> parts, const TerrainContext&) const {
   return std::move(parts.front());
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "protocol/core/fields.hpp"
@@ -25,11 +26,16 @@ std::vector<Field> common_terrain_fields();
 /// The engines that take this key of the section; empty for the keys that all share and for those that none has.
 std::vector<std::string> engines_of_key(const std::string& key);
 
+/// The engine cannot honour this key of other engines, not even with its default.
+bool engine_denies(std::string_view engine, std::string_view key);
+
 /// Keys of all engines that have this role, in order, each once.
 std::vector<std::string> terrain_keys(unsigned roles);
 
 /// Names of the engines whose terrain has grains, for messages: "'dem'".
 std::string engines_with_grains();
+/// Names of the engines that take contacts which tires state, likewise.
+std::string engines_with_stated_contacts();
 
 /// Of a scenario that says nothing of its terrain.
 std::shared_ptr<const TerrainSpec> default_terrain();

@@ -6,6 +6,7 @@
 #include "protocol/core/archive.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/core/outcome.hpp"
+#include "protocol/core/stated_contact.hpp"
 #include "protocol/core/surface.hpp"
 #include "protocol/core/tire_diagnostics.hpp"
 #include "tire/named_values.hpp"
@@ -32,17 +33,21 @@ class Tire {
 
   /// Puts the tire on the rim, inflated, with the velocity field of a rigid body moving with the rim.
   /// @throws Error(physics) when inflation does not converge.
-  virtual void place(const RimState& rim) = 0;
+  void place(const RimState& rim);
 
   /// Vertices at the current time.
   virtual void surface(SurfaceState& out) const = 0;
+  /// The contact forces that the tire computes by a law of its own, as the terrain shall give them over its next
+  /// interval, at the time of surface(); null: the terrain computes them (TireDescription::own_contact).
+  virtual const StatedContact* stated_contact() const { return nullptr; }
 
   /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly; those that
   /// come with tangents answer to the motion, where the model can (TireDescription::takes_tangents).
   /// gravity() acts.
-  /// @returns failure when the equations have no solution, a force is not finite, or the tire left the model's range
-  /// @pre placed; substeps > 0; one force for each vertex, vertices of the mesh
-  virtual Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
+  /// @returns failure when the equations have no solution, a force or the rim's motion is not finite, or the tire left
+  /// the model's range
+  /// @pre placed or restored; substeps > 0; one force for each vertex, vertices of the mesh
+  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps);
 
   /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance;
   /// complete, with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the
@@ -66,7 +71,19 @@ class Tire {
 
   /// State of the model and its integrator; a restored tire continues bit for bit.
   virtual void save(Archive& archive) const = 0;
-  virtual void restore(const Archive& archive) = 0;
+  void restore(const Archive& archive);
+
+ protected:
+  /// It was placed or restored.
+  bool placed() const { return placed_; }
+
+ private:
+  virtual void do_place(const RimState& rim) = 0;
+  /// Of what advance() has checked.
+  virtual Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
+  virtual void do_restore(const Archive& archive) = 0;
+
+  bool placed_ = false;
 };
 
 }  // namespace furrow::tire

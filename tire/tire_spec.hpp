@@ -62,7 +62,11 @@ struct TireDescription {
   double memory = 0.0;             // that the model needs, bytes
   double saved_bytes = 0.0;        // in a checkpoint
   bool takes_tangents = false;     // contact forces may answer to its motion
+  bool deflects = true;            // false: no load deforms it
   std::vector<std::string> takes;  // names in TireOptions of what the model takes from the scenario: "pressure"
+  /// Why the tire computes its contact by a law of its own (Tire::stated_contact): "its forces are those of …"; empty:
+  /// it does not.
+  std::string own_contact;
   /// Contact forces come one step late, which feeds a tire whose own damping is slower: steps of at most
   /// `step_share` of `damping_time` are good; with a share of 0 any step is.
   double damping_time = 0.0;  // s
@@ -115,6 +119,8 @@ class TireSpec {
   virtual TireShape shape() const = 0;
   /// Keys of the tire's file whose values look like another unit, and what is odd about them.
   virtual std::vector<std::pair<std::string, std::string>> unlikely_values() const { return {}; }
+  /// Other files that the tire's file names. They count by what they hold.
+  virtual std::vector<std::filesystem::path> files() const { return {}; }
   /// Static pressing on an obstacle (press.hpp); null where the model has none.
   virtual std::unique_ptr<StaticTest> static_test() const;
   /// Natural frequencies (modes.hpp); null where the model has none.

@@ -123,8 +123,8 @@ std::string subject_lines(const json& summary, double average_from) {
   return text;
 }
 
-/// Of a wheel that stands where no wheel drives. @param soil  not an obstacle that it can climb
-std::string place_warning(const json& wheel, bool soil) {
+/// Of a wheel that stands where no wheel drives. @param yields  the ground does, so that no wheel can climb it
+std::string place_warning(const json& wheel, bool yields) {
   if (number(wheel, "interface_work_J") == 0.0) return "";  // it has not come down yet
   const double share = number(wheel, "sinkage_m") / number(wheel, "tire_radius_m");
   if (share > kDeep)
@@ -133,7 +133,7 @@ std::string place_warning(const json& wheel, bool soil) {
         "itself in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on "
         "stronger soil\n",
         share);
-  if (soil && share < -kHigh)
+  if (yields && share < -kHigh)
     return fmt::format(
         "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; "
         "take a smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
@@ -224,7 +224,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
                           digits(millimetres("rut_width_m")));
     else if (const json why = wheel.value("rut_missing_because", json()); why.is_string())
       text += ", no rut measured: " + why.get<std::string>();
-    text += "\n" + place_warning(wheel, summary.value("terrain_engine", std::string()) != "rigid");
+    text += "\n" + place_warning(wheel, scenario.terrain->describe().yields);
   }
   if (const double added = number(summary, "substeps_added"); added > 0.0)
     text += fmt::format(

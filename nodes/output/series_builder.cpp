@@ -119,10 +119,10 @@ void SeriesBuilder::measure_instants(const StepReports& r) {
   row.momentum_x_tire = r.tire.diagnostics.momentum.dot(r.heading);
   row.impulse_sent = memory_.sent;
   row.impulse_received = r.tire.impulse_received;
-  row.soil_dissipation = r.terrain.dissipation;
+  row.soil_dissipation = r.terrain.energies.losses();
   row.tire_dissipation = r.tire.diagnostics.dissipation;
   row.terrain_kinetic_energy = r.terrain.kinetic_energy;
-  row.terrain_potential_energy = r.terrain.potential_energy;
+  row.terrain_potential_energy = r.terrain.energies.potential;
   row.terrain_elastic_energy = r.terrain.elastic_energy;
   row.tire_energy = r.tire.diagnostics.kinetic_energy + r.tire.diagnostics.strain_energy();
   // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at

@@ -15,8 +15,8 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
+#include "protocol/core/rank_group.hpp"
 #include "protocol/files/json_number.hpp"
-#include "terrain/liggghts/borders.hpp"
 #include "terrain/rut.hpp"
 
 namespace furrow::output {
@@ -34,6 +34,7 @@ constexpr double kMaxLate = 0.05;      // of load × speed: energy error of the 
 constexpr double kLeastWindow = 0.1;   // of the planned averaging window, that a run must have come to
 constexpr double kLeastRolled = 1e-3;  // of the radius: a wheel that went less stands
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
+constexpr char kDistance[] = "distance_m";  // of a whole vehicle, if the rig is one
 
 /// What the summary of one wheel is computed from.
 struct WheelInput {
@@ -183,7 +184,7 @@ double imbalance(const SummaryInput& in, std::int64_t FinalReport::*grains) {
     if (r.self.role == Role::terrain) counts.push_back(r.*grains);
   counts.resize(std::max(in.scenario.terrain_ranks, 1));
   const bool known = std::any_of(counts.begin(), counts.end(), [](std::int64_t n) { return n > 0; });
-  return known ? terrain::liggghts::imbalance(counts) : NAN;
+  return known ? furrow::imbalance(counts) : NAN;
 }
 
 Json rank_table(const SummaryInput& in) {
@@ -316,9 +317,10 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
 
 /// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²
 void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
-  const auto table = std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.subject == "vehicle"; });
+  const auto table =
+      std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.find(kDistance).has_value(); });
   if (table == tables.end()) return;
-  const Json& figures = json["subjects"]["vehicle"];
+  const Json& figures = json["subjects"][table->subject];
   double weight = 0.0, pitch = 0.0;
   for (const Json& wheel : json["wheels"])
     if (wheel["vertical_load_N"].is_number()) weight += wheel["vertical_load_N"].get<double>();
@@ -327,11 +329,11 @@ void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
   for (const char* heat : {"converter", "clutch", "shift", "brake", "shock", "lowering"})
     energy[heat] = figures[std::string(heat) + "_heat_J"];
   energy["residual"] = json.contains("accounts") ? json["accounts"]["energy"]["residual_of"]["rig"] : Json();
-  json["vehicle"] = {{"mass_kg", json_number(weight / gravity)},
-                     {"distance_m", figures["distance_m"]},
-                     {"mean_speed_m_s", figures["speed_m_s"]},
-                     {"max_pitch_rad", json_number(pitch)},
-                     {"energy_J", energy}};
+  json[table->subject] = {{"mass_kg", json_number(weight / gravity)},
+                          {kDistance, figures[kDistance]},
+                          {"mean_speed_m_s", figures["speed_m_s"]},
+                          {"max_pitch_rad", json_number(pitch)},
+                          {"energy_J", energy}};
 }
 
 }  // namespace

@@ -34,10 +34,8 @@ class TerrainFollower final : public Node {
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
     frames_ = frame_clock(scenario_, context);
     if (!context.saved) {
-      PrepareOrder prepare;
-      share(group_.get(), prepare);
       terrain_->prepare(watched_progress(scenario_, transport, context));
-      terrain_->height_field();
+      terrain_->gather_height_field();
       grains_begin_ = terrain_->grains_here();
       MeasureOrder measure;
       share(group_.get(), measure);
@@ -50,7 +48,7 @@ class TerrainFollower final : public Node {
       terrain_->attach(attach.surfaces[k].mesh, attach.surfaces[k].material, attach.start[k]);
     forces_.resize(attach.surfaces.size());
     contact_.resize(attach.surfaces.size());
-    terrain_->state();
+    terrain_->gather_state();
     if (!context.saved) return;
     restore(*context.saved);
     now_.ends_at = saved_end(*context.saved);
@@ -71,14 +69,14 @@ class TerrainFollower final : public Node {
     const Outcome outcome =
         terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, contact_);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));  // as the leader says it
-    terrain_->state();
+    terrain_->gather_state();
   }
 
   Order due() const override { return now_.order; }
   std::int64_t ends_at() const override { return now_.ends_at; }
 
   void finish(Transport& transport, FinalReport own, bool) override {
-    terrain_->height_field();
+    terrain_->gather_height_field();
     own.grains = terrain_->grains_here();
     own.grains_begin = grains_begin_;
     send(transport, {Role::rig, 0}, own);
@@ -91,15 +89,15 @@ class TerrainFollower final : public Node {
   }
   void restore(const Archive& archive) override {
     terrain_->restore(archive);
-    terrain_->state();
+    terrain_->gather_state();
   }
 
  private:
   void write_frame(const StepHeader& header) {
     if (!frames_.due(header.step)) return;
     fault_point("frame");
-    terrain_->frame(frame_);
-    gather_frame(group_.get(), frame_);
+    terrain_->gather_frame(frame_);
+    join_frames(group_.get(), frame_);
   }
 
   scenario::Scenario scenario_;

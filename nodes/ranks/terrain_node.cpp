@@ -8,8 +8,6 @@
 #include "protocol/contact_statement.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
-#include "terrain/stated_contacts.hpp"
-#include "tire/capabilities.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -26,7 +24,6 @@ class TerrainNode : public Node {
     context.threads = threads;
     context.group = group_;
     terrain_ = scenario.terrain->make(context);
-    takes_stated_ = dynamic_cast<terrain::TakesStatedContacts*>(terrain_.get());
   }
 
   NodeCard card() const override {
@@ -62,8 +59,7 @@ class TerrainNode : public Node {
 
     forces_.resize(tires);
     stated_.resize(tires);
-    for (const auto& tire : scenario_.tires)
-      states_contact_.push_back(dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr);
+    for (const auto& tire : scenario_.tires) states_contact_.push_back(!tire->describe().own_contact.empty());
     report_.contact.assign(tires, {});
     for (int k = 0; k < tires; ++k)
       attach.start.push_back(receive_step<SurfaceMotion>(transport, {Role::tire, k}, kPlacement).surface);
@@ -74,7 +70,7 @@ class TerrainNode : public Node {
         throw Error(error.code(), fmt::format("{}: tire {}: {}", scenario_.file.string(), k, error.what()));
       }
     now_.targets = std::move(attach.start);
-    report_.state = terrain_->state();
+    report_.state = terrain_->gather_state();
     if (!context.saved) return;
     restore(*context.saved);
     now_.ends_at = saved_end(*context.saved);
@@ -101,11 +97,11 @@ class TerrainNode : public Node {
   void advance(const StepHeader& header) override {
     FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
     FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
-    if (takes_stated_) takes_stated_->state_contacts(stated_);
+    terrain_->state_contacts(stated_);
     const Outcome outcome =
         terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
-    report_.state = terrain_->state();
+    report_.state = terrain_->gather_state();
   }
 
   Order due() const override { return now_.order; }
@@ -113,7 +109,7 @@ class TerrainNode : public Node {
 
   void finish(Transport& transport, FinalReport own, bool) override {
     own.height_before = before_;
-    own.height_after = terrain_->height_field();
+    own.height_after = terrain_->gather_height_field();
     own.grains = terrain_->grains_here();
     own.grains_begin = grains_begin_;
     send(transport, kRig, own);
@@ -140,7 +136,7 @@ class TerrainNode : public Node {
       restore_forces(archive, forces_name(k), now_.targets[k].position.size(), forces_[k]);
       restore_fields(archive, contact_name(k), report_.contact[k]);
     }
-    report_.state = terrain_->state();
+    report_.state = terrain_->gather_state();
   }
 
  private:
@@ -149,12 +145,10 @@ class TerrainNode : public Node {
   static constexpr char kSetup[] = "setup", kBefore[] = "setup/height_before";  // in the saved state
 
   void prepare(Transport& transport, const RunContext& context) {
-    PrepareOrder order;
-    share(group_.get(), order);
     setup_.settle_wall_s = terrain_->prepare(watched_progress(scenario_, transport, context));
     setup_.grains = terrain_->size();
     setup_.floor_height = terrain_->floor_height();
-    before_ = terrain_->height_field();
+    before_ = terrain_->gather_height_field();
     grains_begin_ = terrain_->grains_here();
   }
 
@@ -167,8 +161,8 @@ class TerrainNode : public Node {
   void write_frame(const StepHeader& header) {
     if (!frames_.due(header.step)) return;
     if (held_) held_->check();
-    terrain_->frame(frame_);
-    gather_frame(group_.get(), frame_);
+    terrain_->gather_frame(frame_);
+    join_frames(group_.get(), frame_);
     output::write_terrain_frame(directory_, frames_.index(header.step), header.time, frame_);
   }
 
@@ -176,9 +170,8 @@ class TerrainNode : public Node {
   int threads_;
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
-  terrain::TakesStatedContacts* takes_stated_ = nullptr;  // the same terrain, where it can
-  std::vector<bool> states_contact_;                      // of each tire
-  std::vector<StatedContact> stated_;                     // by the tires, of the running step
+  std::vector<bool> states_contact_;   // of each tire
+  std::vector<StatedContact> stated_;  // by the tires, of the running step
   AdvanceOrder now_;
   std::vector<NodalForces> forces_;
   TerrainReport report_;

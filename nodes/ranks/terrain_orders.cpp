@@ -23,7 +23,6 @@ void share(RankGroup* group, M& order) {
   reader(order);
   reader.finish();
 }
-template void share(RankGroup*, PrepareOrder&);
 template void share(RankGroup*, MeasureOrder&);
 template void share(RankGroup*, AttachOrder&);
 template void share(RankGroup*, AdvanceOrder&);
@@ -50,14 +49,15 @@ void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain&
     const Vec3& at = rims[k];
     const double reach = kFootprintShare * tires[k].tire_radius, half = 0.5 * tires[k].tire_width;
     setup.top_height.push_back(
-        terrain.top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
-    setup.mean_height.push_back(description.undisturbed_height
-                                    ? *description.undisturbed_height
-                                    : terrain.mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
+        terrain.gather_top_height(at.x() - reach, at.x() + reach, at.y() - 1.5 * half, at.y() + 1.5 * half));
+    setup.mean_height.push_back(
+        description.undisturbed_height
+            ? *description.undisturbed_height
+            : terrain.gather_mean_height(0.1 * length, 0.9 * length, at.y() - half, at.y() + half));
   }
 }
 
-void gather_frame(RankGroup* group, terrain::TerrainFrame& frame) {
+void join_frames(RankGroup* group, terrain::TerrainFrame& frame) {
   if (!group) return;
   ByteWriter writer;
   for (const std::vector<float>* values : {&frame.position, &frame.speed, &frame.radius}) writer(*values);

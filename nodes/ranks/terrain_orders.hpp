@@ -1,6 +1,6 @@
 // The orders that the leader of a terrain of several ranks sends to the others, so that all of them call the same verbs
-// of the terrain in the same order: prepare, measure, attach, advance, frame. Saving and ending follow the run loop,
-// which is every rank's own.
+// of the terrain in the same order: prepare, measure, attach, advance, frame. All prepare first of all, without an
+// order. Saving and ending follow the run loop, which is every rank's own.
 #pragma once
 
 #include <span>
@@ -17,15 +17,6 @@ namespace furrow::ranks {
 
 /// In the saved state: how many grains a rank of a terrain of several owned when the run began.
 inline constexpr char kGrainsBegin[] = "setup/grains_begin";
-
-/// Now prepare the bed.
-struct PrepareOrder {
-  bool prepare = true;
-};
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PrepareOrder> auto& s) {
-  visit(Field{"prepare", ""}, s.prepare);
-}
 
 /// Now measure it under the tires.
 struct MeasureOrder {
@@ -76,6 +67,6 @@ void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain&
                      std::span<const NodeCard> tires, TerrainSetup& setup);
 
 /// The frame of the whole terrain on its leader, of each rank's own share before.
-void gather_frame(RankGroup* group, terrain::TerrainFrame& frame);
+void join_frames(RankGroup* group, terrain::TerrainFrame& frame);
 
 }  // namespace furrow::ranks

@@ -20,7 +20,6 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/mean_turn.hpp"
-#include "tire/capabilities.hpp"
 #include "tire/outward.hpp"
 #include "tire/reach.hpp"
 
@@ -36,7 +35,6 @@ class TireNode : public Node {
         pressure_(scenario.tires.at(index)->options().pressure),
         tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
-    states_contact_ = dynamic_cast<const tire::StatesContact*>(tire_.get());
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
   }
@@ -80,11 +78,8 @@ class TireNode : public Node {
     write_frame(header);
     send(transport, kRig, report_);
     send(transport, kTerrain, motion_);
-    if (states_contact_) {
-      statement_.header = header;
-      states_contact_->stated_contact(statement_.contact);
-      send(transport, kTerrain, statement_);
-    }
+    if (const StatedContact* stated = tire_->stated_contact())
+      send(transport, kTerrain, ContactStatement{header, *stated});
     rim_ = receive_step<RimMotion>(transport, kRig, header.step);
     next_ = rim_.order;
     const std::int64_t sent = motion_.ends_at;
@@ -217,14 +212,12 @@ class TireNode : public Node {
   std::string kind_;
   tire::PressureSchedule pressure_;
   std::unique_ptr<tire::Tire> tire_;
-  const tire::StatesContact* states_contact_ = nullptr;  // the same tire, if it does
-  double reach_;                                         // m
+  double reach_;  // m
   tire::RimTrajectory trajectory_;
   RimMotion rim_;
   NodalForces forces_;
   ImpulseLedger ledger_;
   SurfaceMotion motion_;
-  ContactStatement statement_;
   SpindleReport report_;
   std::vector<Vec3> before_;
   std::filesystem::path directory_;

@@ -9,7 +9,6 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/rigs.hpp"
-#include "terrain/liggghts/liggghts_options.hpp"
 #include "terrain/terrains.hpp"
 
 namespace furrow::scenario {
@@ -66,7 +65,7 @@ std::string belongs_to_others(const json& document, const ModelSection& of, cons
 
 std::span<const ModelSection> model_sections() {
   static const auto sections = std::to_array<ModelSection>({
-      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key, terrain::liggghts::denies},
+      {"terrain", "engine", terrain::CommonOptions().engine, terrain::engines_of_key, terrain::engine_denies},
       {"rig", "type", rigs::RigOptions().type, rigs::kinds_of_key},
   });
   return sections;

@@ -9,7 +9,6 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
-#include "tire/capabilities.hpp"
 
 namespace furrow::scenario {
 
@@ -20,7 +19,7 @@ std::vector<std::string> Scenario::file_hashes() const {
   for (const terrain::TerrainFile& file : terrain->files()) hashes.push_back(file_hash(file.path));
   for (const rigs::RigFile& file : rig->files()) hashes.push_back(file_hash(file.path));
   for (const auto& spec : tires)
-    for (const std::filesystem::path& file : tire::files_of(*spec)) hashes.push_back(file_hash(file));
+    for (const std::filesystem::path& file : spec->files()) hashes.push_back(file_hash(file));
   return hashes;
 }
 
@@ -30,7 +29,7 @@ std::vector<InputFile> Scenario::input_files() const {
   for (const terrain::TerrainFile& file : terrain->files()) files.push_back({"terrain." + file.key, file.path});
   for (const rigs::RigFile& file : rig->files()) files.push_back({"rig." + file.key, file.path});
   for (std::size_t k = 0; k < tires.size(); ++k)
-    for (const std::filesystem::path& file : tire::files_of(*tires[k])) files.push_back({tire_key(k, "file"), file});
+    for (const std::filesystem::path& file : tires[k]->files()) files.push_back({tire_key(k, "file"), file});
   return files;
 }
 

@@ -13,9 +13,6 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
-#include "terrain/bears_tires.hpp"
-#include "terrain/stated_contacts.hpp"
-#include "tire/capabilities.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -49,7 +46,7 @@ class Checks {
   void rig();
   void tires();
   void tire_options(std::size_t wheel);
-  void require_level_ground(std::size_t wheel, const std::string& why);
+  void require_level_ground(std::size_t wheel);
   void room();
   void ranks();
   void thin_parts();
@@ -154,27 +151,24 @@ void Checks::tire_options(std::size_t wheel) {
     throw wrong(s_.tire_key(wheel, "contact_tangent"),
                 fmt::format("is true, expected false: {} (terrain.engine '{}') gives no contact tangents",
                             terrain_.name, terrain_.engine));
-  if (const auto* own = dynamic_cast<const tire::HasOwnContact*>(&tire))
-    require_level_ground(wheel, own->own_contact());
+  if (!tires_[wheel].own_contact.empty()) require_level_ground(wheel);
   for (const std::string& key : tire::idle_keys(tire))
     warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} does not use it", in_words(tires_[wheel])));
 }
 
 /// A tire that states its contact needs a terrain that lets it.
-void Checks::require_level_ground(std::size_t wheel, const std::string& why) {
-  const auto* allows = dynamic_cast<const terrain::AllowsStatedContacts*>(s_.terrain.get());
-  const terrain::AllowsStatedContacts::Refusal refusal =
-      allows
-          ? allows->refuses_stated_contacts()
-          : terrain::AllowsStatedContacts::Refusal{"engine", fmt::format("is '{}', expected 'rigid'", terrain_.engine)};
-  if (!refusal.text.empty())
-    throw wrong("terrain." + refusal.key, fmt::format("{}: {} is a {}, {}", refusal.text, s_.tire_key(wheel, "file"),
-                                                      in_words(tires_[wheel]), why));
+void Checks::require_level_ground(std::size_t wheel) {
+  std::string key = terrain_.uneven_key, what = "is given, expected level ground";
+  if (!terrain_.takes_stated_contacts)
+    key = "engine",
+    what = fmt::format("is '{}', expected {}", terrain_.engine, terrain::engines_with_stated_contacts());
+  if (!key.empty())
+    throw wrong("terrain." + key, fmt::format("{}: {} is a {}, {}", what, s_.tire_key(wheel, "file"),
+                                              in_words(tires_[wheel]), tires_[wheel].own_contact));
 }
 
 void Checks::room() {
-  if (const auto* ground = dynamic_cast<const terrain::BearsTires*>(s_.terrain.get()))
-    for (const tire::TireDescription& tire : tires_) ground->check_tire_width(tire.width);
+  for (const tire::TireDescription& tire : tires_) s_.terrain->check_tire_width(tire.width);
   if (!terrain_.bounds) return;
   const rigs::RigDescription rig = describe();
   for (std::size_t k = 0; k < tires_.size(); ++k) {

@@ -23,7 +23,6 @@
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/terrains.hpp"
-#include "tire/capabilities.hpp"
 #include "vehicle/driver/driver_car.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
 
@@ -106,8 +105,8 @@ Scales scales_of(const Scenario& s) {
 
 /// A tire whose file holds for hard level ground gets that; a soil file without properties of grains is empirical soil.
 Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
-  const bool hard = std::ranges::any_of(
-      s.tires, [](const auto& tire) { return dynamic_cast<const tire::HasOwnContact*>(tire.get()) != nullptr; });
+  const bool hard =
+      std::ranges::any_of(s.tires, [](const auto& tire) { return !tire->describe().own_contact.empty(); });
   if (hard && !o.soil.empty())
     throw input_error("command line", "--soil",
                       fmt::format("is given, expected none: the file of '{}' holds for hard level ground", o.tire));
@@ -115,7 +114,7 @@ Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, con
   if (o.soil.empty()) return Ground::grains;
   const nlohmann::json soil = read_soil_material(find_file(o.soil, "terrain.material", file));
   for (const auto& [key, value] : soil.items())
-    if (std::ranges::count(terrain::engines_of_key(key), "dem") > 0) return Ground::grains;
+    if (std::ranges::count(terrain::engines_of_key(key), terrain::CommonOptions().engine) > 0) return Ground::grains;
   return Ground::empirical;
 }
 
@@ -195,7 +194,7 @@ Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
                          {"length", length},
                          {"width", width},
                          {"grid_spacing", rounded(s.tread / kNodes)}});
-  terrain["engine"] = "dem";
+  terrain["engine"] = terrain::CommonOptions().engine;
   if (o.soil.empty()) {
     terrain["friction"] = 0.9;
     terrain["cohesion"] = rounded(kCohesion * s.radius / kRadius);

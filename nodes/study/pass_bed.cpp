@@ -24,7 +24,7 @@ terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double 
   std::vector<Archive> parts;
   for (int rank = 0; rank < scenario.terrain_ranks; ++rank)
     parts.push_back(read_archive(point.folder / checkpoint::part_name({Role::terrain, rank})));
-  const Archive state = scenario.terrain->grain_state(std::move(parts), scenario.terrain_context());
+  const Archive state = scenario.terrain->joined_state(std::move(parts), scenario.terrain_context());
   terrain::dem::write_bed(file, terrain::dem::bed_after_run(state, grains, rest, progress, result));
   return result;
 }

@@ -6,8 +6,11 @@
 // falls silent.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -44,6 +47,14 @@ requires std::is_trivially_copyable_v<T> std::vector<T> gather_on_all(RankGroup&
   std::vector<T> values(all.size() / sizeof(T));
   if (!values.empty()) std::memcpy(values.data(), all.data(), values.size() * sizeof(T));
   return values;
+}
+
+/// Largest share of a rank over the mean of all, less 1; 0 where nobody has any.
+inline double imbalance(std::span<const std::int64_t> shares) {
+  const std::int64_t all = std::accumulate(shares.begin(), shares.end(), std::int64_t{0});
+  if (all == 0) return 0.0;
+  const std::int64_t most = *std::max_element(shares.begin(), shares.end());
+  return static_cast<double>(most) * static_cast<double>(shares.size()) / static_cast<double>(all) - 1.0;
 }
 
 }  // namespace furrow

@@ -97,20 +97,22 @@ void visit_fields(Visit&& visit, FieldsOf<TerrainMomenta> auto& s) {
   visit(Field{"sleep_impulse", "N s"}, s.sleep_impulse);
 }
 
+/// Of a terrain without momentum of its own, which the world holds: the walls give it what tires take.
+inline TerrainMomenta held_by_the_world(const Vec3& surface_impulse) {
+  TerrainMomenta momenta;
+  momenta.surface_impulse = surface_impulse;
+  momenta.wall_impulse = -surface_impulse;
+  return momenta;
+}
+
 /// What a terrain measures of itself; cumulative since the run began unless stated.
 struct TerrainState {
-  double kinetic_energy = 0.0;           // J, now
-  double potential_energy = 0.0;         // of gravity, J, now
-  double elastic_energy = 0.0;           // of normal springs, J, now
-  double dissipation = 0.0;              // energies.losses(), J
-  double energy_removed = 0.0;           // by the activity switch, J
-  Vec3 momentum = Vec3::Zero();          // kg m/s, now
-  Vec3 momentum_removed = Vec3::Zero();  // by the activity switch, kg m/s
-  Vec3 wall_impulse = Vec3::Zero();      // by walls and floor on the grains, N s
-  Vec3 surface_impulse = Vec3::Zero();   // by tires on the grains, N s
-  double floor_force = 0.0;              // vertical, N, last substep
-  std::int64_t contacts = 0;             // now
-  std::int64_t active = 0;               // grains awake
+  // Both as the engine sums them: `energies` holds their parts, which add up to them but for round-off.
+  double kinetic_energy = 0.0;  // J, now
+  double elastic_energy = 0.0;  // of the springs that the engine sums, J, now
+  double floor_force = 0.0;     // vertical, N, last substep
+  std::int64_t contacts = 0;    // now
+  std::int64_t active = 0;      // grains awake
   std::int64_t list_rebuilds = 0;
   std::int64_t substeps_added = 0;  // beyond terrain.substeps, where contacts were too hard for them
   double refined_time = 0.0;        // in which substeps were taken in parts, s
@@ -121,14 +123,7 @@ struct TerrainState {
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
   visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
-  visit(Field{"potential_energy", "J"}, s.potential_energy);
   visit(Field{"elastic_energy", "J"}, s.elastic_energy);
-  visit(Field{"dissipation", "J"}, s.dissipation);
-  visit(Field{"energy_removed", "J"}, s.energy_removed);
-  visit(Field{"momentum", "kg m/s"}, s.momentum);
-  visit(Field{"momentum_removed", "kg m/s"}, s.momentum_removed);
-  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
-  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
   visit(Field{"floor_force", "N"}, s.floor_force);
   visit(Field{"contacts"}, s.contacts);
   visit(Field{"active"}, s.active);

@@ -46,8 +46,8 @@ void require(const furrow::Outcome& outcome, const std::string& who) {
 
 void press(furrow::tire::Tire& tire, furrow::terrain::Terrain& bed) {
   bed.prepare([](const std::string&, double) {});
-  const double surface = bed.mean_height(0.3, 0.9, -0.2, 0.2);
-  const double top = bed.top_height(0.1, 1.1, -0.2, 0.2);
+  const double surface = bed.gather_mean_height(0.3, 0.9, -0.2, 0.2);
+  const double top = bed.gather_top_height(0.1, 1.1, -0.2, 0.2);
 
   furrow::RimState rim;
   rim.position = {0.6, 0.0, top + tire.radius() + 0.01};

@@ -76,7 +76,7 @@ class DemTerrain : public Terrain {
     set_step(dt_);
   }
 
-  double prepare(const ProgressCall& progress) override {
+  double do_prepare(const ProgressCall& progress) override {
     const double begin = wall_clock();
     const dem::PreparedBed prepared = dem::prepare_bed(dem::level(options_), progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
@@ -89,26 +89,25 @@ class DemTerrain : public Terrain {
     return wall_clock() - begin;
   }
 
-  double top_height(double x_min, double x_max, double y_min, double y_max) const override {
+  double gather_top_height(double x_min, double x_max, double y_min, double y_max) const override {
     FURROW_ASSERT(x_min <= x_max && y_min <= y_max, x_min, x_max, y_min, y_max);
     return dem::top_height(solver_.grains(), x_min, x_max, y_min, y_max);
   }
-  double mean_height(double x_min, double x_max, double y_min, double y_max) const override {
-    return dem::mean_height(height_field(), x_min, x_max, y_min, y_max);
+  double gather_mean_height(double x_min, double x_max, double y_min, double y_max) const override {
+    return dem::mean_height(gather_height_field(), x_min, x_max, y_min, y_max);
   }
   double floor_height() const override { return 0.0; }
-  HeightField height_field() const override {
+  HeightField gather_height_field() const override {
     return dem::bed_height_field(solver_.grains(), solver_.params().bin, 2.0 * options_.radius);
   }
 
-  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
+  void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
     dem::check_surface_start(options_, solver_.params().bin, mesh, material, start, solver_.surfaces().count());
     solver_.surfaces().attach(mesh, material, dem::surface_coefficients(options_, material, part_), start);
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
-                  std::span<ContactSums> contact) override {
-    FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+  Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                     std::span<NodalForces> forces, std::span<ContactSums> contact) override {
     const double dt = duration / substeps;
     if (dt != dt_) set_step(dt);
     dem::SurfaceContacts& surfaces = solver_.surfaces();
@@ -130,18 +129,12 @@ class DemTerrain : public Terrain {
     return {};
   }
 
-  TerrainState state() const override {
+  TerrainState gather_state() const override {
     const dem::Accounts& a = solver_.accounts();
     const double mass = solver_.params().grain.mass;
     TerrainState s;
     s.kinetic_energy = a.kinetic;
-    s.potential_energy = mass * solver_.params().gravity.norm() * a.height;
     s.elastic_energy = a.elastic;
-    s.energy_removed = a.slept;
-    s.momentum = mass * a.velocity;
-    s.momentum_removed = a.momentum_removed;
-    s.wall_impulse = a.wall_impulse;
-    s.surface_impulse = a.surface_impulse;
     s.floor_force = a.floor_force;
     s.contacts = a.contacts;
     s.active = a.active;
@@ -151,14 +144,13 @@ class DemTerrain : public Terrain {
     s.most_parts = 1 << refinement_.state().finest;
     s.energies = solver_.reported_energies();
     s.energies.surface_work = surface_work_;  // walls stand still: they do none
-    s.dissipation = s.energies.losses();
-    s.momenta = {s.momentum, solver_.gravity_impulse(), s.wall_impulse, s.surface_impulse, -s.momentum_removed};
+    s.momenta = {mass * a.velocity, solver_.gravity_impulse(), a.wall_impulse, a.surface_impulse, -a.momentum_removed};
     return s;
   }
 
   std::int64_t size() const override { return solver_.grains().count; }
 
-  void frame(TerrainFrame& out) const override {
+  void gather_frame(TerrainFrame& out) const override {
     const dem::Grains& grains = solver_.grains();
     const std::size_t n = grains.count;
     out.position.resize(3 * n);
@@ -186,7 +178,7 @@ class DemTerrain : public Terrain {
     solver_.save(archive);
   }
 
-  void restore(const Archive& archive) override {
+  void do_restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
     time_ = archive.get_double("time");
     dem::require_same_parcels(archive, solver_.strips());
@@ -200,6 +192,9 @@ class DemTerrain : public Terrain {
   }
 
  private:
+  std::size_t attached() const override { return solver_.surfaces().count(); }
+  std::size_t vertices(std::size_t k) const override { return solver_.surfaces().vertices(static_cast<int>(k)); }
+
   void set_step(double dt) {
     FURROW_ASSERT(dt > 0.0, dt);
     dt_ = dt;

@@ -37,13 +37,6 @@ std::vector<double> Crowd::borders(int ranks) const {
   return places;
 }
 
-double imbalance(std::span<const std::int64_t> grains) {
-  const std::int64_t all = std::accumulate(grains.begin(), grains.end(), std::int64_t{0});
-  if (all == 0) return 0.0;
-  const std::int64_t most = *std::max_element(grains.begin(), grains.end());
-  return static_cast<double>(most) * static_cast<double>(grains.size()) / static_cast<double>(all) - 1.0;
-}
-
 void check_saved_borders(std::span<const double> borders, double length) {
   double before = 0.0;
   for (const double border : borders) {

@@ -27,9 +27,6 @@ class Crowd {
   std::vector<std::int64_t> counts_;
 };
 
-/// Largest number of grains of a rank over their mean, less 1; 0 without grains.
-double imbalance(std::span<const std::int64_t> grains);
-
 /// Borders of a saved state. @throws Error(io) unless they rise from 0 to `length`, m
 void check_saved_borders(std::span<const double> borders, double length);
 

@@ -18,11 +18,6 @@ struct LiggghtsOptions : dem::DemOptions {
 /// Resting grains never sleep, and every contact is computed in double precision.
 constexpr bool is_key_of_dem_only(std::string_view name) { return name == "activity" || name == "precision"; }
 
-/// Whether this is the engine, and the key one that it cannot honour: not even its default holds here.
-constexpr bool denies(std::string_view engine, std::string_view key) {
-  return engine == "liggghts" && is_key_of_dem_only(key);
-}
-
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<LiggghtsOptions> auto& s) {
   using Base =

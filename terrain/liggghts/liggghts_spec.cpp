@@ -39,7 +39,7 @@ class LiggghtsSpec final : public TerrainSpec {
   std::vector<TerrainFile> files() const override { return dem::bed_files(options_); }
   std::string lacking() const override { return engine_library_problem(); }
   const dem::DemOptions* grains() const override { return &options_; }
-  Archive grain_state(std::vector<Archive> parts, const TerrainContext& context) const override {
+  Archive joined_state(std::vector<Archive> parts, const TerrainContext& context) const override {
     return as_solver_state(parts, dem::with_context(options_, context));
   }
 

@@ -55,7 +55,7 @@ class LiggghtsTerrain final : public Terrain {
     require_engine_library();
   }
 
-  double prepare(const ProgressCall& progress) override {
+  double do_prepare(const ProgressCall& progress) override {
     const double begin = wall_clock();
     StartingBed bed;
     dem::Stored stored;
@@ -83,31 +83,30 @@ class LiggghtsTerrain final : public Terrain {
     return wall_clock() - begin;
   }
 
-  double top_height(double x_min, double x_max, double y_min, double y_max) const override {
+  double gather_top_height(double x_min, double x_max, double y_min, double y_max) const override {
     double top = dem::top_height(own_grains(), x_min, x_max, y_min, y_max);
     if (group())
       for (const double other : gather_on_all<double>(*group(), std::span<const double>(&top, 1)))
         top = std::max(top, other);
     return top;
   }
-  double mean_height(double x_min, double x_max, double y_min, double y_max) const override {
-    return dem::mean_height(height_field(), x_min, x_max, y_min, y_max);
+  double gather_mean_height(double x_min, double x_max, double y_min, double y_max) const override {
+    return dem::mean_height(gather_height_field(), x_min, x_max, y_min, y_max);
   }
   double floor_height() const override { return 0.0; }
-  HeightField height_field() const override {
+  HeightField gather_height_field() const override {
     HeightField field = dem::bed_height_field(own_grains(), contacts_.params().bin, 2.0 * options_.radius);
     merge_heights(group(), field);
     return field;
   }
 
-  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
+  void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
     dem::check_surface_start(options_, contacts_.params().bin, mesh, material, start, contacts_.tires());
     contacts_.attach(mesh, material, start);
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
-                  std::span<ContactSums> sums) override {
-    FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+  Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                     std::span<NodalForces> forces, std::span<ContactSums> sums) override {
     if (const double dt = duration / substeps; dt != dt_) {
       dt_ = dt;
       refinement_.set_step(dt);
@@ -131,7 +130,7 @@ class LiggghtsTerrain final : public Terrain {
     return {};
   }
 
-  TerrainState state() const override {
+  TerrainState gather_state() const override {
     StateReport all;
     if (engine_)
       for (const StateReport& one : states_.empty() ? gather_states(group(), own_state()) : states_) add(all, one);
@@ -145,7 +144,9 @@ class LiggghtsTerrain final : public Terrain {
   std::int64_t size() const override { return size_; }
   std::int64_t grains_here() const override { return engine_ ? engine_->own().count : 0; }
 
-  void frame(TerrainFrame& out) const override { gather_frame(group(), engine_->own(), contacts_.params().bin, out); }
+  void gather_frame(TerrainFrame& out) const override {
+    liggghts::gather_frame(group(), engine_->own(), contacts_.params().bin, out);
+  }
 
   void save(Archive& archive) const override {
     const Archive::Scope scope(archive, "terrain/");
@@ -164,7 +165,7 @@ class LiggghtsTerrain final : public Terrain {
     save_grains(*engine_, contacts_.carried(engine_->own()), archive);
   }
 
-  void restore(const Archive& archive) override {
+  void do_restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
     time_ = saved_finite(archive, "time");
     dt_ = dem::saved_step(archive, "step");
@@ -185,6 +186,9 @@ class LiggghtsTerrain final : public Terrain {
   }
 
  private:
+  std::size_t attached() const override { return contacts_.tires(); }
+  std::size_t vertices(std::size_t k) const override { return contacts_.vertices(static_cast<int>(k)); }
+
   RankGroup* group() const { return options_.group.get(); }
   int ranks() const { return group() ? group()->size() : 1; }
   bool leads() const { return !group() || group()->rank() == 0; }

@@ -57,6 +57,7 @@ class RankContacts final : public StepWork {
   void set_step(double dt);
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start);
+  std::size_t vertices(int k) const { return tires_.at(k).end.size(); }
   int tires() const { return static_cast<int>(tires_.size()); }
   SurfaceBox swept_bounds(int k) const { return tires_.at(k).collider->swept_bounds(); }
 

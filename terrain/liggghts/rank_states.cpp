@@ -53,17 +53,12 @@ TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& g
   e.kinetic = 0.5 * grain.mass * motion.speed2;
   e.rotational = 0.5 * grain.inertia * motion.spin2;
   s.kinetic_energy = e.kinetic + e.rotational;
-  // Gravity g and the places x: Σ m |g| h = −g·Σ m x.
-  s.potential_energy = -grain.mass * gravity.dot(motion.place);
   s.elastic_energy = all.sums.elastic;
-  s.momentum = grain.mass * motion.speed;
-  s.wall_impulse = all.sums.wall_impulse;
-  s.surface_impulse = all.sums.surface_impulse;
   s.floor_force = all.sums.floor_force;
   s.contacts = std::llround(all.sums.contacts);
   s.active = std::llround(all.grains);
   s.list_rebuilds = std::llround(all.list_builds);
-  e.potential = s.potential_energy;
+  e.potential = -grain.mass * gravity.dot(motion.place);  // Σ m |g| h = −g·Σ m x with the places x
   e.elastic_normal = all.sums.elastic - all.stored.cohesion;
   e.elastic_tangential = all.stored.tangential;
   e.cohesion = all.stored.cohesion;
@@ -74,9 +69,8 @@ TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& g
   e.opening_loss = all.lost.opening;
   e.sample_error = std::sqrt(all.error2);
   e.surface_work = surface_work;
-  s.dissipation = e.losses();
   const Vec3 weight = all.sums.gravity_time * mass * gravity;
-  s.momenta = {s.momentum, weight, s.wall_impulse, s.surface_impulse, Vec3::Zero()};
+  s.momenta = {grain.mass * motion.speed, weight, all.sums.wall_impulse, all.sums.surface_impulse, Vec3::Zero()};
   return s;
 }
 

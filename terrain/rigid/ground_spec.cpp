@@ -9,12 +9,11 @@
 #include "terrain/rigid/rigid_ground.hpp"
 #include "terrain/rigid/roads/iso_8608.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
-#include "terrain/stated_contacts.hpp"
 
 namespace furrow::terrain {
 namespace {
 
-class GroundSpec final : public TerrainSpec, public AllowsStatedContacts {
+class GroundSpec final : public TerrainSpec {
  public:
   explicit GroundSpec(GroundOptions options) : options_(std::move(options)) {}
 
@@ -25,6 +24,14 @@ class GroundSpec final : public TerrainSpec, public AllowsStatedContacts {
              : options_.profile.empty()   ? "rigid ground"
                                           : "rigid ground with a profile";
     d.gives_tangents = true;
+    d.yields = false;
+    d.takes_stated_contacts = true;
+    if (!options_.road_class.empty())
+      d.uneven_key = "road_class";
+    else if (!options_.profile_file.empty())
+      d.uneven_key = "profile_file";
+    else if (!options_.profile.empty())
+      d.uneven_key = "profile";
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {
@@ -42,13 +49,6 @@ class GroundSpec final : public TerrainSpec, public AllowsStatedContacts {
     if (!options.road_class.empty())
       options.profile = iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
     return make_rigid_ground(options);
-  }
-  Refusal refuses_stated_contacts() const override {
-    const char* expected = "is given, expected level ground";
-    if (!options_.road_class.empty()) return {"road_class", expected};
-    if (!options_.profile_file.empty()) return {"profile_file", expected};
-    if (!options_.profile.empty()) return {"profile", expected};
-    return {};
   }
   std::vector<TerrainFile> files() const override {
     if (options_.profile_file.empty()) return {};

@@ -11,8 +11,6 @@
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 #include "terrain/rigid/ground_profile.hpp"
-#include "terrain/stated_contacts.hpp"
-#include "terrain/surface/surface_check.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
 namespace furrow::terrain {
@@ -65,10 +63,10 @@ void require(const std::string& file, const char* key, double value) {
                       std::to_string(value) + ", expected a finite number of at least 0");
 }
 
-class RigidGround final : public Terrain, public TakesStatedContacts {
+class RigidGround final : public Terrain {
  public:
   explicit RigidGround(const GroundOptions& options)
-      : options_(options), profile_(options.profile), plane_(options.profile.empty()) {
+      : Terrain(true), options_(options), profile_(options.profile), plane_(options.profile.empty()) {
     require(options.scenario, "ground_stiffness", options.ground_stiffness);
     require(options.scenario, "ground_damping", options.ground_damping);
     require(options.scenario, "ground_shear_stiffness", options.ground_shear_stiffness);
@@ -76,22 +74,25 @@ class RigidGround final : public Terrain, public TakesStatedContacts {
     require(options.scenario, "friction_velocity_scale", options.friction_velocity_scale);
   }
 
-  double prepare(const ProgressCall&) override { return 0.0; }
-  double top_height(double from, double to, double, double) const override { return profile_.highest(from, to); }
-  double mean_height(double from, double to, double, double) const override { return profile_.mean(from, to); }
+  double gather_top_height(double from, double to, double, double) const override { return profile_.highest(from, to); }
+  double gather_mean_height(double from, double to, double, double) const override { return profile_.mean(from, to); }
   double floor_height() const override { return 0.0; }
-  HeightField height_field() const override;
-  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
+  HeightField gather_height_field() const override;
   void state_contacts(std::span<const StatedContact> contacts) override;
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
-                  std::span<ContactSums> contact) override;
-  TerrainState state() const override;
+  TerrainState gather_state() const override;
   std::int64_t size() const override { return 0; }
-  void frame(TerrainFrame& out) const override { out = TerrainFrame{}; }
+  void gather_frame(TerrainFrame& out) const override { out = TerrainFrame{}; }
   void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
 
  private:
+  double do_prepare(const ProgressCall&) override { return 0.0; }
+  void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
+  Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                     std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  void do_restore(const Archive& archive) override;
+  std::size_t attached() const override { return surfaces_.size(); }
+  std::size_t vertices(std::size_t k) const override { return surfaces_[k].last.size(); }
+
   template <class Visit>
   friend void visit_fields(Visit&& visit, FieldsOf<RigidGround> auto& s) {
     visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
@@ -116,7 +117,7 @@ class RigidGround final : public Terrain, public TakesStatedContacts {
   GroundLosses losses_;
 };
 
-HeightField RigidGround::height_field() const {
+HeightField RigidGround::gather_height_field() const {
   HeightField field;
   field.cell = kFieldCell;
   field.x0 = 0.5 * kFieldCell;
@@ -155,8 +156,7 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
   measure(surfaces_.back());
 }
 
-void RigidGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
-  check_surface(mesh, start, static_cast<int>(surfaces_.size()));
+void RigidGround::do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
   double deepest = 0.0;
   for (const Vec3& x : start.position) deepest = std::max(deepest, plane_ ? -x.z() : profile_.depth(x.x(), x.z()));
   if (deepest > kMaxStartDepth)
@@ -342,25 +342,15 @@ double RigidGround::measure_profile(const GroundSurface& surface) const {
   return energy;
 }
 
-Outcome RigidGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                             std::span<NodalForces> forces, std::span<ContactSums> contact) {
-  FURROW_ASSERT(targets.size() == surfaces_.size(), targets.size(), surfaces_.size());
-  FURROW_ASSERT(forces.size() == surfaces_.size(), forces.size(), surfaces_.size());
-  FURROW_ASSERT(contact.size() == surfaces_.size(), contact.size(), surfaces_.size());
-  FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+Outcome RigidGround::do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                                std::span<NodalForces> forces, std::span<ContactSums> contact) {
   const double dt = duration / substeps;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     GroundSurface& surface = surfaces_[k];
     const std::size_t count = surface.last.size();
-    FURROW_ASSERT(targets[k].position.size() == count, k, targets[k].position.size(), count);
-    FURROW_ASSERT(targets[k].velocity.size() == count, k, targets[k].velocity.size(), count);
     std::vector<Vec3> end(count);
     for (std::size_t v = 0; v < count; ++v) {
       end[v] = targets[k].position[v] + duration * targets[k].velocity[v];
-      if (!end[v].allFinite())
-        return Outcome::failure(
-            "was given a surface that is not finite",
-            "vertex " + std::to_string(v) + " of surface " + std::to_string(k) + "; try a smaller run.step");
       surface.velocity[v] = (end[v] - surface.last[v]) / duration;
     }
     for (int s = 0; s < substeps; ++s) {
@@ -382,7 +372,7 @@ Outcome RigidGround::advance(std::span<const SurfaceState> targets, double durat
   return {};
 }
 
-TerrainState RigidGround::state() const {
+TerrainState RigidGround::gather_state() const {
   TerrainState state;
   for (const GroundSurface& surface : surfaces_) {
     state.energies.elastic_normal += surface.pressed;
@@ -397,11 +387,7 @@ TerrainState RigidGround::state() const {
   e.tangential_damping_loss = losses_.tangential_damping;
   e.opening_loss = losses_.opening;
   e.surface_work = -surface_work_;
-  state.dissipation = e.losses();
-  state.surface_impulse = surface_impulse_;
-  state.wall_impulse = -surface_impulse_;  // the world holds the ground
-  state.momenta.surface_impulse = state.surface_impulse;
-  state.momenta.wall_impulse = state.wall_impulse;
+  state.momenta = held_by_the_world(surface_impulse_);
   return state;
 }
 
@@ -422,7 +408,7 @@ void RigidGround::save(Archive& archive) const {
   }
 }
 
-void RigidGround::restore(const Archive& archive) {
+void RigidGround::do_restore(const Archive& archive) {
   surfaces_.clear();
   const std::int64_t count = archive.get_int("ground/surfaces");
   restore_fields(archive, "ground", *this);

@@ -11,7 +11,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/scm/scm_contact.hpp"
-#include "terrain/surface/surface_check.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
 namespace furrow::terrain::scm {
@@ -41,7 +40,8 @@ struct GroundSurface {
 class ScmGround final : public Terrain {
  public:
   explicit ScmGround(const ScmOptions& options)
-      : options_(options),
+      : Terrain(true),
+        options_(options),
         soil_(Grid::over(options.length, options.width, options.grid_spacing),
               {.k_c = options.bekker_k_c,
                .k_phi = options.bekker_k_phi,
@@ -51,21 +51,24 @@ class ScmGround final : public Terrain {
                .damping = options.rebound_damping},
               options.patch_width) {}
 
-  double prepare(const ProgressCall&) override { return 0.0; }
-  double top_height(double x_min, double x_max, double y_min, double y_max) const override;
-  double mean_height(double x_min, double x_max, double y_min, double y_max) const override;
+  double gather_top_height(double x_min, double x_max, double y_min, double y_max) const override;
+  double gather_mean_height(double x_min, double x_max, double y_min, double y_max) const override;
   double floor_height() const override { return -std::numeric_limits<double>::infinity(); }
-  HeightField height_field() const override;
-  void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
-                  std::span<ContactSums> contact) override;
-  TerrainState state() const override;
+  HeightField gather_height_field() const override;
+  TerrainState gather_state() const override;
   std::int64_t size() const override { return 0; }
-  void frame(TerrainFrame& out) const override;
+  void gather_frame(TerrainFrame& out) const override;
   void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
 
  private:
+  double do_prepare(const ProgressCall&) override { return 0.0; }
+  void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override;
+  Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                     std::span<NodalForces> forces, std::span<ContactSums> contact) override;
+  void do_restore(const Archive& archive) override;
+  std::size_t attached() const override { return surfaces_.size(); }
+  std::size_t vertices(std::size_t k) const override { return surfaces_[k].last.size(); }
+
   template <class Visit>
   friend void visit_fields(Visit&& visit, FieldsOf<ScmGround> auto& s) {
     visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
@@ -94,20 +97,20 @@ void ScmGround::each_node(double x_min, double x_max, double y_min, double y_max
     for (int j = j_begin; j < j_end; ++j) use(soil_.nodes()[grid.index(i, j)]);
 }
 
-double ScmGround::top_height(double x_min, double x_max, double y_min, double y_max) const {
+double ScmGround::gather_top_height(double x_min, double x_max, double y_min, double y_max) const {
   double least = std::numeric_limits<double>::infinity();
   each_node(x_min, x_max, y_min, y_max, [&](const SoilNode& node) { least = std::min(least, node.plastic); });
   return std::isfinite(least) ? -least : 0.0;
 }
 
-double ScmGround::mean_height(double x_min, double x_max, double y_min, double y_max) const {
+double ScmGround::gather_mean_height(double x_min, double x_max, double y_min, double y_max) const {
   double sum = 0.0;
   std::int64_t count = 0;
   each_node(x_min, x_max, y_min, y_max, [&](const SoilNode& node) { sum += node.plastic, ++count; });
   return count > 0 ? -sum / static_cast<double>(count) : 0.0;
 }
 
-HeightField ScmGround::height_field() const {
+HeightField ScmGround::gather_height_field() const {
   const Grid& grid = soil_.grid();
   HeightField field;
   field.x0 = grid.x(0);
@@ -121,7 +124,7 @@ HeightField ScmGround::height_field() const {
 }
 
 /// A point for each node.
-void ScmGround::frame(TerrainFrame& out) const {
+void ScmGround::gather_frame(TerrainFrame& out) const {
   const Grid& grid = soil_.grid();
   out = TerrainFrame{};
   for (int k = 0; k < grid.count(); ++k) {
@@ -151,8 +154,7 @@ void ScmGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& mate
                        .sum = NodalForceSum(mesh.vertex_count, options_.contact_tangents)});
 }
 
-void ScmGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
-  check_surface(mesh, start, static_cast<int>(surfaces_.size()));
+void ScmGround::do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
   double lowest = 0.0;
   for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
   if (lowest < -kMaxStartDepth)
@@ -165,13 +167,8 @@ void ScmGround::attach(const SurfaceMesh& mesh, const ContactMaterial& material,
 Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target, double duration,
                               std::size_t k) const {
   const std::size_t count = surface.last.size();
-  FURROW_ASSERT(target.position.size() == count, k, target.position.size(), count);
-  FURROW_ASSERT(target.velocity.size() == count, k, target.velocity.size(), count);
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3 end = target.position[v] + duration * target.velocity[v];
-    if (!end.allFinite())
-      return Outcome::failure("was given a surface that is not finite",
-                              fmt::format("vertex {} of surface {}; try a smaller run.step", v, k));
     if (end.z() < 0.0 && (end.x() < 0.0 || end.x() > options_.length || std::abs(end.y()) > 0.5 * options_.width))
       return Outcome::failure(
           "was left by a tire",
@@ -182,12 +179,8 @@ Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target
   return {};
 }
 
-Outcome ScmGround::advance(std::span<const SurfaceState> targets, double duration, int substeps,
-                           std::span<NodalForces> forces, std::span<ContactSums> contact) {
-  FURROW_ASSERT(targets.size() == surfaces_.size(), targets.size(), surfaces_.size());
-  FURROW_ASSERT(forces.size() == surfaces_.size(), forces.size(), surfaces_.size());
-  FURROW_ASSERT(contact.size() == surfaces_.size(), contact.size(), surfaces_.size());
-  FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+Outcome ScmGround::do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                              std::span<NodalForces> forces, std::span<ContactSums> contact) {
   const double dt = duration / substeps;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     GroundSurface& surface = surfaces_[k];
@@ -210,7 +203,7 @@ Outcome ScmGround::advance(std::span<const SurfaceState> targets, double duratio
   return {};
 }
 
-TerrainState ScmGround::state() const {
+TerrainState ScmGround::gather_state() const {
   TerrainState state;
   for (const GroundSurface& surface : surfaces_) {
     state.energies.elastic_normal += soil_.pressed(surface.bearing);
@@ -224,11 +217,7 @@ TerrainState ScmGround::state() const {
   e.normal_damping_loss = losses_.compaction + losses_.damping;
   e.opening_loss = losses_.opening;
   e.surface_work = -surface_work_;
-  state.dissipation = e.losses();
-  state.surface_impulse = surface_impulse_;
-  state.wall_impulse = -surface_impulse_;  // the world holds the ground
-  state.momenta.surface_impulse = state.surface_impulse;
-  state.momenta.wall_impulse = state.wall_impulse;
+  state.momenta = held_by_the_world(surface_impulse_);
   return state;
 }
 
@@ -255,7 +244,7 @@ void ScmGround::save(Archive& archive) const {
   }
 }
 
-void ScmGround::restore(const Archive& archive) {
+void ScmGround::do_restore(const Archive& archive) {
   surfaces_.clear();
   restore_fields(archive, "ground", *this);
   std::vector<double> plastic, yield, stiffness;

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/files/json_fields.hpp"
-#include "terrain/bears_tires.hpp"
 #include "terrain/scm/scm_ground.hpp"
 
 namespace furrow::terrain::scm {
@@ -12,7 +11,7 @@ namespace {
 
 constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
 
-class ScmSpec final : public TerrainSpec, public BearsTires {
+class ScmSpec final : public TerrainSpec {
  public:
   explicit ScmSpec(ScmOptions options) : options_(std::move(options)) {}
 

@@ -15,7 +15,7 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
   const double middle = 0.5 * specimen.length(), reach = 0.5 * diameter;
   double share = 0.0;
   const auto terrain = specimen.terrain([&] { work(share); });
-  const double top = terrain->top_height(middle - reach, middle + reach, -reach, reach);
+  const double top = terrain->gather_top_height(middle - reach, middle + reach, -reach, reach);
   const double cone = cone_height(diameter, kConeAngle), surface = specimen.height();
   const double path = top - surface + cone + test.depth * r;
   Tool tool = cone_on_shaft(Vec3(middle, 0.0, top), diameter, kConeAngle, kConeShaft, test.depth * r + 4.0 * r);

@@ -81,7 +81,7 @@ class ShearCell {
   double area() const { return area_; }
   const ContactSums& lower_sums() const { return sums_[0]; }
   const ContactSums& upper_sums() const { return sums_[1]; }
-  double floor_force() const { return terrain_->state().floor_force; }
+  double floor_force() const { return terrain_->gather_state().floor_force; }
   /// Of the flats of the two plates, m.
   double gap() const { return height_ - kLift * r_; }
 

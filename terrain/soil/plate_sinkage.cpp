@@ -20,7 +20,7 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
   const double width = test.width * r, middle = 0.5 * specimen.length();
   double share = 0.0;
   const auto terrain = specimen.terrain([&] { work(share); });
-  const double from = terrain->top_height(middle - 0.5 * width, middle + 0.5 * width, -half, half);
+  const double from = terrain->gather_top_height(middle - 0.5 * width, middle + 0.5 * width, -half, half);
   const double surface = specimen.height(), to = surface - test.sinkage * r;
   Tool plate = strip_plate(middle, width, half, from, (test.sinkage + kSides) * r);
   terrain->attach(plate.mesh(), rough_material(specimen.options()), plate.state());
@@ -42,7 +42,7 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
     // The force is the mean over the interval and belongs to its middle.
     result.curve.sinkage.push_back(surface - from + (k + 0.5) * interval * test.speed);
     result.curve.pressure.push_back(force / (width * 2.0 * half));
-    if (2 * k >= test.samples) off += (terrain->state().floor_force - specimen.weight() - force) / force;
+    if (2 * k >= test.samples) off += (terrain->gather_state().floor_force - specimen.weight() - force) / force;
   }
   result.balance_error = std::abs(off) / (0.5 * test.samples);
   return result;

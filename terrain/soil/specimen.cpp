@@ -51,8 +51,8 @@ Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_
   for (std::size_t k = 0; k + 3 < x.size(); k += 4) positions_.push_back({x[k], x[k + 1], x[k + 2], x[k + 3]});
   grains_ = made->size();
   const double half = 0.5 * options_.width;
-  height_ = made->mean_height(0.0, options_.length, -half, half);
-  top_ = made->top_height(0.0, options_.length, -half, half);
+  height_ = made->gather_mean_height(0.0, options_.length, -half, half);
+  top_ = made->gather_top_height(0.0, options_.length, -half, half);
 }
 
 std::unique_ptr<Terrain> Specimen::terrain(std::function<void()> each_substep) const {

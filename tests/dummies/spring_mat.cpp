@@ -8,11 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/archive_fields.hpp"
-#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/outcome.hpp"
 #include "protocol/files/json_fields.hpp"
-#include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -25,13 +23,13 @@ struct Guest {
 
 class SpringMat final : public Terrain {
  public:
-  explicit SpringMat(const SpringMatOptions& options) : options_(options) {}
+  explicit SpringMat(const SpringMatOptions& options) : Terrain(true), options_(options) {}
 
-  double prepare(const ProgressCall&) override { return 0.0; }
-  double top_height(double, double, double, double) const override { return 0.0; }
-  double mean_height(double, double, double, double) const override { return 0.0; }
+  double do_prepare(const ProgressCall&) override { return 0.0; }
+  double gather_top_height(double, double, double, double) const override { return 0.0; }
+  double gather_mean_height(double, double, double, double) const override { return 0.0; }
   double floor_height() const override { return -1.0; }
-  HeightField height_field() const override {
+  HeightField gather_height_field() const override {
     HeightField field;
     field.cell = 1.0;
     field.nx = field.ny = 1;
@@ -39,8 +37,7 @@ class SpringMat final : public Terrain {
     return field;
   }
 
-  void attach(const SurfaceMesh& mesh, const ContactMaterial&, const SurfaceState& start) override {
-    check_surface(mesh, start, static_cast<int>(guests_.size()));
+  void do_attach(const SurfaceMesh& mesh, const ContactMaterial&, const SurfaceState& start) override {
     Guest guest{start.position, std::vector<double>(start.position.size(), 0.0)};
     for (const auto& [a, b, c] : mesh.triangles) {
       const Vec3 ab = start.position[b] - start.position[a], ac = start.position[c] - start.position[a];
@@ -49,10 +46,8 @@ class SpringMat final : public Terrain {
     guests_.push_back(std::move(guest));
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
-                  std::span<ContactSums> contact) override {
-    FURROW_ASSERT(targets.size() == guests_.size(), targets.size(), guests_.size());
-    FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+  Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                     std::span<NodalForces> forces, std::span<ContactSums> contact) override {
     contacts_ = 0;
     for (std::size_t k = 0; k < guests_.size(); ++k) {
       forces[k].clear();
@@ -66,25 +61,21 @@ class SpringMat final : public Terrain {
     return {};
   }
 
-  TerrainState state() const override {
+  TerrainState gather_state() const override {
     TerrainState state;
     for (const Guest& guest : guests_)
       for (std::size_t v = 0; v < guest.area.size(); ++v)
         state.elastic_energy +=
             0.5 * options_.mat_stiffness * guest.area[v] * std::pow(std::min(guest.position[v].z(), 0.0), 2);
-    state.dissipation = damped_;
     state.energies.elastic_normal = state.elastic_energy;
     state.energies.normal_damping_loss = damped_;
     state.energies.surface_work = -work_;
-    state.momenta.surface_impulse = impulse_;
-    state.momenta.wall_impulse = -impulse_;
-    state.surface_impulse = impulse_;
-    state.wall_impulse = -impulse_;  // the world holds the mat
+    state.momenta = held_by_the_world(impulse_);
     state.contacts = contacts_;
     return state;
   }
   std::int64_t size() const override { return 0; }
-  void frame(TerrainFrame& out) const override { out = {}; }
+  void gather_frame(TerrainFrame& out) const override { out = {}; }
 
   void save(Archive& archive) const override {
     for (std::size_t k = 0; k < guests_.size(); ++k) {
@@ -96,7 +87,7 @@ class SpringMat final : public Terrain {
     save_value(archive, "spring_mat/damped", damped_);
     save_value(archive, "spring_mat/impulse", impulse_);
   }
-  void restore(const Archive& archive) override {
+  void do_restore(const Archive& archive) override {
     std::int64_t count = 0;
     restore_value(archive, "spring_mat/guests", count);
     guests_.assign(count, {});
@@ -110,6 +101,9 @@ class SpringMat final : public Terrain {
   }
 
  private:
+  std::size_t attached() const override { return guests_.size(); }
+  std::size_t vertices(std::size_t k) const override { return guests_[k].position.size(); }
+
   static std::string name(std::size_t k) { return "spring_mat/guest" + std::to_string(k) + "/"; }
 
   /// Moves vertex v to where its target will be, with (1) on the way.

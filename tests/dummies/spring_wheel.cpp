@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/archive_fields.hpp"
-#include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/mean_turn.hpp"
 #include "protocol/core/outcome.hpp"
@@ -74,7 +73,7 @@ class SpringWheel final : public Tire {
 
   void set_pressure(double) override {}
 
-  void place(const RimState& rim) override {
+  void do_place(const RimState& rim) override {
     rim_ = rim;
     spindle_ = {};
     dissipation_ = numerical_loss_ = 0.0;
@@ -93,8 +92,7 @@ class SpringWheel final : public Tire {
     }
   }
 
-  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override {
-    FURROW_ASSERT(substeps > 0 && rim.duration() > 0.0, substeps, rim.duration());
+  Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override {
     const RimState &start = rim.start(), &end = rim.end();
     const Mat3 turn = rim.at(0.5).state.orientation.toRotationMatrix();
     spindle_.force = shape_.mass.mass * (kGravity - (end.velocity - start.velocity) / rim.duration());
@@ -143,7 +141,7 @@ class SpringWheel final : public Tire {
     save_value(archive, "spring_wheel/dissipation", dissipation_);
     save_value(archive, "spring_wheel/numerical_loss", numerical_loss_);
   }
-  void restore(const Archive& archive) override {
+  void do_restore(const Archive& archive) override {
     restore_fields(archive, "spring_wheel/rim", rim_);
     restore_fields(archive, "spring_wheel/spindle", spindle_);
     restore_value(archive, "spring_wheel/deflection", deflection_, shape_.vertex.size());

@@ -8,10 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/archive_fields.hpp"
-#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_fields.hpp"
-#include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -45,17 +43,17 @@ class StripMat final : public Terrain {
     end_ = columns * (rank + 1) / ranks;
   }
 
-  double prepare(const ProgressCall& progress) override {
+  double do_prepare(const ProgressCall& progress) override {
     if (progress) progress("laying the mat", 0.5);
     exchange_heights();
     return 0.0;
   }
-  double top_height(double, double, double, double) const override {
+  double gather_top_height(double, double, double, double) const override {
     return *std::max_element(height_.begin(), height_.end());
   }
-  double mean_height(double, double, double, double) const override { return 0.0; }
+  double gather_mean_height(double, double, double, double) const override { return 0.0; }
   double floor_height() const override { return -1.0; }
-  HeightField height_field() const override {
+  HeightField gather_height_field() const override {
     HeightField field;
     field.cell = kColumn;
     field.nx = static_cast<std::int32_t>(height_.size());
@@ -66,8 +64,7 @@ class StripMat final : public Terrain {
     return field;
   }
 
-  void attach(const SurfaceMesh& mesh, const ContactMaterial&, const SurfaceState& start) override {
-    check_surface(mesh, start, static_cast<int>(guests_.size()));
+  void do_attach(const SurfaceMesh& mesh, const ContactMaterial&, const SurfaceState& start) override {
     Guest guest{start.position, std::vector<double>(start.position.size(), 0.0)};
     for (const auto& [a, b, c] : mesh.triangles) {
       const Vec3 ab = start.position[b] - start.position[a], ac = start.position[c] - start.position[a];
@@ -76,10 +73,8 @@ class StripMat final : public Terrain {
     guests_.push_back(std::move(guest));
   }
 
-  Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
-                  std::span<ContactSums> contact) override {
-    FURROW_ASSERT(targets.size() == guests_.size(), targets.size(), guests_.size());
-    FURROW_ASSERT(duration > 0.0 && substeps > 0, duration, substeps);
+  Outcome do_advance(std::span<const SurfaceState> targets, double duration, int substeps,
+                     std::span<NodalForces> forces, std::span<ContactSums> contact) override {
     std::vector<Push> own = own_vertices(targets, duration);
     for (int s = 0; s < substeps; ++s) {
       for (Push& push : own) press(push, targets, duration, s, substeps);
@@ -103,19 +98,17 @@ class StripMat final : public Terrain {
   }
 
   /// Its energy is what went in: nothing here tells how much of it is stored.
-  TerrainState state() const override {
+  TerrainState gather_state() const override {
     TerrainState state;
-    state.dissipation = -work_;
     state.energies.opening_loss = -work_;
     state.energies.surface_work = -work_;
-    state.momenta.surface_impulse = state.surface_impulse = impulse_;
-    state.momenta.wall_impulse = state.wall_impulse = -impulse_;  // the world holds the mat
+    state.momenta = held_by_the_world(impulse_);
     state.contacts = contacts_;
     return state;
   }
   std::int64_t size() const override { return static_cast<std::int64_t>(height_.size()); }
   std::int64_t grains_here() const override { return end_ - first_; }
-  void frame(TerrainFrame& out) const override {
+  void gather_frame(TerrainFrame& out) const override {
     out = {};
     for (int i = first_; i < end_; ++i) {
       for (const double x : {(i + 0.5) * kColumn, 0.0, height_[i]}) out.position.push_back(static_cast<float>(x));
@@ -135,7 +128,7 @@ class StripMat final : public Terrain {
     save_value(archive, "strip_mat/work", work_);
     save_value(archive, "strip_mat/impulse", impulse_);
   }
-  void restore(const Archive& archive) override {
+  void do_restore(const Archive& archive) override {
     std::int64_t count = 0;
     restore_value(archive, "strip_mat/guests", count);
     guests_.assign(static_cast<std::size_t>(count), {});
@@ -155,6 +148,9 @@ class StripMat final : public Terrain {
   }
 
  private:
+  std::size_t attached() const override { return guests_.size(); }
+  std::size_t vertices(std::size_t k) const override { return guests_[k].position.size(); }
+
   static std::string name(std::size_t k) { return "strip_mat/guest" + std::to_string(k) + "/"; }
 
   static Vec3 target(const SurfaceState& surface, std::size_t v, double duration) {

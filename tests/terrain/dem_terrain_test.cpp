@@ -101,11 +101,11 @@ TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
   std::string said;
   terrain->prepare([&](const std::string& what, double) { said = what; });
   EXPECT_EQ(said, "settling the bed");
-  const TerrainState s = terrain->state();
+  const TerrainState s = terrain->gather_state();
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
   EXPECT_NEAR(s.floor_force, mass * 9.81, 1e-3 * mass * 9.81);
-  const double height = terrain->mean_height(0.03, 0.27, -0.08, 0.08),
-               top = terrain->top_height(0.03, 0.27, -0.08, 0.08);
+  const double height = terrain->gather_mean_height(0.03, 0.27, -0.08, 0.08),
+               top = terrain->gather_top_height(0.03, 0.27, -0.08, 0.08);
   const double solid = mass / 2500 / (0.3 * 0.2 * height);
   EXPECT_GT(solid, 0.35);
   EXPECT_LT(solid, 0.64);
@@ -227,7 +227,7 @@ TEST_F(DemTerrain, refuses_a_material_that_its_law_cannot_use_by_name) {
     options_.law = law;
     const auto terrain = make_dem_terrain(options_);
     terrain->prepare({});
-    const Plate plate(0.1, -0.05, 0.1, 4, terrain->top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
+    const Plate plate(0.1, -0.05, 0.1, 4, terrain->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
     try {
       terrain->attach(plate.mesh, material, plate.state);
     } catch (const Error& error) {
@@ -254,15 +254,15 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     options_.law = law;
     const auto terrain = make_dem_terrain(options_);
     terrain->prepare({});
-    const double top = terrain->top_height(0.1, 0.2, -0.05, 0.05);
+    const double top = terrain->gather_top_height(0.1, 0.2, -0.05, 0.05);
     Plate plate(0.1, -0.05, 0.1, 4, top + 1e-4);
     terrain->attach(plate.mesh, kRubber, plate.state);
-    const TerrainState before = terrain->state();
+    const TerrainState before = terrain->gather_state();
     Press press;
     const double dt = 6e-5;
     const Outcome status = press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2);
     ASSERT_TRUE(status.ok) << status.message("terrain");
-    const TerrainState after = terrain->state();
+    const TerrainState after = terrain->gather_state();
     const ContactSums& sums = press.sums[0];
 
     EXPECT_GT(press.impulse.z(), 0.05);
@@ -272,11 +272,11 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     EXPECT_LT((nodal - sums.force).norm(), 1e-10 * sums.force.norm());
     EXPECT_LT(sums.transfer_force_residual, 1e-12);
     EXPECT_LT(sums.transfer_moment_residual, 1e-12);
-    EXPECT_LT((press.impulse + after.surface_impulse).norm(), 1e-11 * press.impulse.norm());
+    EXPECT_LT((press.impulse + after.momenta.surface_impulse).norm(), 1e-11 * press.impulse.norm());
 
     const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
-    const Vec3 change = after.momentum - before.momentum - after.surface_impulse - after.wall_impulse +
-                        Vec3(0, 0, mass * 9.81 * 1000 * dt);
+    const Vec3 change = after.momenta.grains - before.momenta.grains - after.momenta.surface_impulse -
+                        after.momenta.wall_impulse + Vec3(0, 0, mass * 9.81 * 1000 * dt);
     EXPECT_LT(change.norm(), 1e-10 * mass * 9.81 * 1000 * dt) << law;
 
     // The plate's work on the grains is what they hold more and what they lost, up to the error of the step and of the
@@ -285,7 +285,6 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     EXPECT_NEAR(to.surface_work, -press.work, 1e-12 * std::abs(press.work));
     EXPECT_NEAR(to.elastic_normal + to.cohesion, after.elastic_energy, 1e-12 * std::abs(to.cohesion));
     EXPECT_NEAR(to.kinetic + to.rotational, after.kinetic_energy, 1e-12 * to.kinetic);
-    EXPECT_EQ(to.potential, after.potential_energy);
     EXPECT_GT(to.sliding_loss, to.normal_damping_loss);
     const double left = to.stored() - from.stored() + to.losses() - to.surface_work;
     RecordProperty(std::string("left_of_work_") + law, std::to_string(left / to.surface_work));
@@ -302,18 +301,18 @@ TEST_F(DemTerrain, impulses_are_the_momentum_and_what_sleep_took) {
   options_.activity = true;
   const auto terrain = make_dem_terrain(options_);
   terrain->prepare({});
-  Plate plate(0.1, -0.05, 0.1, 4, terrain->top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
+  Plate plate(0.1, -0.05, 0.1, 4, terrain->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
   terrain->attach(plate.mesh, kRubber, plate.state);
-  const TerrainState before = terrain->state();
+  const TerrainState before = terrain->gather_state();
   Press press;
   const double dt = 6e-5;
   ASSERT_TRUE(press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2).ok);
-  const TerrainState after = terrain->state();
-  ASSERT_GT((after.momentum_removed - before.momentum_removed).norm(), 0.0);
+  const TerrainState after = terrain->gather_state();
+  ASSERT_GT((after.momenta.sleep_impulse - before.momenta.sleep_impulse).norm(), 0.0);
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
   const Vec3 weight = mass * 1000 * dt * standard_gravity();
   const auto given = [](const TerrainState& s) -> Vec3 {
-    return s.wall_impulse + s.surface_impulse - s.momentum_removed - s.momentum;
+    return s.momenta.wall_impulse + s.momenta.surface_impulse + s.momenta.sleep_impulse - s.momenta.grains;
   };
   // Forces on sleeping strips that nobody evaluates are those of the step in which they fell asleep.
   EXPECT_LT((given(after) - given(before) + weight).norm(), 1e-3 * weight.norm());
@@ -321,7 +320,6 @@ TEST_F(DemTerrain, impulses_are_the_momentum_and_what_sleep_took) {
   const TerrainEnergies &from = before.energies, &to = after.energies;
   const double left = to.stored() - from.stored() + to.losses() - to.surface_work;
   EXPECT_GT(to.sleep_loss, 0.0);
-  EXPECT_EQ(to.sleep_loss, after.energy_removed);
   RecordProperty("left_of_work", std::to_string(left / to.surface_work));
   EXPECT_LT(std::abs(left), 0.03 * to.surface_work + 3.0 * to.sample_error);
 }
@@ -330,7 +328,7 @@ TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
   options_.rolling_friction = 0.1;
   const auto a = make_dem_terrain(options_);
   a->prepare({});
-  Plate plate(0.1, -0.05, 0.1, 4, a->top_height(0.1, 0.2, -0.05, 0.05));
+  Plate plate(0.1, -0.05, 0.1, 4, a->gather_top_height(0.1, 0.2, -0.05, 0.05));
   a->attach(plate.mesh, kRubber, plate.state);
   Press press;
   ASSERT_TRUE(press.run(*a, plate, Vec3(0.3, 0.0, -0.3), 300, 6e-5).ok);
@@ -352,8 +350,8 @@ TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
 TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run) {
   const auto a = make_dem_terrain(options_);
   a->prepare({});
-  const double before = a->mean_height(0.12, 0.18, -0.03, 0.03);
-  Plate plate(0.1, -0.05, 0.1, 4, a->top_height(0.1, 0.2, -0.05, 0.05));
+  const double before = a->gather_mean_height(0.12, 0.18, -0.03, 0.03);
+  Plate plate(0.1, -0.05, 0.1, 4, a->gather_top_height(0.1, 0.2, -0.05, 0.05));
   a->attach(plate.mesh, kRubber, plate.state);
   Press press;
   ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, -0.3), 1000, 6e-5).ok);
@@ -374,7 +372,7 @@ TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run)
   const auto b = make_dem_terrain(options_);
   b->prepare({});
   EXPECT_EQ(b->size(), a->size());
-  EXPECT_LT(b->mean_height(0.12, 0.18, -0.03, 0.03), before - 2e-3) << "the plate's print is gone";
+  EXPECT_LT(b->gather_mean_height(0.12, 0.18, -0.03, 0.03), before - 2e-3) << "the plate's print is gone";
   struct Stop {};
   EXPECT_THROW(terrain::dem::bed_after_run(
                    run, options_, 0.02, [](const std::string&, double) { throw Stop{}; }, rest),

@@ -97,7 +97,7 @@ TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {
   // Damping goes with the speed along facets that stand at up to 6°.
   EXPECT_NEAR(on_curb.sums.force.z() / on_plane.sums.force.z(), 1.0, 2e-3);
   EXPECT_NEAR((on_curb.sums.force.x() - on_plane.sums.force.x()) / on_plane.sums.force.z(), 0.0, 2e-3);
-  EXPECT_NEAR(b->state().elastic_energy / a->state().elastic_energy, 1.0, 1e-9);
+  EXPECT_NEAR(b->gather_state().elastic_energy / a->gather_state().elastic_energy, 1.0, 1e-9);
 }
 
 /// A block whose lower right edge is led around the curb's edge and back.
@@ -117,19 +117,19 @@ TEST(GroundProfile, contact_without_friction_and_damping_gives_back_what_it_took
   ground->attach(wheel.mesh, rubber(0.0), state);
   const double duration = 1e-3;
   double work = 0.0, taken = 0.0, most = 0.0, worst = 0.0;
-  const double first = ground->state().elastic_energy;
+  const double first = ground->gather_state().elastic_energy;
   for (int k = 0; k < steps; ++k) {
     const Vec3 velocity = (at((k + 1.0) / steps) - at(double(k) / steps)) / duration;
     const Push one = push(*ground, placed(wheel, at(double(k) / steps), velocity), duration);
     const double step = -one.sums.force.dot(velocity) * duration;
     work += step, taken += std::abs(step);
-    const double stored = ground->state().elastic_energy - first;
+    const double stored = ground->gather_state().elastic_energy - first;
     most = std::max(most, stored), worst = std::max(worst, std::abs(work - stored));
   }
   EXPECT_GT(most, 1.0);
   EXPECT_LT(std::abs(work), 0.005 * taken);
   EXPECT_LT(worst, 0.02 * most);
-  EXPECT_NEAR(ground->state().dissipation, 0.0, 1e-9);
+  EXPECT_NEAR(ground->gather_state().energies.losses(), 0.0, 1e-9);
 }
 
 TEST(GroundProfile, friction_lies_along_the_face_that_is_touched) {
@@ -174,8 +174,8 @@ TEST(GroundProfile, a_restored_ground_continues_bit_for_bit) {
   state = kept;
   const Push b = go(*other, 100);
   EXPECT_EQ(a.sums.force, b.sums.force);
-  EXPECT_EQ(one->state().dissipation, other->state().dissipation);
-  EXPECT_EQ(one->state().elastic_energy, other->state().elastic_energy);
+  EXPECT_EQ(one->gather_state().energies.losses(), other->gather_state().energies.losses());
+  EXPECT_EQ(one->gather_state().elastic_energy, other->gather_state().elastic_energy);
 }
 
 }  // namespace

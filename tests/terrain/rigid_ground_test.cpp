@@ -37,8 +37,8 @@ TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
   EXPECT_NEAR(one.sums.force.z() / (options.ground_stiffness * 4e-4 * 0.02), 1.0, 1e-12);
   EXPECT_NEAR(one.sums.tangential.norm(), 0.0, 1e-12);
   EXPECT_NEAR(one.sums.moment.y() / (-3.0 * one.sums.force.z()), 1.0, 1e-12);
-  EXPECT_NEAR(ground->state().elastic_energy / (0.5 * options.ground_stiffness * 1.6e-7 * 0.02), 1.0, 1e-12);
-  EXPECT_NEAR(ground->state().floor_force, one.sums.force.z(), 1e-9);
+  EXPECT_NEAR(ground->gather_state().elastic_energy / (0.5 * options.ground_stiffness * 1.6e-7 * 0.02), 1.0, 1e-12);
+  EXPECT_NEAR(ground->gather_state().floor_force, one.sums.force.z(), 1e-9);
 }
 
 TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
@@ -102,12 +102,12 @@ TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
   const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {1e-2, 0.0, 0.0});
   ground->attach(block.mesh, rubber(), start);
-  const double at_rest = ground->state().elastic_energy;
+  const double at_rest = ground->gather_state().elastic_energy;
   const Push one = push(*ground, start, 1e-2, 1000);  // 0.1 mm; it would slide from 1.1 mm on
   const double stiffness = options.ground_shear_stiffness * 0.02;
   EXPECT_NEAR(one.sums.tangential.x() / (-stiffness * 0.5e-4), 1.0, 2e-3);  // mean while it grows
-  EXPECT_NEAR((ground->state().elastic_energy - at_rest) / (0.5 * stiffness * 1e-8), 1.0, 2e-3);
-  EXPECT_NEAR(ground->state().dissipation / (0.5 * stiffness * 1e-8), 0.0, 2e-3);
+  EXPECT_NEAR((ground->gather_state().elastic_energy - at_rest) / (0.5 * stiffness * 1e-8), 1.0, 2e-3);
+  EXPECT_NEAR(ground->gather_state().energies.losses() / (0.5 * stiffness * 1e-8), 0.0, 2e-3);
 }
 
 TEST(RigidGround, shears_what_it_touches_from_then_on) {
@@ -278,13 +278,13 @@ TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
   EXPECT_NEAR(-block.position.z() / (weight / (options.ground_stiffness * 0.02)), 1.0, 1e-6);
   EXPECT_LT(block.velocity.norm(), 1e-8);
   // ∫ F dt − W T = Δp = 0, and the drop's energy has been dissipated.
-  const TerrainState state = ground->state();
-  const double received = -state.surface_impulse.z();
+  const TerrainState state = ground->gather_state();
+  const double received = -state.momenta.surface_impulse.z();
   EXPECT_NEAR(received / (weight * 20000 * h), 1.0, 1e-4);  // one interval of force is still in flight
   const double released = weight * (2e-3 - block.position.z());
-  EXPECT_NEAR((state.dissipation + state.elastic_energy) / released, 1.0,
+  EXPECT_NEAR((state.energies.losses() + state.elastic_energy) / released, 1.0,
               0.02);  // coupling lag: k h²/m = 3e-4
-  EXPECT_EQ(state.wall_impulse, -state.surface_impulse);
+  EXPECT_EQ(state.momenta.wall_impulse, -state.momenta.surface_impulse);
 }
 
 TEST(RigidGround, damps_bouncing_as_a_linear_oscillator_would) {
@@ -329,9 +329,9 @@ TEST(RigidGround, work_of_its_spring_is_its_elastic_energy) {
   double work = 0.0;
   for (int i = 0; i < 10; ++i)
     work += push(*ground, placed(block, {0.0, 0.0, -1e-4 * i}, {0.0, 0.0, -0.1}), 1e-3, 3).sums.work;
-  const TerrainState state = ground->state();
+  const TerrainState state = ground->gather_state();
   EXPECT_NEAR(-work / state.elastic_energy, 1.0, 1e-12);
-  EXPECT_NEAR(state.dissipation / state.elastic_energy, 0.0, 1e-12);
+  EXPECT_NEAR(state.energies.losses() / state.elastic_energy, 0.0, 1e-12);
 }
 
 /// What the accounts leave over between two reports, J.
@@ -349,12 +349,12 @@ TEST(RigidGround, books_each_loss_where_it_belongs) {
   const double speed = 0.2, load = options.ground_stiffness * 4e-4 * 0.02;
   SurfaceState state = placed(block, {0.0, 0.0, -4e-4}, {speed, 0.0, 0.0});
   ground->attach(block.mesh, rubber(), state);
-  const TerrainEnergies start = ground->state().energies;
+  const TerrainEnergies start = ground->gather_state().energies;
   slide_steadily(*ground, state, 1e-4, 2000);
-  const TerrainEnergies begin = ground->state().energies;
+  const TerrainEnergies begin = ground->gather_state().energies;
   for (Vec3& x : state.position) x += Vec3(2000 * 1e-4 * speed, 0.0, 0.0);
   slide_steadily(*ground, state, 1e-4, 1000);
-  const TerrainEnergies end = ground->state().energies;
+  const TerrainEnergies end = ground->gather_state().energies;
   const double friction = 0.5 * load * std::tanh(options.friction_velocity_scale * speed);
   EXPECT_NEAR((end.sliding_loss - begin.sliding_loss) / (friction * speed * 0.1), 1.0, 1e-9);
   EXPECT_NEAR(end.tangential_damping_loss, begin.tangential_damping_loss, 1e-9 * end.sliding_loss);
@@ -366,7 +366,7 @@ TEST(RigidGround, books_each_loss_where_it_belongs) {
   for (Vec3& x : state.position) x += Vec3(1000 * 1e-4 * speed, 0.0, 0.0);
   for (Vec3& v : state.velocity) v = Vec3(0.0, 0.0, 1.0);
   push(*ground, state, 1e-3, 100);
-  const TerrainEnergies lifted = ground->state().energies;
+  const TerrainEnergies lifted = ground->gather_state().energies;
   EXPECT_EQ(lifted.elastic_normal + lifted.elastic_tangential, 0.0);
   EXPECT_GT(lifted.normal_damping_loss, 0.0);
   EXPECT_LT(std::abs(residual(end, lifted)), 0.02 * end.elastic_normal);
@@ -383,9 +383,9 @@ TEST(RigidGround, accounts_of_its_shear_close_at_any_step) {
     const auto ground = make_rigid_ground(options);
     const SurfaceState state = placed(block, {0.0, 0.0, -4e-4}, Vec3(0.3, -0.2, 0.0));
     ground->attach(block.mesh, rubber(), state);
-    const TerrainEnergies begin = ground->state().energies;
+    const TerrainEnergies begin = ground->gather_state().energies;
     slide_steadily(*ground, state, h, static_cast<int>(std::lround(0.03 / h)));
-    const TerrainEnergies end = ground->state().energies;
+    const TerrainEnergies end = ground->gather_state().energies;
     EXPECT_GT(end.tangential_damping_loss, 0.01 * end.losses());
     EXPECT_LT(std::abs(residual(begin, end)), 1e-10 * end.losses()) << h;
   }
@@ -405,10 +405,10 @@ TEST(RigidGround, residual_of_a_rolling_wheel_shrinks_with_the_step) {
       return placed(round, {speed * t, 0.0, z}, {speed, 0.0, v_z}, spin * t, spin);
     };
     ground->attach(round.mesh, rubber(), at(0.0));
-    const TerrainEnergies begin = ground->state().energies;
+    const TerrainEnergies begin = ground->gather_state().energies;
     const int steps = 2500 * (1 << k);
     for (int i = 0; i < steps; ++i) push(*ground, at(h * i), h);
-    const TerrainEnergies end = ground->state().energies;
+    const TerrainEnergies end = ground->gather_state().energies;
     share[k] = residual(begin, end) / end.losses();
     EXPECT_GT(end.sliding_loss, 0.0);
     EXPECT_GT(end.normal_damping_loss, 0.0);
@@ -445,16 +445,15 @@ TEST(RigidGround, continues_a_saved_state_bit_for_bit) {
   ground->save(archive);
   const auto again = make_rigid_ground({});
   again->restore(archive);
-  EXPECT_EQ(again->state().dissipation, ground->state().dissipation);
+  EXPECT_EQ(again->gather_state().energies.losses(), ground->gather_state().energies.losses());
   for (int i = 5; i < 10; ++i) {
     const Push a = push(*ground, at(i), 4e-5, 2), b = push(*again, at(i), 4e-5, 2);
     ASSERT_EQ(a.forces.vertex, b.forces.vertex);
     ASSERT_EQ(a.forces.force, b.forces.force);
     ASSERT_EQ(a.sums.work, b.sums.work);
-    ASSERT_EQ(ground->state().dissipation, again->state().dissipation);
-    ASSERT_EQ(ground->state().floor_force, again->state().floor_force);
-    ASSERT_EQ(ground->state().energies.losses(), again->state().energies.losses());
-    ASSERT_EQ(ground->state().energies.stored(), again->state().energies.stored());
+    ASSERT_EQ(ground->gather_state().floor_force, again->gather_state().floor_force);
+    ASSERT_EQ(ground->gather_state().energies.losses(), again->gather_state().energies.losses());
+    ASSERT_EQ(ground->gather_state().energies.stored(), again->gather_state().energies.stored());
   }
 }
 

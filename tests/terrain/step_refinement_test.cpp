@@ -183,17 +183,18 @@ const ContactMaterial kSteel{2e11, 0.3, 0.5, 0.2, 1e9, 10.0, 0.0};
 TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_restart_and_end) {
   const auto a = terrain(1);
   a->prepare({});
-  Plate plate(a->top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
+  Plate plate(a->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
   a->attach(plate.mesh, kSteel, plate.state);
-  const TerrainState before = a->state();
+  const TerrainState before = a->gather_state();
   const double length = 2.0 * options_.step;
   // Down by 14 mm, in two stretches: the first ends while steps are taken in parts.
   const int way = static_cast<int>(0.014 / 0.5 / length);
   int pressed = 0;
   Outcome outcome;
-  while (outcome.ok && a->state().most_parts == 1 && pressed < way) outcome = press(*a, plate, 0.5, 1), ++pressed;
+  while (outcome.ok && a->gather_state().most_parts == 1 && pressed < way)
+    outcome = press(*a, plate, 0.5, 1), ++pressed;
   ASSERT_TRUE(outcome.ok) << outcome.message("terrain");
-  ASSERT_GT(a->state().substeps_added, 0) << "pressed by " << hardest_ << " N";
+  ASSERT_GT(a->gather_state().substeps_added, 0) << "pressed by " << hardest_ << " N";
   Archive saved;
   a->save(saved);
   const auto b = terrain(2);
@@ -207,21 +208,21 @@ TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_res
   ASSERT_TRUE(press(*b, other, 0.05, more).ok);
   elapsed_ = until_here;
   EXPECT_EQ(hash(*a), hash(*b));
-  EXPECT_GT(a->state().refined_time, 0.0);
-  EXPECT_GE(a->state().most_parts, 2);
+  EXPECT_GT(a->gather_state().refined_time, 0.0);
+  EXPECT_GE(a->gather_state().most_parts, 2);
 
   // Let go: the whole step comes back and stays.
   ASSERT_TRUE(press(*a, plate, -0.2, 400).ok);
-  const std::int64_t added = a->state().substeps_added;
+  const std::int64_t added = a->gather_state().substeps_added;
   ASSERT_TRUE(press(*a, plate, -0.2, 200).ok);
-  EXPECT_EQ(a->state().substeps_added, added);
+  EXPECT_EQ(a->gather_state().substeps_added, added);
 
   // What was given and taken is the momentum, to round-off, whatever the steps were.
-  const TerrainState after = a->state();
+  const TerrainState after = a->gather_state();
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(a->size());
   const Vec3 weight = mass * elapsed_ * standard_gravity();
   const auto given = [](const TerrainState& s) -> Vec3 {
-    return s.wall_impulse + s.surface_impulse - s.momentum_removed - s.momentum;
+    return s.momenta.wall_impulse + s.momenta.surface_impulse + s.momenta.sleep_impulse - s.momenta.grains;
   };
   EXPECT_LT((given(after) - given(before) + weight).norm(), 1e-10 * weight.norm());
 }
@@ -229,7 +230,7 @@ TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_res
 TEST_F(Pressed, a_contact_that_no_step_can_hold_ends_with_where_and_what_to_change) {
   const auto a = terrain(1);
   a->prepare({});
-  Plate plate(a->top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
+  Plate plate(a->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
   a->attach(plate.mesh, kSteel, plate.state);
   const Outcome outcome = press(*a, plate, 2.0, 100000);
   ASSERT_FALSE(outcome.ok);

@@ -74,7 +74,7 @@ struct Scene {
     Block block;
     block.mass = mass;
     block.damper = 50.0 * mass;  // falls at 0.2 m/s
-    block.position = Vec3(x, 0.0, terrain->top_height(x - 0.07, x + 0.07, -0.07, 0.07) + 1e-4);
+    block.position = Vec3(x, 0.0, terrain->gather_top_height(x - 0.07, x + 0.07, -0.07, 0.07) + 1e-4);
     terrain->attach(block.surface.mesh, steel(), block.state());
     blocks.push_back(block);
   }
@@ -102,7 +102,7 @@ TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
   Scene scene(options);
   const double masses[] = {10.0, 15.0, 20.0, 25.0};
   for (int k = 0; k < 4; ++k) scene.put(0.12 + 0.2 * k, masses[k]);
-  const TerrainState before = scene.terrain->state();
+  const TerrainState before = scene.terrain->gather_state();
   constexpr int kFall = 4000, kWindow = 1500;
   scene.run(kFall);
   std::vector<Vec3> impulse_before;
@@ -115,16 +115,16 @@ TEST(SurfaceCoupling, four_blocks_on_one_bed_each_feel_their_own_weight) {
   }
 
   // What the grains received is what the blocks received; both sides' momentum accounts close on their own.
-  const TerrainState after = scene.terrain->state();
+  const TerrainState after = scene.terrain->gather_state();
   Vec3 received = Vec3::Zero();
   for (const Block& block : scene.blocks) received += block.impulse;
   const double scale = received.norm();
-  EXPECT_LT((after.surface_impulse - before.surface_impulse + received).norm() / scale, 1e-12);
+  EXPECT_LT((after.momenta.surface_impulse - before.momenta.surface_impulse + received).norm() / scale, 1e-12);
   const double grain_mass = 4.0 / 3.0 * M_PI * 1e-6 * 2500.0 * static_cast<double>(scene.terrain->size());
   const Vec3 gravity(0.0, 0.0, -kStandardGravity * grain_mass * (kFall + kWindow) * kStep);
-  const Vec3 change = after.momentum - before.momentum;
-  const Vec3 given =
-      gravity + (after.wall_impulse - before.wall_impulse) + (after.surface_impulse - before.surface_impulse);
+  const Vec3 change = after.momenta.grains - before.momenta.grains;
+  const Vec3 given = gravity + (after.momenta.wall_impulse - before.momenta.wall_impulse) +
+                     (after.momenta.surface_impulse - before.momenta.surface_impulse);
   EXPECT_LT((change - given).norm() / scale, 1e-9);
   EXPECT_LT(scene.worst_force_residual, 1e-12);
   EXPECT_LT(scene.worst_moment_residual, 1e-12);
@@ -147,7 +147,7 @@ TEST(SurfaceCoupling, no_grain_passes_through_a_plate_that_is_rammed_into_the_be
     block.position += kStep * block.velocity;
   }
   TerrainFrame frame;
-  scene.terrain->frame(frame);
+  scene.terrain->gather_frame(frame);
   for (std::size_t g = 0; g < frame.radius.size(); ++g) {
     const Vec3 x(frame.position[3 * g], frame.position[3 * g + 1], frame.position[3 * g + 2]);
     const Vec3 local = x - block.position;

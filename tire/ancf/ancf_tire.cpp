@@ -1,7 +1,5 @@
 #include "tire/ancf/ancf_tire.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -54,13 +52,13 @@ void AncfTire::set_pressure(double pressure) {
   FURROW_ASSERT(std::isfinite(pressure), pressure);
   const double before = integrator_.shell().pressure();
   if (pressure == before) return;
-  if (placed_)
+  if (placed())
     pressure_work_ +=
         (pressure - before) * (integrator_.shell().volume(integrator_.q(), rim_.position) - undeformed_volume_);
   integrator_.set_pressure(pressure);
 }
 
-void AncfTire::place(const RimState& rim) {
+void AncfTire::do_place(const RimState& rim) {
   const ShellLayout& layout = integrator_.layout();
   const Field shape = inflate(integrator_.shell(), ring_, inflation_, alive_);
   const Mat3 turn = rim.orientation.toRotationMatrix();
@@ -79,7 +77,6 @@ void AncfTire::place(const RimState& rim) {
   rim_ = rim;
   spindle_ = {};
   pressure_work_ = 0.0;
-  placed_ = true;
 }
 
 void AncfTire::surface(SurfaceState& out) const {
@@ -98,15 +95,7 @@ void AncfTire::surface(SurfaceState& out) const {
   }
 }
 
-Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
-  FURROW_ASSERT(placed_, substeps);
-  FURROW_ASSERT(substeps > 0 && rim.duration() > 0.0, substeps, rim.duration());
-  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
-  FURROW_ASSERT(forces.tangent.empty() || forces.tangent.size() == forces.vertex.size(), forces.tangent.size(),
-                forces.vertex.size());
-  FURROW_ASSERT(std::all_of(forces.vertex.begin(), forces.vertex.end(),
-                            [&](int v) { return in_range(v, surface_mesh_.vertex_count); }),
-                surface_mesh_.vertex_count);
+Outcome AncfTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
   const ShellLayout& layout = integrator_.layout();
   about_ = 0.5 * (rim.start().position + rim.end().position);
   spindle_ = {};
@@ -118,9 +107,6 @@ Outcome AncfTire::advance(const RimTrajectory& rim, const NodalForces& forces, i
   interval_ = rim.duration();
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     const int vertex = forces.vertex[k];
-    if (!forces.force[k].allFinite())
-      return Outcome::failure("was pushed with a force that is not finite",
-                              fmt::format("at vertex {} of its surface; try a smaller run.step", vertex));
     if (vertex < ring_.nodes()) {
       const int i = vertex / ring_.rows, j = vertex % ring_.rows;
       layout.set(force_, i, j, 0, forces.force[k]);
@@ -222,12 +208,11 @@ void AncfTire::save(Archive& archive) const {
   integrator_.save(archive);
 }
 
-void AncfTire::restore(const Archive& archive) {
+void AncfTire::do_restore(const Archive& archive) {
   const Archive::Scope scope(archive, "ancf/");
   restore_fields(archive, "rim", rim_);
   restore_fields(archive, "spindle", spindle_);
   pressure_work_ = archive.get_double("pressure_work");
-  placed_ = true;
   integrator_.restore(archive);
 }
 

@@ -26,9 +26,7 @@ class AncfTire final : public Tire {
   int coordinates() const override { return 6 * ring_.nodes(); }
 
   void set_pressure(double pressure) override;
-  void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
-  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   Wrench spindle_wrench() const override { return spindle_; }
   void acted(NodalForces& forces) const override;
   TireDiagnostics diagnostics() const override;
@@ -36,12 +34,14 @@ class AncfTire final : public Tire {
   NamedValues times() const override;
   void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
 
   const ShellIntegrator& integrator() const { return integrator_; }
   const InflationReport& inflation() const { return inflation_; }
 
  private:
+  void do_place(const RimState& rim) override;
+  Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  void do_restore(const Archive& archive) override;
   Outcome step(const RimTrajectory& rim, double from, double to, int substeps, int halvings);
 
   std::function<void()> alive_;
@@ -57,7 +57,6 @@ class AncfTire final : public Tire {
   InflationReport inflation_;
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
-  bool placed_ = false;
   // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without
   // work on the tire.
   double pressure_work_ = 0.0;

@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/mean_turn.hpp"
@@ -42,17 +40,17 @@ class ExtrudedTire final : public Tire {
   int coordinates() const override { return model_->coordinates(); }
 
   void set_pressure(double pressure) override { model_->set_pressure(pressure); }
-  void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
-  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override { return model_->figures(); }
   void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
 
  private:
+  void do_place(const RimState& rim) override;
+  Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  void do_restore(const Archive& archive) override;
   /// Vertices of an outer node's pair stand at ± half the width; the last two at the middle of the sides.
   bool on_tread(int vertex) const { return vertex < 2 * static_cast<int>(model_->tread().size()); }
   double side(int vertex) const { return (vertex % 2 == 0 ? 0.5 : -0.5) * shape_.tread_width; }
@@ -85,7 +83,7 @@ class ExtrudedTire final : public Tire {
   Vec3 solver_impulse_ = Vec3::Zero();                                   // N s
 };
 
-void ExtrudedTire::place(const RimState& rim) {
+void ExtrudedTire::do_place(const RimState& rim) {
   const WheelPlane plane = WheelPlane::of(rim.orientation);
   rim_ = rim;
   spindle_ = {};
@@ -159,16 +157,8 @@ Outcome ExtrudedTire::run(const RimTrajectory& rim, const WheelPlane& plane, int
   return model_->check();
 }
 
-Outcome ExtrudedTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
-  FURROW_ASSERT(substeps > 0 && rim.duration() > 0.0, substeps, rim.duration());
-  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
+Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
   const double duration = rim.duration();
-  for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
-    FURROW_ASSERT(in_range(forces.vertex[k], shape_.mesh.vertex_count), forces.vertex[k]);
-    if (!forces.force[k].allFinite())
-      return Outcome::failure("was given a force that is not finite",
-                              fmt::format("on vertex {}; try a smaller run.step", forces.vertex[k]));
-  }
   int parts = 1;
   if (const Outcome outcome = model_->parts(duration / substeps, parts); !outcome.ok) return outcome;
   const WheelPlane plane = WheelPlane::of(rim.at(0.5).state.orientation);
@@ -257,7 +247,7 @@ void ExtrudedTire::save(Archive& archive) const {
   save_fields(archive, "extruded", *this);
 }
 
-void ExtrudedTire::restore(const Archive& archive) {
+void ExtrudedTire::do_restore(const Archive& archive) {
   model_->restore(archive);
   restore_fields(archive, "extruded", *this);
 }

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
-#include "tire/capabilities.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/handling/handling_press.hpp"
 #include "tire/handling/handling_tire.hpp"
@@ -33,7 +32,7 @@ class HandlingStatic final : public StaticTest {
   MassProperties mass_;
 };
 
-class HandlingSpec final : public TireSpec, public HasOwnContact, public NamesFiles {
+class HandlingSpec final : public TireSpec {
  public:
   HandlingSpec(HandlingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
 
@@ -43,9 +42,6 @@ class HandlingSpec final : public TireSpec, public HasOwnContact, public NamesFi
   }
   TireShape shape() const override;
   std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<HandlingStatic>(file_, mass()); }
-  std::string own_contact() const override {
-    return "its forces are those of the Magic Formula, which holds for hard level ground";
-  }
   std::vector<std::filesystem::path> files() const override {
     return is_tir(options().file) ? std::vector<std::filesystem::path>{} : std::vector{file_.tir};
   }
@@ -76,6 +72,7 @@ TireDescription HandlingSpec::describe() const {
   d.mass = mass();
   d.memory = 1e6;
   d.saved_bytes = 1e4;
+  d.own_contact = "its forces are those of the Magic Formula, which holds for hard level ground";
   return d;
 }
 

@@ -1,7 +1,6 @@
 #include "tire/handling/handling_tire.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,18 +36,18 @@ HandlingTire::HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gr
   stated_.given = true;
 }
 
-void HandlingTire::place(const RimState& rim) {
+void HandlingTire::do_place(const RimState& rim) {
   body_.place(rim);
   rim_ = rim;
   spindle_ = {};
   patch_ = {};
-  placed_ = true;
+  standing_ = true;
   dissipation_ = 0.0;
   stated_.forces.clear();
 }
 
 bool HandlingTire::on_ground(const ContactMotion& motion) const {
-  return !placed_ && motion.deflection > 0.0 &&
+  return !standing_ && motion.deflection > 0.0 &&
          motion.deflection < formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
 }
 
@@ -70,20 +69,18 @@ void HandlingTire::move(const RimState& rim, std::vector<Vec3>& position, std::v
 
 void HandlingTire::surface(SurfaceState& out) const { move(rim_, out.position, &out.velocity); }
 
-Outcome HandlingTire::advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
-  FURROW_ASSERT(substeps > 0, substeps);
+Outcome HandlingTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int) {
   const double duration = rim.duration();
   const Outcome moved = body_.advance(rim, {}, 1);
   if (!moved.ok) return moved;
   spindle_ = body_.spindle_wrench();
 
   move(rim.start(), before_, nullptr);
-  placed_ = false;
+  standing_ = false;
   move(rim.end(), after_, nullptr);
   const Vec3 centre = 0.5 * (rim.start().position + rim.end().position);
   for (std::size_t i = 0; i < forces.vertex.size(); ++i) {
     const int k = forces.vertex[i];
-    FURROW_ASSERT(in_range(k, shape_.vertex.size()), k, shape_.vertex.size());
     spindle_.force += forces.force[i];
     spindle_.moment += (0.5 * (before_[k] + after_[k]) - centre).cross(forces.force[i]);
   }
@@ -96,8 +93,6 @@ Outcome HandlingTire::advance(const RimTrajectory& rim, const NodalForces& force
 
   const ContactMotion now = contact_motion(formula_, rim_);
   const double most = formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
-  if (!std::isfinite(now.deflection + now.load))
-    return Outcome::failure("has a rim whose motion is not finite", "try a smaller run.step");
   if (now.deflection >= most)
     return Outcome::failure(
         fmt::format("is pressed by {:.4g} m, down to its rim", now.deflection),
@@ -160,7 +155,7 @@ void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
 
 TireDiagnostics HandlingTire::diagnostics() const {
   TireDiagnostics d = body_.diagnostics();
-  const double deflection = placed_ ? 0.0 : std::max(0.0, contact_motion(formula_, rim_).deflection);
+  const double deflection = standing_ ? 0.0 : std::max(0.0, contact_motion(formula_, rim_).deflection);
   d.elastic_energy = 0.5 * formula_.vertical.vertical_stiffness * deflection * deflection;
   d.dissipation = dissipation_;
   return d;
@@ -182,7 +177,7 @@ void HandlingTire::save(Archive& archive) const {
   save_fields(archive, "handling/stated", stated_.forces);
 }
 
-void HandlingTire::restore(const Archive& archive) {
+void HandlingTire::do_restore(const Archive& archive) {
   body_.restore(archive);
   restore_fields(archive, "handling", *this);
   restore_fields(archive, "handling/stated", stated_.forces);

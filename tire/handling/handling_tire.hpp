@@ -1,4 +1,4 @@
-// A tire that the Magic Formula describes: on level hard ground. It states its contact itself (StatesContact): the
+// A tire that the Magic Formula describes: on level hard ground. It states its contact itself (stated_contact()): the
 // terrain gives the forces that it asks for, on its own surface and in its own books, and adds none of its own.
 //
 // Over an interval of the length H from t the terrain moves what the tire said at t; what it then gives acts on the
@@ -20,13 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "tire/capabilities.hpp"
 #include "tire/handling/rolling_contact.hpp"
 #include "tire/rigid/rigid_tire.hpp"
 
 namespace furrow::tire::handling {
 
-class HandlingTire final : public Tire, public StatesContact {
+class HandlingTire final : public Tire {
  public:
   /// @param shape with the radius R_0 @param file for messages
   HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file);
@@ -40,25 +39,25 @@ class HandlingTire final : public Tire, public StatesContact {
   int coordinates() const override { return 2; }
 
   void set_pressure(double) override {}
-  void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
-  void stated_contact(StatedContact& out) const override { out = stated_; }
-  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  const StatedContact* stated_contact() const override { return &stated_; }
   Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override;
   void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
 
  private:
+  void do_place(const RimState& rim) override;
+  Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  void do_restore(const Archive& archive) override;
   template <class Visit>
   friend void visit_fields(Visit&& visit, FieldsOf<HandlingTire> auto& s) {
     visit(Field{"rim", ""}, s.rim_);
     visit(Field{"spindle", ""}, s.spindle_);
     visit(Field{"patch", ""}, s.patch_);
     visit(Field{"dissipation", "J"}, s.dissipation_);
-    visit(Field{"placed", ""}, s.placed_);
+    visit(Field{"placed", ""}, s.standing_);
   }
 
   /// Vertices of the wheel at a pose, flattened by the ground. @param velocity may be null
@@ -75,7 +74,7 @@ class HandlingTire final : public Tire, public StatesContact {
   RimState rim_;    // now
   Wrench spindle_;  // of the last advance
   PatchState patch_;
-  bool placed_ = false;       // and not yet moved: nothing is flattened
+  bool standing_ = false;     // placed and not yet moved: nothing is flattened
   double dissipation_ = 0.0;  // J
   StatedContact stated_;
   std::vector<Vec3> before_, after_, moving_;  // work

@@ -14,7 +14,6 @@
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tire/capabilities.hpp"
 #include "tire/press/press.hpp"
 
 namespace furrow::tire {
@@ -44,7 +43,7 @@ std::filesystem::path cache_file(const TireSpec& tire, double deflection) {
   add(o.structural_damping);
   add(o.pressure.empty() ? -1.0 : o.pressure.at(0.0));
   hash.add(read_text_file(o.file, "a tire file in JSON"));
-  for (const std::filesystem::path& named : files_of(tire)) hash.add(read_text_file(named, "a tire's file"));
+  for (const std::filesystem::path& named : tire.files()) hash.add(read_text_file(named, "a tire's file"));
   return folder / (hash.hex() + ".json");
 }
 
@@ -144,8 +143,7 @@ std::optional<PressCurve> press_curve(const TireSpec& tire, double load, const P
 }
 
 double hopeless_load(const TireDescription& tire) {
-  return tire.kind == "rigid" ? std::numeric_limits<double>::infinity()
-                              : kMostPressure * 2.0 * tire.radius * tire.width;
+  return tire.deflects ? kMostPressure * 2.0 * tire.radius * tire.width : std::numeric_limits<double>::infinity();
 }
 
 TireOptions coarse_for_pressing(TireOptions options) {

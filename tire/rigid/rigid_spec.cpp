@@ -1,12 +1,11 @@
 #include "tire/rigid/rigid_spec.hpp"
 
-#include "tire/capabilities.hpp"
 #include "tire/rigid/rigid_tire.hpp"
 
 namespace furrow::tire {
 namespace {
 
-class RigidSpec final : public TireSpec, public NamesFiles {
+class RigidSpec final : public TireSpec {
  public:
   explicit RigidSpec(std::unique_ptr<TireSpec> flexible)
       : TireSpec(flexible->options()), flexible_(std::move(flexible)) {}
@@ -16,7 +15,8 @@ class RigidSpec final : public TireSpec, public NamesFiles {
     d.kind = d.name = d.details = "rigid";
     d.coordinates = 0;
     d.memory = d.saved_bytes = 0.0;
-    d.takes_tangents = false;
+    d.takes_tangents = d.deflects = false;
+    d.own_contact.clear();
     d.static_only.clear();
     d.damping_time = d.step_share = 0.0;
     return d;
@@ -25,7 +25,7 @@ class RigidSpec final : public TireSpec, public NamesFiles {
     return std::make_unique<RigidTire>(flexible_->shape(), context.gravity);
   }
   TireShape shape() const override { return flexible_->shape(); }
-  std::vector<std::filesystem::path> files() const override { return files_of(*flexible_); }
+  std::vector<std::filesystem::path> files() const override { return flexible_->files(); }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     return flexible_->unlikely_values();
   }

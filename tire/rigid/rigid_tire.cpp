@@ -7,15 +7,12 @@
 //   m Δv·(X/H − v̄) + ΔL·(θ/H − ω̄) + ½ (ω·L' − ω'·L),  L = J ω; v̄, ω̄ the means of the interval's ends.
 #include "tire/rigid/rigid_tire.hpp"
 
-#include <algorithm>
-
 #include "protocol/core/archive_fields.hpp"
-#include "protocol/core/assert.hpp"
 #include "protocol/core/mean_turn.hpp"
 
 namespace furrow::tire {
 
-void RigidTire::place(const RimState& rim) {
+void RigidTire::do_place(const RimState& rim) {
   rim_ = rim;
   spindle_ = {};
   numerical_loss_ = 0.0;
@@ -37,12 +34,7 @@ Vec3 RigidTire::angular_momentum(const RimState& rim) const {
   return turn * (shape_.mass.inertia * (turn.transpose() * rim.angular_velocity));
 }
 
-Outcome RigidTire::advance(const RimTrajectory& rim, const NodalForces& forces, int) {
-  FURROW_ASSERT(rim.duration() > 0.0, rim.duration());
-  FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
-  FURROW_ASSERT(
-      std::all_of(forces.vertex.begin(), forces.vertex.end(), [&](int v) { return in_range(v, shape_.vertex.size()); }),
-      shape_.vertex.size());
+Outcome RigidTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int) {
   const RimState &start = rim.start(), &end = rim.end();
   const double duration = rim.duration();
   spindle_.force = shape_.mass.mass * (gravity_ - (end.velocity - start.velocity) / duration);
@@ -90,7 +82,7 @@ void RigidTire::save(Archive& archive) const {
   archive.put("rigid/numerical_loss", numerical_loss_);
 }
 
-void RigidTire::restore(const Archive& archive) {
+void RigidTire::do_restore(const Archive& archive) {
   restore_fields(archive, "rigid/rim", rim_);
   restore_fields(archive, "rigid/spindle", spindle_);
   numerical_loss_ = archive.get_double("rigid/numerical_loss");

@@ -23,16 +23,16 @@ class RigidTire final : public Tire {
   int coordinates() const override { return 0; }
 
   void set_pressure(double) override {}
-  void place(const RimState& rim) override;
   void surface(SurfaceState& out) const override;
-  Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
 
  private:
+  void do_place(const RimState& rim) override;
+  Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
+  void do_restore(const Archive& archive) override;
   Vec3 angular_momentum(const RimState& rim) const;  // about the rim centre, W
   void book_loss(const RimState& from, const RimState& to, double duration);
 

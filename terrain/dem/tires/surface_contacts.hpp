@@ -60,6 +60,10 @@ class SurfaceContacts {
   /// Whether surfaces attached from now on get their contact tangents beside the forces.
   void give_tangents(bool yes) { tangents_ = yes; }
   int count() const { return static_cast<int>(surfaces_.size()); }
+  std::size_t vertices(int k) const {
+    FURROW_ASSERT(in_range(k, count()), k, count());
+    return surfaces_[k].end.size();
+  }
   bool any() const { return !surfaces_.empty(); }
   const ContactMaterial& material(int k) const {
     FURROW_ASSERT(in_range(k, count()), k, count());

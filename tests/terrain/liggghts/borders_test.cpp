@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "protocol/core/rank_group.hpp"
 #include "terrain/liggghts/borders.hpp"
 
 namespace furrow::terrain::liggghts {

@@ -37,7 +37,7 @@ struct DrivenSurface {
 
 /// What the accounts leave over since the beginning, J.
 inline double residual(const terrain::Terrain& ground) {
-  const TerrainEnergies e = ground.state().energies;
+  const TerrainEnergies e = ground.gather_state().energies;
   return e.stored() + e.losses() - e.surface_work - e.wall_work;
 }
 

@@ -47,8 +47,8 @@ TEST(ScmGround, a_plate_meets_bekkers_curve_with_the_width_of_its_patch) {
       EXPECT_LT(tool.sums.transfer_force_residual, 1e-12);
       EXPECT_LT(tool.sums.transfer_moment_residual, 1e-12);
     }
-    EXPECT_NEAR(ground->state().floor_force, tool.sums.force.z(), 1e-9 * tool.sums.force.z());
-    EXPECT_LT(std::abs(testing::residual(*ground)), 0.02 * ground->state().energies.surface_work);
+    EXPECT_NEAR(ground->gather_state().floor_force, tool.sums.force.z(), 1e-9 * tool.sums.force.z());
+    EXPECT_LT(std::abs(testing::residual(*ground)), 0.02 * ground->gather_state().energies.surface_work);
   }
 }
 
@@ -73,7 +73,7 @@ TEST(ScmGround, a_plate_unloads_and_reloads_along_wongs_line_and_leaves_a_rut) {
     EXPECT_NEAR(tool.sums.force.z() / kArea, std::max(p, 0.0), 1e-6 * p_u) << i;
   }
   const double rut = z_u - p_u / k_u;
-  const HeightField field = ground->height_field();
+  const HeightField field = ground->gather_height_field();
   int sunk = 0;
   for (const double height : field.height)
     if (height != 0.0) {
@@ -81,10 +81,10 @@ TEST(ScmGround, a_plate_unloads_and_reloads_along_wongs_line_and_leaves_a_rut) {
       ++sunk;
     }
   EXPECT_EQ(sunk, 200);
-  EXPECT_NEAR(ground->mean_height(0.4, 0.6, -0.05, 0.05), -rut, 1e-9);
-  EXPECT_EQ(ground->top_height(0.3, 0.7, -0.1, 0.1), 0.0);
+  EXPECT_NEAR(ground->gather_mean_height(0.4, 0.6, -0.05, 0.05), -rut, 1e-9);
+  EXPECT_EQ(ground->gather_top_height(0.3, 0.7, -0.1, 0.1), 0.0);
   // What is lost is the work less what came back.
-  const TerrainEnergies e = ground->state().energies;
+  const TerrainEnergies e = ground->gather_state().energies;
   EXPECT_EQ(e.stored(), 0.0);
   const double compaction =
       kArea * ((options.bekker_k_c / 0.1 + options.bekker_k_phi) * std::pow(z_u, 1.7) / 1.7 - 0.5 * p_u * p_u / k_u);
@@ -158,7 +158,7 @@ TEST(ScmGround, a_plate_that_slides_meets_janosis_curve_under_mohr_coulombs_limi
     EXPECT_NEAR((tool.sums.tangential / -limit - expected * way).norm(), 0.0, 1e-6) << i;
     EXPECT_NEAR(tool.sums.normal.z() / (kArea * p), 1.0, 1e-9);
   }
-  EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * ground->state().energies.surface_work);
+  EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * ground->gather_state().energies.surface_work);
 }
 
 TEST(ScmGround, gives_the_momentum_that_it_takes_and_hands_out_no_energy) {
@@ -175,11 +175,11 @@ TEST(ScmGround, gives_the_momentum_that_it_takes_and_hands_out_no_energy) {
     EXPECT_LT((nodal - tool.sums.force).norm(), 1e-9 * (1.0 + nodal.norm()));
     received += 1e-3 * nodal;
     EXPECT_GE(tool.sums.normal.z(), 0.0);
-    EXPECT_GE(ground->state().energies.normal_damping_loss, lost - 1e-9);
-    lost = ground->state().energies.normal_damping_loss;
+    EXPECT_GE(ground->gather_state().energies.normal_damping_loss, lost - 1e-9);
+    lost = ground->gather_state().energies.normal_damping_loss;
   }
   EXPECT_GT(received.norm(), 1.0);
-  EXPECT_LT((received + ground->state().surface_impulse).norm(), 1e-10 * received.norm());
+  EXPECT_LT((received + ground->gather_state().momenta.surface_impulse).norm(), 1e-10 * received.norm());
 }
 
 TEST(ScmGround, continues_bit_for_bit_from_what_it_saved) {
@@ -198,8 +198,8 @@ TEST(ScmGround, continues_bit_for_bit_from_what_it_saved) {
   drive(*again, other, 150, 250);
   EXPECT_EQ(tool.sums.force, other.sums.force);
   EXPECT_EQ(tool.forces.force, other.forces.force);
-  EXPECT_EQ(ground->height_field().height, again->height_field().height);
-  const TerrainEnergies a = ground->state().energies, b = again->state().energies;
+  EXPECT_EQ(ground->gather_height_field().height, again->gather_height_field().height);
+  const TerrainEnergies a = ground->gather_state().energies, b = again->gather_state().energies;
   EXPECT_EQ(a.losses(), b.losses());
   EXPECT_EQ(a.stored(), b.stored());
 }

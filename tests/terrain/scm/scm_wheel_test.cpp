@@ -58,7 +58,7 @@ Steady roll(const ScmOptions& options, double sinkage, double slip, double dt = 
     mean.torque -= wheel.moment().y() / average;
   }
   mean.residual = testing::residual(*ground);
-  mean.work = ground->state().energies.surface_work;
+  mean.work = ground->gather_state().energies.surface_work;
   return mean;
 }
 

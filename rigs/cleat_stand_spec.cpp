@@ -6,11 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "rigs/drawbar_mount.hpp"
-#include "rigs/ride_mount.hpp"
+#include "rigs/ride_spec.hpp"
 
 namespace furrow::rigs {
 namespace {
@@ -35,57 +34,29 @@ DrawbarRigOptions drawbar_of(const CleatStandOptions& stand) {
   return rig;
 }
 
-class CleatStandSpec final : public RigSpec {
+class CleatStandSpec final : public RideSpec<DrawbarRigOptions> {
  public:
-  CleatStandSpec(const CleatStandOptions& stand, bool start_given, ReadContext context)
-      : rig_(drawbar_of(stand)),
-        hold_from_(stand.hold_axle_from),
-        start_given_(start_given),
-        context_(std::move(context)) {}
-
-  std::size_t wheel_count() const override { return 1; }
-  void mount(std::span<const MountedTire> tires) override {
-    FURROW_ASSERT(tires.size() == 1, tires.size());
-    rig_ = mounted(rig_, tires[0], context_, "");
-  }
+  CleatStandSpec(const CleatStandOptions& stand, const json& section, ReadContext context)
+      : RideSpec("cleat_stand", {0.0}, drawbar_of(stand), section, std::move(context)),
+        hold_from_(stand.hold_axle_from) {}
 
   RigDescription describe(std::span<const WheelSize> tires, double duration) const override {
-    FURROW_ASSERT(tires.size() == 1, tires.size());
     if (hold_from_ >= duration)
       throw input_error(context_.file, context_.key("hold_axle_from"),
                         fmt::format("is {:g} s, expected a time before the run ends at {:g} s", hold_from_, duration));
-    RigDescription d;
-    d.kind = "cleat_stand";
-    d.text = fmt::format("1 cleat test stand, axle held from {:.4g} s on", hold_from_);
-    d.speeds_up_until = rig_.move_from + rig_.ramp;
-    d.speeds_up_key = rig_.move_from > 0.0 ? "rig.move_from + rig.ramp" : "rig.ramp";
-    WheelDescription wheel = ride_wheel(rig_, tires[0], duration);
-    wheel.carried_mass = rig_.carrier_mass + rig_.rim_mass;
-    d.wheels = {wheel};
-    return d;
+    return RideSpec::describe(tires, duration);
   }
-
   std::unique_ptr<Rig> make() const override { return make_held_drawbar_rig(rig_, hold_from_); }
-
-  void fill_starts(std::span<const WheelSize> tires, double, std::optional<double> length,
-                   std::span<const double> margins) override {
-    if (!start_given_) rig_.start = length ? tires[0].radius + margins[0] : 0.0;
-  }
-
-  void complete(json& section) const override {
-    write_filled(section,
-                 {{"lowering_speed", rig_.lowering_speed},
-                  {"rim_mass", rig_.rim_mass},
-                  {"rim_spin_inertia", rig_.rim_spin_inertia},
-                  {"rim_diametral_inertia", rig_.rim_diametral_inertia}},
-                 {"carrier_mass", rig_.carrier_mass}, rig_.start);
-  }
+  void complete(json& section) const override { write(section, {"carrier_mass", rig_.carrier_mass}, {}); }
 
  private:
-  DrawbarRigOptions rig_;
+  void mount_tires(std::span<const MountedTire> tires) override { rig_ = mounted(rig_, tires[0], context_, ""); }
+  std::string text() const override {
+    return fmt::format("1 cleat test stand, axle held from {:.4g} s on", hold_from_);
+  }
+  double carried_mass(std::size_t) const override { return rig_.carrier_mass + rig_.rim_mass; }
+
   double hold_from_;  // s
-  bool start_given_;
-  ReadContext context_;
 };
 
 }  // namespace
@@ -93,10 +64,8 @@ class CleatStandSpec final : public RigSpec {
 std::unique_ptr<RigSpec> read_cleat_stand(const json& section, const ReadContext& context) {
   CleatStandOptions stand;
   read_fields(section, stand);
-  if (says(section, "load") && says(section, "carrier_mass"))
-    throw input_error(context.file, context.key("load"),
-                      fmt::format("is given beside '{}', expected one of the two", context.key("carrier_mass")));
-  return std::make_unique<CleatStandSpec>(stand, says(section, "start"), context);
+  refuse_both(section, "load", "carrier_mass", context);
+  return std::make_unique<CleatStandSpec>(stand, section, context);
 }
 
 }  // namespace furrow::rigs

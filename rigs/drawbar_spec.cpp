@@ -13,6 +13,7 @@
 #include "protocol/files/json_text.hpp"
 #include "rigs/drawbar_mount.hpp"
 #include "rigs/rig_row.hpp"
+#include "rigs/section_keys.hpp"
 
 namespace furrow::rigs {
 namespace {
@@ -25,11 +26,6 @@ struct Place {
   bool start_given = true;
   bool start_listed = false;  // by its own entry of rig.wheels
 };
-
-bool says(const json& section, const char* name) {
-  const auto entry = section.find(name);
-  return entry != section.end() && !entry->is_null();
-}
 
 /// Of the axle after the ramp, m/s, forward positive.
 double full_speed(const DrawbarRigOptions& rig, double tire_radius) {
@@ -152,14 +148,6 @@ class DrawbarSpec final : public RigSpec {
   bool listed_;
   ReadContext context_;
 };
-
-/// Whether the object says both keys, of which one excludes the other.
-void refuse_both(const json& object, const char* one, const char* other, const ReadContext& context,
-                 const std::string& wheel = "") {
-  if (says(object, one) && says(object, other))
-    throw input_error(context.file, context.key(wheel + one),
-                      fmt::format("is given beside '{}', expected one of the two", context.key(wheel + other)));
-}
 
 }  // namespace
 

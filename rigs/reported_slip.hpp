@@ -1,4 +1,4 @@
-// The slip that rigs of a single wheel report.
+// The slip that rigs report.
 #pragma once
 
 #include <cmath>

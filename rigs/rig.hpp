@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/core/archive.hpp"
+#include "protocol/core/assert.hpp"
 #include "protocol/core/column.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
@@ -99,33 +100,37 @@ class Rig {
   virtual std::string kind() const = 0;  // "drawbar", …
   virtual int wheel_count() const = 0;
 
-  /// Adds the tire's rigid-body mass properties to the rim of wheel k. Before place().
-  virtual void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) = 0;
+  /// Adds the tire's rigid-body mass properties to the rim of wheel k.
+  /// @pre neither placed nor restored; mass ≥ 0, tire_radius > 0
+  void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius);
 
-  /// Puts each rim centre at the given height, with the imposed velocities of t = 0.
-  virtual void place(std::span<const double> axle_height) = 0;
+  /// Puts each rim centre at the given height, with the imposed velocities of t = 0. May be called again.
+  /// @pre one finite height for each wheel; every tire was added
+  void place(std::span<const double> axle_height);
 
-  virtual RimState rim(int wheel) const = 0;
+  /// @pre placed or restored
+  RimState rim(int wheel) const;
   /// Whether it lies on its side or its roof: bodies do not touch the ground, so the run ends there.
   virtual bool overturned() const { return false; }
 
   /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held
   /// constant.
   /// @returns failure when the constraints cannot be satisfied, or a wrench or a state is not finite
-  /// @pre placed; one wrench for each wheel; duration > 0, substeps > 0
-  virtual Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
+  /// @pre placed or restored; one wrench for each wheel; duration > 0, substeps > 0
+  Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps);
 
   /// At every synchronization after the first, before anything is measured: z of the lowest point of wheel k's tire and
   /// of the undisturbed ground, m.
   virtual void observe(int /*wheel*/, double /*lowest_point*/, double /*ground*/) {}
 
-  virtual WheelReport report(int wheel) const = 0;
+  /// @pre placed or restored
+  WheelReport report(int wheel) const;
 
   virtual LiveNote live() const { return {}; }
   virtual RigFindings findings() const { return {}; }
 
-  /// @post every member is set and finite
-  virtual RigAccounts accounts() const = 0;
+  /// @pre placed or restored. @post every member is set and finite
+  RigAccounts accounts() const;
 
   /// Where wheel k travels now: unit, W. It is the direction of its slip, pull and position.
   virtual Vec3 heading(int wheel) const = 0;
@@ -137,11 +142,41 @@ class Rig {
   /// Sets those of kind `derived` for a line whose other columns are given.
   virtual void derive(int /*subject*/, const LineView& /*line*/, std::span<double> /*values*/) const {}
 
-  virtual void save(Archive& archive) const = 0;
-  virtual void restore(const Archive& archive) = 0;
+  /// @pre placed or restored
+  void save(Archive& archive) const;
+  /// @pre every tire was added. @throws Error(io) where the state is that of a rig on other tires
+  void restore(const Archive& archive);
   /// What the findings are made of. It is no state: nothing that moves depends on it.
   virtual void save_findings(Archive& /*archive*/) const {}
   virtual void restore_findings(const Archive& /*archive*/) {}
+
+ protected:
+  /// What was added of a wheel's tire.
+  struct RigTire {
+    MassProperties mass;
+    double radius = 0.0;  // undeformed, m
+  };
+  const RigTire& tire(int wheel) const {
+    FURROW_ASSERT(in_range(wheel, tires_.size()), wheel, tires_.size());
+    return tires_[wheel];
+  }
+  bool placed() const { return placed_; }
+
+ private:
+  // What a kind does where the function of the same name has checked its preconditions. Saved names begin with "rig/".
+  virtual void do_add_tire_mass(int /*wheel*/, const MassProperties& /*tire*/, double /*tire_radius*/) {}
+  virtual void do_place(std::span<const double> axle_height) = 0;
+  virtual RimState do_rim(int wheel) const = 0;
+  virtual Outcome do_advance(std::span<const Wrench> wrenches, double duration, int substeps) = 0;
+  virtual WheelReport do_report(int wheel) const = 0;
+  virtual RigAccounts do_accounts() const = 0;
+  virtual void do_save(Archive& archive) const = 0;
+  virtual void do_restore(const Archive& archive) = 0;
+  void check_tires() const;
+  void check_wheel(int wheel) const;
+
+  std::vector<RigTire> tires_;
+  bool placed_ = false;  // or restored
 };
 
 }  // namespace furrow::rigs

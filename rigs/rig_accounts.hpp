@@ -3,8 +3,11 @@
 
 #include <limits>
 
+#include "protocol/core/field_arithmetic.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/first_missing.hpp"
+#include "protocol/core/mean_turn.hpp"
+#include "protocol/core/surface.hpp"
 #include "protocol/core/vec.hpp"
 
 namespace furrow::rigs {
@@ -20,7 +23,7 @@ struct RigAccounts {
   double kinetic_energy = kMissing;                 // J, now
   double potential_energy = kMissing;               // of gravity and of the rig's springs, J, now
   double drive_work = kMissing;                     // by what turns the wheels, of a vehicle by its engine, J
-  double tow_work = kMissing;                      // by what moves the rig along against the tires' pull, J
+  double tow_work = kMissing;                       // by what moves the rig along against the tires' pull, J
   double guide_work = kMissing;                     // by rails, steering and whatever else is imposed, J
   double tire_work = kMissing;                      // by the tires' wrenches as the rig received them, J
   double damper_loss = kMissing;                    // by dampers and brakes, and in the driveline, J
@@ -49,32 +52,20 @@ void visit_fields(Visit&& visit, FieldsOf<RigAccounts> auto& s) {
 }
 
 inline RigAccounts RigAccounts::none() {
-  RigAccounts zero;
-  visit_fields(
-      [](const Field&, auto& value) {
-        if constexpr (requires { value.setZero(); })
-          value.setZero();
-        else
-          value = 0.0;
-      },
-      zero);
-  return zero;
+  return combined(RigAccounts(), RigAccounts(), [](auto value, const auto&) {
+    if constexpr (requires { value.setZero(); })
+      value.setZero();
+    else
+      value = 0.0;
+    return value;
+  });
 }
 
-inline RigAccounts operator+(const RigAccounts& a, const RigAccounts& b) {
-  RigAccounts sum = RigAccounts::none();
-  sum.kinetic_energy = a.kinetic_energy + b.kinetic_energy;
-  sum.potential_energy = a.potential_energy + b.potential_energy;
-  sum.drive_work = a.drive_work + b.drive_work;
-  sum.tow_work = a.tow_work + b.tow_work;
-  sum.guide_work = a.guide_work + b.guide_work;
-  sum.tire_work = a.tire_work + b.tire_work;
-  sum.damper_loss = a.damper_loss + b.damper_loss;
-  sum.momentum = a.momentum + b.momentum;
-  sum.gravity_impulse = a.gravity_impulse + b.gravity_impulse;
-  sum.guide_impulse = a.guide_impulse + b.guide_impulse;
-  sum.tire_impulse = a.tire_impulse + b.tire_impulse;
-  return sum;
+/// Adds the work and the impulse of a tire's wrench over a step of h in which its rim moved: mean force times way.
+inline void add_tire(RigAccounts& a, const RimState& from, const RimState& to, const Wrench& wrench, double h) {
+  a.tire_work +=
+      wrench.force.dot(to.position - from.position) + wrench.moment.dot(mean_turn(from.orientation, to.orientation));
+  a.tire_impulse += h * wrench.force;
 }
 
 }  // namespace furrow::rigs

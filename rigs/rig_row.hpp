@@ -1,4 +1,4 @@
-// Several rigs side by side on one terrain, each with a wheel or more of its own.
+// Several rigs side by side on one terrain, each with one wheel.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace furrow::rigs {
 
-/// Wheels are numbered through the rigs in order; each has its own rig's heading.
-/// @throws Error(physics) when `rigs` is empty
+/// Wheel k is that of the k-th rig and has its heading; other subjects of the rigs are left out.
+/// @pre there is at least one, and each has one wheel
 std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs);
 
 }  // namespace furrow::rigs

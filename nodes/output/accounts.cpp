@@ -5,6 +5,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/field_arithmetic.hpp"
 
 namespace furrow::output {
 namespace {
@@ -52,52 +53,53 @@ std::pair<double, double> sums(const S& entries) {
 }
 
 void add_terrain(const TerrainEnergies& start, const TerrainEnergies& now, EnergyAccount& a) {
-  a.work.walls = now.wall_work - start.wall_work;
+  const TerrainEnergies grown = difference_of(now, start);
+  a.work.walls = grown.wall_work;
   StoredAccount& s = a.stored;
-  s.terrain_kinetic = now.kinetic - start.kinetic;
-  s.terrain_rotational = now.rotational - start.rotational;
-  s.terrain_potential = now.potential - start.potential;
-  s.terrain_elastic_normal = now.elastic_normal - start.elastic_normal;
-  s.terrain_elastic_tangential = now.elastic_tangential - start.elastic_tangential;
-  s.terrain_cohesion = now.cohesion - start.cohesion;
+  s.terrain_kinetic = grown.kinetic;
+  s.terrain_rotational = grown.rotational;
+  s.terrain_potential = grown.potential;
+  s.terrain_elastic_normal = grown.elastic_normal;
+  s.terrain_elastic_tangential = grown.elastic_tangential;
+  s.terrain_cohesion = grown.cohesion;
   LostAccount& l = a.lost;
-  l.sliding = now.sliding_loss - start.sliding_loss;
-  l.normal_damping = now.normal_damping_loss - start.normal_damping_loss;
-  l.tangential_damping = now.tangential_damping_loss - start.tangential_damping_loss;
-  l.rolling = now.rolling_loss - start.rolling_loss;
-  l.opening = now.opening_loss - start.opening_loss;
-  l.sleep = now.sleep_loss - start.sleep_loss;
-  l.surface_lag -= now.surface_work - start.surface_work;
-  a.terrain_residual = now.surface_work - start.surface_work + a.work.walls - (now.stored() - start.stored()) -
-                       (now.losses() - start.losses());
+  l.sliding = grown.sliding_loss;
+  l.normal_damping = grown.normal_damping_loss;
+  l.tangential_damping = grown.tangential_damping_loss;
+  l.rolling = grown.rolling_loss;
+  l.opening = grown.opening_loss;
+  l.sleep = grown.sleep_loss;
+  l.surface_lag -= grown.surface_work;
+  a.terrain_residual =
+      grown.surface_work + a.work.walls - (now.stored() - start.stored()) - (now.losses() - start.losses());
   a.sample_error = now.sample_error;
 }
 
 void add_tire(const TireAccount& start, const TireAccount& now, EnergyAccount& a) {
-  const TireDiagnostics &from = start.model, &to = now.model;
-  a.stored.tire_kinetic += to.kinetic_energy - from.kinetic_energy;
-  a.stored.tire_elastic += to.elastic_energy - from.elastic_energy;
-  a.stored.tire_pressure += to.pressure_energy - from.pressure_energy;
-  a.stored.tire_potential += to.potential_energy - from.potential_energy;
-  a.lost.tire_viscous += to.dissipation - from.dissipation;
-  a.lost.tire_numerical += to.numerical_loss - from.numerical_loss;
-  a.lost.tire_solver += to.solver_loss - from.solver_loss;
-  a.lost.surface_lag -= now.terrain_work - start.terrain_work;
-  const double added = now.added_energy - start.added_energy;
-  a.lost.rim_lag += added - (now.rim_work - start.rim_work);
-  a.stored.rig_kinetic_and_potential -= added;
+  const TireAccount grown = difference_of(now, start);
+  a.stored.tire_kinetic += grown.model.kinetic_energy;
+  a.stored.tire_elastic += grown.model.elastic_energy;
+  a.stored.tire_pressure += grown.model.pressure_energy;
+  a.stored.tire_potential += grown.model.potential_energy;
+  a.lost.tire_viscous += grown.model.dissipation;
+  a.lost.tire_numerical += grown.model.numerical_loss;
+  a.lost.tire_solver += grown.model.solver_loss;
+  a.lost.surface_lag -= grown.terrain_work;
+  a.lost.rim_lag += grown.added_energy - grown.rim_work;
+  a.stored.rig_kinetic_and_potential -= grown.added_energy;
   a.tire_residual += tire_residual(start, now);
 }
 
 void add_rig(const rigs::RigAccounts& start, const rigs::RigAccounts& now, EnergyAccount& a) {
-  a.work.drive = now.drive_work - start.drive_work;
-  a.work.tow = now.tow_work - start.tow_work;
-  a.work.guide = now.guide_work - start.guide_work;
-  a.lost.damper = now.damper_loss - start.damper_loss;
-  const double received = now.tire_work - start.tire_work, stored = now.stored() - start.stored();
-  a.lost.rim_lag -= received;
+  const rigs::RigAccounts grown = difference_of(now, start);
+  const double stored = now.stored() - start.stored();
+  a.work.drive = grown.drive_work;
+  a.work.tow = grown.tow_work;
+  a.work.guide = grown.guide_work;
+  a.lost.damper = grown.damper_loss;
+  a.lost.rim_lag -= grown.tire_work;
   a.stored.rig_kinetic_and_potential += stored;
-  a.rig_residual = a.work.drive + a.work.tow + a.work.guide + received - stored - a.lost.damper;
+  a.rig_residual = a.work.drive + a.work.tow + a.work.guide + grown.tire_work - stored - a.lost.damper;
 }
 
 }  // namespace
@@ -129,23 +131,24 @@ EnergyAccount energy_account(const Books& start, const Books& now) {
 MomentumAccount momentum_account(const Books& start, const Books& now) {
   FURROW_ASSERT(start.tires.size() == now.tires.size(), start.tires.size(), now.tires.size());
   MomentumAccount a;
-  const TerrainMomenta &g0 = start.grains, &g1 = now.grains;
-  a.grains = g1.grains - g0.grains;
-  a.terrain_gravity = g1.gravity_impulse - g0.gravity_impulse;
-  a.walls = g1.wall_impulse - g0.wall_impulse;
-  a.sleep = g1.sleep_impulse - g0.sleep_impulse;
-  a.carrier = now.rig.momentum - start.rig.momentum;
-  a.carrier_gravity = now.rig.gravity_impulse - start.rig.gravity_impulse;
-  a.guide = now.rig.guide_impulse - start.rig.guide_impulse;
+  const TerrainMomenta grains = difference_of(now.grains, start.grains);
+  const rigs::RigAccounts rig = difference_of(now.rig, start.rig);
+  a.grains = grains.grains;
+  a.terrain_gravity = grains.gravity_impulse;
+  a.walls = grains.wall_impulse;
+  a.sleep = grains.sleep_impulse;
+  a.carrier = rig.momentum;
+  a.carrier_gravity = rig.gravity_impulse;
+  a.guide = rig.guide_impulse;
   for (std::size_t k = 0; k < now.tires.size(); ++k) {
-    const TireAccount &t0 = start.tires[k], &t1 = now.tires[k];
-    a.tires += t1.model.momentum - t0.model.momentum;
-    a.tire_gravity += t1.gravity_impulse - t0.gravity_impulse;
-    a.carrier -= t1.added_momentum - t0.added_momentum;
-    a.carrier_gravity -= t1.added_gravity_impulse - t0.added_gravity_impulse;
-    a.surface_under_way += t1.sent_by_terrain - t0.sent_by_terrain;
-    a.spindle_under_way += t1.sent_to_rig - t0.sent_to_rig;
-    a.spindle_of_tires += t1.spindle_impulse - t0.spindle_impulse;
+    const TireAccount tire = difference_of(now.tires[k], start.tires[k]);
+    a.tires += tire.model.momentum;
+    a.tire_gravity += tire.gravity_impulse;
+    a.carrier -= tire.added_momentum;
+    a.carrier_gravity -= tire.added_gravity_impulse;
+    a.surface_under_way += tire.sent_by_terrain;
+    a.spindle_under_way += tire.sent_to_rig;
+    a.spindle_of_tires += tire.spindle_impulse;
   }
   a.under_way = a.surface_under_way + a.spindle_under_way;
   a.surface_of_grains = a.terrain_gravity + a.walls + a.sleep - a.grains;

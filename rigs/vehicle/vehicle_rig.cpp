@@ -9,8 +9,6 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
-#include "protocol/core/error.hpp"
-#include "protocol/core/mean_turn.hpp"
 #include "rigs/rut_trace.hpp"
 #include "rigs/vehicle/vehicle_driving.hpp"
 #include "rigs/vehicle/vehicle_findings.hpp"
@@ -27,11 +25,6 @@ namespace {
 constexpr double kTraceSpacing = 0.05;  // of ruts, in radii
 constexpr double kTraceDepth = 1e-3;    // in radii, below which there is no rut
 
-struct MountedMass {
-  MassProperties mass;
-  double radius = 0.0;  // undeformed, m
-};
-
 struct VehicleRecord {
   VehicleRow row;
   RigAccounts accounts = RigAccounts::none();
@@ -46,31 +39,30 @@ void visit_fields(Visit&& visit, FieldsOf<VehicleRecord> auto& s) {
 
 class VehicleRig final : public Rig {
  public:
-  explicit VehicleRig(const VehicleRigPlan& plan)
-      : plan_(plan), tires_(2 * plan.vehicle.axles.size()), wheels_(tires_.size()) {}
+  explicit VehicleRig(const VehicleRigPlan& plan) : plan_(plan), wheels_(2 * plan.vehicle.axles.size()) {}
 
   std::string kind() const override { return "vehicle"; }
-  int wheel_count() const override { return static_cast<int>(tires_.size()); }
-  Vec3 heading(int wheel) const override;
-  void add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) override;
-  void place(std::span<const double> axle_height) override;
-  RimState rim(int wheel) const override;
+  int wheel_count() const override { return static_cast<int>(wheels_.size()); }
+  Vec3 heading(int wheel) const override { return wheel_heading(*car_, wheel); }
   bool overturned() const override;
-  Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
   void observe(int wheel, double lowest_point, double ground) override;
-  WheelReport report(int wheel) const override { return wheels_.at(wheel).report; }
   LiveNote live() const override;
   RigFindings findings() const override { return findings_ ? findings_->told() : RigFindings{}; }
-  RigAccounts accounts() const override;
   std::vector<Subject> subjects() const override;
   void measure(int subject, std::span<double> values) const override;
-  void save(Archive& archive) const override;
-  void restore(const Archive& archive) override;
   void save_findings(Archive& archive) const override;
   void restore_findings(const Archive& archive) override;
 
  private:
-  void check_built() const;
+  void do_place(std::span<const double> axle_height) override;
+  RimState do_rim(int wheel) const override { return car_->rim(wheel); }
+  Outcome do_advance(std::span<const Wrench> wrenches, double duration, int substeps) override;
+  WheelReport do_report(int wheel) const override { return wheels_[wheel].report; }
+  RigAccounts do_accounts() const override;
+  void do_save(Archive& archive) const override;
+  void do_restore(const Archive& archive) override;
+  std::vector<double> radii() const;
+  std::vector<double> loads() const;
   void build();
   void roll();
   void drive();
@@ -82,7 +74,6 @@ class VehicleRig final : public Rig {
   void measure_end(int k) { measure_now(*car_, k, plan_.options.heading, wheels_[k]); }
 
   VehicleRigPlan plan_;
-  std::vector<MountedMass> tires_;
   std::vector<WheelRecord> wheels_;
   VehicleRecord record_;
 
@@ -95,57 +86,47 @@ class VehicleRig final : public Rig {
   Vec3 seat_ = Vec3::Zero();                  // of the driver's view, in the vehicle's frame, m
 };
 
-void VehicleRig::check_built() const {
-  if (!car_) throw physics_error("vehicle rig: it must be placed before it moves");
+std::vector<double> VehicleRig::radii() const {
+  std::vector<double> radii;
+  for (int k = 0; k < wheel_count(); ++k) radii.push_back(tire(k).radius);
+  return radii;
 }
 
-void VehicleRig::add_tire_mass(int wheel, const MassProperties& tire, double tire_radius) {
-  FURROW_ASSERT(in_range(wheel, tires_.size()), wheel, tires_.size());
-  FURROW_ASSERT(tire.mass >= 0.0 && tire.inertia.allFinite(), tire.mass);
-  if (car_) throw physics_error("vehicle rig: tire mass must be added before the rig is placed");
-  if (!(tire_radius > 0.0)) throw physics_error("vehicle rig: the tire radius must be positive");
-  tires_[wheel] = {tire, tire_radius};
+/// Of the wheels at rest, N.
+std::vector<double> VehicleRig::loads() const {
+  std::vector<double> loads;
+  for (const WheelRecord& wheel : wheels_) loads.push_back(wheel.load);
+  return loads;
 }
 
 void VehicleRig::build() {
   car_ = std::make_unique<vehicle::Vehicle>(plan_.vehicle, plan_.gravity);
-  std::vector<double> radii;
   traces_.clear();
   for (int k = 0; k < wheel_count(); ++k) {
-    if (!(tires_[k].radius > 0.0))
-      throw physics_error("vehicle rig: the tires' masses and radii must be added before placing");
-    car_->add_tire_mass(k, tires_[k].mass);
-    radii.push_back(tires_[k].radius);
-    traces_.emplace_back(kTraceSpacing * tires_[k].radius,
-                         plan_.tire_width > 0.0 ? 0.5 * plan_.tire_width : 0.5 * tires_[k].radius);
+    car_->add_tire_mass(k, tire(k).mass);
+    traces_.emplace_back(kTraceSpacing * tire(k).radius,
+                         plan_.tire_width > 0.0 ? 0.5 * plan_.tire_width : 0.5 * tire(k).radius);
   }
   car_->system().assemble(0.0);
   seat_ = vehicle::rear_axle_middle(plan_.vehicle);
   if (plan_.driver) {
-    driven_ = vehicle::driver_car(plan_.vehicle, radii, plan_.tire_width, car_->mass());
+    driven_ = vehicle::driver_car(plan_.vehicle, radii(), plan_.tire_width, car_->mass());
     driver_ = vehicle::make_driver(*plan_.driver, driven_);
   }
   rows_ = torque_rows(*car_);
 }
 
-void VehicleRig::place(std::span<const double> axle_height) {
-  if (axle_height.size() != tires_.size())
-    throw physics_error(fmt::format("vehicle rig: expected {} axle heights", tires_.size()));
+void VehicleRig::do_place(std::span<const double> axle_height) {
   if (!car_) {
     build();
-    std::vector<double> radii;
-    for (const MountedMass& tire : tires_) radii.push_back(tire.radius);
-    const vehicle::Trim trim = stand(*car_, radii, plan_.options.heading);
+    const vehicle::Trim trim = stand(*car_, radii(), plan_.options.heading);
     for (int k = 0; k < wheel_count(); ++k) wheels_[k].load = trim.wheels[k].load;
     car_->turn(plan_.options.heading, car_->origin());
     const Vec3 origin = car_->origin();
     car_->move(Vec3(plan_.options.start - origin.x(), plan_.options.lateral - origin.y(), 0.0));
   }
   double up = -std::numeric_limits<double>::infinity();
-  for (int k = 0; k < wheel_count(); ++k) {
-    if (!std::isfinite(axle_height[k])) throw physics_error("vehicle rig: an axle height is not finite");
-    up = std::max(up, axle_height[k] - car_->rim(k).position.z());
-  }
+  for (int k = 0; k < wheel_count(); ++k) up = std::max(up, axle_height[k] - car_->rim(k).position.z());
   car_->move(Vec3(0.0, 0.0, up));
   if (plan_.options.start_speed > 0.0) roll();
   record_ = {};
@@ -157,24 +138,12 @@ void VehicleRig::place(std::span<const double> axle_height) {
 
 /// From the first instant on, in the gear that the driver holds then.
 void VehicleRig::roll() {
-  std::vector<double> radii;
-  for (const MountedMass& tire : tires_) radii.push_back(tire.radius);
   const bool chosen = plan_.driver && !plan_.driver->inputs.gear.empty();
-  car_->begin_rolling(plan_.options.start_speed, radii,
+  car_->begin_rolling(plan_.options.start_speed, radii(),
                       chosen ? std::max(0, static_cast<int>(plan_.driver->inputs.gear.front().second)) : 0);
 }
 
-RimState VehicleRig::rim(int wheel) const {
-  check_built();
-  return car_->rim(wheel);
-}
-
 bool VehicleRig::overturned() const { return car_ && car_->system().body(car_->chassis()).R(2, 2) <= 0.0; }
-
-Vec3 VehicleRig::heading(int wheel) const {
-  check_built();
-  return wheel_heading(*car_, wheel);
-}
 
 void VehicleRig::drive() {
   if (driver_) record_.inputs = driver_->drive(driver_view(*car_, seat_));
@@ -183,11 +152,7 @@ void VehicleRig::drive() {
 
 /// Of the instant at which the step begins.
 void VehicleRig::note_findings(std::span<const Wrench> wrenches) {
-  if (!findings_) {
-    std::vector<double> loads;
-    for (const WheelRecord& wheel : wheels_) loads.push_back(wheel.load);
-    findings_.emplace(std::move(loads), plan_.driver, driven_);
-  }
+  if (!findings_) findings_.emplace(loads(), plan_.driver, driven_);
   const double time = car_->system().time();
   for (int k = 0; k < wheel_count(); ++k) findings_->wheel(k, wrenches[k].force.z(), time);
   if (driver_) findings_->path(driver_view(*car_, seat_), driver_->record());
@@ -200,14 +165,7 @@ bool VehicleRig::let_down() const {
 
 double VehicleRig::damping() const { return car_->mass() * plan_.gravity.norm() / plan_.options.lowering_speed; }
 
-Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, int substeps) {
-  check_built();
-  FURROW_ASSERT(wrenches.size() == tires_.size(), wrenches.size(), tires_.size());
-  FURROW_ASSERT(substeps >= 1 && duration > 0.0, substeps, duration);
-  for (const Wrench& wrench : wrenches)
-    if (!wrench.force.allFinite() || !wrench.moment.allFinite())
-      return Outcome::failure("was pulled with a wrench that is not finite",
-                              "it comes from a tire; try a smaller run.step");
+Outcome VehicleRig::do_advance(std::span<const Wrench> wrenches, double duration, int substeps) {
   drive();
   note_findings(wrenches);
   const MotionBefore before = MotionBefore::of(*car_);
@@ -225,7 +183,7 @@ Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, i
   row.soil_power = (tire_work - record_.accounts.tire_work) / duration;
   row.wheel_power = 0.0;
   for (int k = 0; k < wheel_count(); ++k) {
-    measure_advance(*car_, k, tires_[k].radius, wrenches[k], sums[k], duration, substeps, wheels_[k]);
+    measure_advance(*car_, k, tire(k).radius, wrenches[k], sums[k], duration, substeps, wheels_[k]);
     measure_end(k);
     row.wheel_power += wheels_[k].report.drive_torque * wheels_[k].report.spin;
   }
@@ -236,7 +194,6 @@ Outcome VehicleRig::advance(std::span<const Wrench> wrenches, double duration, i
 }
 
 Outcome VehicleRig::step(std::span<const Wrench> wrenches, double h, std::vector<WheelSums>& sums) {
-  FURROW_ASSERT(sums.size() == tires_.size(), sums.size(), tires_.size());
   vehicle::System& system = car_->system();
   const vehicle::BodyState& chassis = system.body(car_->chassis()).state;
   const double lift = let_down() ? -damping() * chassis.velocity.z() : 0.0, height = chassis.position.z();
@@ -257,12 +214,7 @@ void VehicleRig::book(std::span<const RimState> before, std::span<const Wrench> 
   FURROW_ASSERT(before.size() == wrenches.size() && h > 0.0, before.size(), h);
   const vehicle::System& system = car_->system();
   RigAccounts& a = record_.accounts;
-  for (int k = 0; k < wheel_count(); ++k) {
-    const RimState now = car_->rim(k);
-    a.tire_work += wrenches[k].force.dot(now.position - before[k].position) +
-                   wrenches[k].moment.dot(mean_turn(before[k].orientation, now.orientation));
-    a.tire_impulse += h * wrenches[k].force;
-  }
+  for (int k = 0; k < wheel_count(); ++k) add_tire(a, before[k], car_->rim(k), wrenches[k], h);
   for (int axle = 0; axle < wheel_count() / 2; ++axle)
     if (const auto& steering = std::as_const(*car_).steering(axle))
       a.guide_work += system.motor_force(steering->motor()) *
@@ -278,7 +230,7 @@ void VehicleRig::observe(int k, double lowest_point, double ground) {
     if (const auto rut = other == k ? std::nullopt : traces_[other].bottom(at.x(), at.y()))
       bottom = std::min(bottom, *rut);
   wheels_[k].row.sinkage_in_rut = bottom - lowest_point;
-  if (ground - lowest_point > kTraceDepth * tires_[k].radius) traces_[k].add(Vec3(at.x(), at.y(), lowest_point));
+  if (ground - lowest_point > kTraceDepth * tire(k).radius) traces_[k].add(Vec3(at.x(), at.y(), lowest_point));
 }
 
 LiveNote VehicleRig::live() const {
@@ -290,8 +242,7 @@ LiveNote VehicleRig::live() const {
   return note;
 }
 
-RigAccounts VehicleRig::accounts() const {
-  check_built();
+RigAccounts VehicleRig::do_accounts() const {
   const vehicle::VehicleEnergy energy = vehicle::vehicle_energy(*car_);
   RigAccounts now = record_.accounts;
   now.kinetic_energy = energy.kinetic;
@@ -317,16 +268,13 @@ void VehicleRig::measure(int subject, std::span<double> values) const {
     get_values(record_.row, values);
 }
 
-void VehicleRig::save(Archive& archive) const {
-  check_built();
-  const Archive::Scope scope(archive, "rig/");
+void VehicleRig::do_save(Archive& archive) const {
   {
     const Archive::Scope inner(archive, "vehicle/");
     car_->save(archive);
   }
   if (driver_) driver_->save(archive);
   save_fields(archive, "record", record_);
-  archive.put("mass", car_->mass());
   for (int k = 0; k < wheel_count(); ++k) {
     save_fields(archive, fmt::format("wheel{}", k), wheels_[k]);
     traces_[k].save(archive, fmt::format("rut{}", k));
@@ -339,17 +287,12 @@ void VehicleRig::save_findings(Archive& archive) const {
 
 /// @pre restored
 void VehicleRig::restore_findings(const Archive& archive) {
-  std::vector<double> loads;
-  for (const WheelRecord& wheel : wheels_) loads.push_back(wheel.load);
-  findings_.emplace(std::move(loads), plan_.driver, driven_);
+  findings_.emplace(loads(), plan_.driver, driven_);
   findings_->restore(archive);
 }
 
-void VehicleRig::restore(const Archive& archive) {
-  const Archive::Scope scope(archive, "rig/");
+void VehicleRig::do_restore(const Archive& archive) {
   build();
-  if (archive.get_double("mass") != car_->mass())
-    throw Error(ExitCode::io, "saved rig state belongs to other tires (their masses differ)");
   {
     const Archive::Scope inner(archive, "vehicle/");
     car_->restore(archive);

@@ -12,6 +12,7 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
 #include "rigs/lowering.hpp"
+#include "rigs/section_keys.hpp"
 #include "rigs/vehicle/vehicle_rig.hpp"
 #include "rigs/vehicle/vehicle_start.hpp"
 #include "vehicle/analysis/kinematics.hpp"
@@ -33,11 +34,6 @@ constexpr double kFarFromPath = 3.0;  // wheelbases between a path and the rear 
 constexpr double kBendLength = 0.25;  // wheelbases over which a path's curvature is looked at
 constexpr double kTooTight = 1.02;    // of the tightest curve
 constexpr int kPlacesOfPiece = 8;     // of a path's piece, at which it is looked at
-
-bool says(const json& section, const char* name) {
-  const auto entry = section.find(name);
-  return entry != section.end() && !entry->is_null();
-}
 
 std::filesystem::path vehicle_file(const json& section, const ReadContext& context) {
   if (!says(section, "vehicle"))

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
+#include "rigs/reported_slip.hpp"
 #include "vehicle/analysis/held_vehicle.hpp"
 #include "vehicle/analysis/wheel_angles.hpp"
 
 namespace furrow::rigs {
 namespace {
 
-constexpr double kSlipLimit = 1e6;      // reported instead of larger magnitudes when the wheel hardly turns
 constexpr double kStandsFroude = 0.01;  // v/√(g r) below which a wheel stands
 
 }  // namespace
@@ -54,14 +54,10 @@ void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wr
   const Vec3 forward = wheel_heading(car, k), left = Vec3::UnitZ().cross(forward);
   report.speed = forward.dot(car.rim(k).position - sums.from) / duration;
   report.spin = sums.turned / duration;
-  const double rolled = report.spin * radius, slid = rolled - report.speed;
-  const double stands = kStandsFroude * std::sqrt(car.system().gravity().norm() * radius);
-  if (std::abs(rolled) < stands && std::abs(report.speed) < stands)
-    report.slip = 0.0;
-  else if (std::abs(slid) <= kSlipLimit * std::abs(rolled))
-    report.slip = slid / rolled;
-  else
-    report.slip = (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+  const double rolled = report.spin * radius,
+               stands = kStandsFroude * std::sqrt(car.system().gravity().norm() * radius);
+  const bool at_rest = std::abs(rolled) < stands && std::abs(report.speed) < stands;
+  report.slip = at_rest ? 0.0 : reported_slip(rolled, report.speed);
   report.drive_torque = sums.torque / substeps;
   report.lateral_force = wrench.force.dot(left);
   report.aligning_moment = wrench.moment.z();

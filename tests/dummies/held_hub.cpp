@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/archive_fields.hpp"
-#include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
 #include "protocol/core/outcome.hpp"
@@ -24,20 +23,15 @@ class HeldHub final : public Rig {
   std::vector<Subject> subjects() const override { return {{"wheel0", columns_of<HeldHubRow>()}}; }
   void measure(int, std::span<double> values) const override { get_values(row_, values); }
 
-  void add_tire_mass(int, const MassProperties& tire, double) override {
-    mass_ = tire.mass;
-    inertia_ = tire.inertia(1, 1);
-  }
-
-  void place(std::span<const double> axle_height) override {
-    FURROW_ASSERT(axle_height.size() == 1, axle_height.size());
+ private:
+  void do_place(std::span<const double> axle_height) override {
     top_ = axle_height[0];
     time_ = 0.0;
     accounts_ = RigAccounts::none();
     held_ = momentum();
   }
 
-  RimState rim(int) const override {
+  RimState do_rim(int) const override {
     RimState rim;
     const double way = options_.lowering * time_;
     rim.position = Vec3(0.0, 0.0, top_ - std::min(way, options_.depth));
@@ -47,68 +41,65 @@ class HeldHub final : public Rig {
     return rim;
   }
 
-  Outcome advance(std::span<const Wrench> wrenches, double duration, int) override {
-    FURROW_ASSERT(wrenches.size() == 1 && duration > 0.0, wrenches.size(), duration);
+  Outcome do_advance(std::span<const Wrench> wrenches, double duration, int) override {
     wrench_ = wrenches[0];
     row_.hub_load = wrench_.force.z();
-    const RimState from = rim(0);
+    const RimState from = do_rim(0);
     time_ += duration;
-    const RimState to = rim(0);
-    const Vec3 way = to.position - from.position, turn = mean_turn(from.orientation, to.orientation);
-    const Vec3 weight = mass_ * Vec3(0.0, 0.0, -kStandardGravity);
+    const Vec3 way = do_rim(0).position - from.position, turn = mean_turn(from.orientation, do_rim(0).orientation);
+    const Vec3 weight = mass() * Vec3(0.0, 0.0, -kStandardGravity);
     const Vec3 guide = (momentum() - held_) / duration - wrench_.force - weight;  // what holds the hub
     held_ = momentum();
-    accounts_.tire_work += wrench_.force.dot(way) + wrench_.moment.dot(turn);
+    add_tire(accounts_, from, do_rim(0), wrench_, duration);
     accounts_.drive_work -= wrench_.moment.dot(turn);  // the spin is constant
     accounts_.guide_work += guide.dot(way);
-    accounts_.tire_impulse += duration * wrench_.force;
     accounts_.guide_impulse += duration * guide;
     accounts_.gravity_impulse += duration * weight;
     return {};
   }
 
-  WheelReport report(int) const override {
+  WheelReport do_report(int) const override {
     WheelReport report;
     report.spin = options_.spin;
     report.drive_torque = -wrench_.moment.y();
     report.lateral_force = wrench_.force.y();
     report.aligning_moment = wrench_.moment.z();
-    report.axle_height = rim(0).position.z();
-    report.vertical_speed = rim(0).velocity.z();
-    report.carried_mass = mass_;
+    report.axle_height = do_rim(0).position.z();
+    report.vertical_speed = do_rim(0).velocity.z();
+    report.carried_mass = mass();
     return report;
   }
 
-  RigAccounts accounts() const override {
+  RigAccounts do_accounts() const override {
     RigAccounts now = accounts_;
     now.momentum = momentum();
-    now.kinetic_energy = 0.5 * (momentum().dot(rim(0).velocity) + inertia_ * options_.spin * options_.spin);
-    now.potential_energy = mass_ * kStandardGravity * rim(0).position.z();
+    now.kinetic_energy =
+        0.5 * (momentum().dot(do_rim(0).velocity) + tire(0).mass.inertia(1, 1) * options_.spin * options_.spin);
+    now.potential_energy = mass() * kStandardGravity * do_rim(0).position.z();
     return now;
   }
 
-  void save(Archive& archive) const override {
-    save_fields(archive, "held_hub/accounts", accounts_);
-    save_value(archive, "held_hub/held", held_);
-    save_value(archive, "held_hub/time", time_);
-    save_value(archive, "held_hub/top", top_);
-    save_fields(archive, "held_hub/wrench", wrench_);
+  void do_save(Archive& archive) const override {
+    save_fields(archive, "accounts", accounts_);
+    save_value(archive, "held", held_);
+    save_value(archive, "time", time_);
+    save_value(archive, "top", top_);
+    save_fields(archive, "wrench", wrench_);
   }
-  void restore(const Archive& archive) override {
-    restore_fields(archive, "held_hub/accounts", accounts_);
-    restore_value(archive, "held_hub/held", held_);
-    restore_value(archive, "held_hub/time", time_);
-    restore_value(archive, "held_hub/top", top_);
-    restore_fields(archive, "held_hub/wrench", wrench_);
+  void do_restore(const Archive& archive) override {
+    restore_fields(archive, "accounts", accounts_);
+    restore_value(archive, "held", held_);
+    restore_value(archive, "time", time_);
+    restore_value(archive, "top", top_);
+    restore_fields(archive, "wrench", wrench_);
     row_.hub_load = wrench_.force.z();
   }
 
- private:
-  Vec3 momentum() const { return mass_ * rim(0).velocity; }  // the hub itself has no mass
+  double mass() const { return tire(0).mass.mass; }  // the hub itself has none
+  Vec3 momentum() const { return mass() * do_rim(0).velocity; }
 
   HeldHubOptions options_;
-  double time_ = 0.0, top_ = 0.0;      // s; of the hub at first, m
-  double mass_ = 0.0, inertia_ = 0.0;  // of the tire, kg, kg m²
+  double time_ = 0.0, top_ = 0.0;  // s; of the hub at first, m
   RigAccounts accounts_ = RigAccounts::none();
   Vec3 held_ = Vec3::Zero();  // momentum at the end of the last advance, kg m/s
   Wrench wrench_;             // on the hub, of the last advance

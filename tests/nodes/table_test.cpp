@@ -54,12 +54,6 @@ class SpringRig final : public rigs::Rig {
 
   std::string kind() const override { return "spring"; }
   int wheel_count() const override { return 1; }
-  void add_tire_mass(int, const MassProperties&, double) override {}
-  void place(std::span<const double>) override {}
-  RimState rim(int) const override { return {}; }
-  Outcome advance(std::span<const Wrench>, double, int) override { return {}; }
-  rigs::WheelReport report(int) const override { return {}; }
-  rigs::RigAccounts accounts() const override { return rigs::RigAccounts::none(); }
   Vec3 heading(int) const override { return sign * Vec3::UnitX(); }
   std::vector<rigs::Subject> subjects() const override {
     return {{"wheel0", columns_of<SpringRow>()}, {"vehicle", columns_of<SpringRow>()}};
@@ -70,8 +64,15 @@ class SpringRig final : public rigs::Rig {
     derived.double_heave = 2.0 * line["heave_m"];
     get_values(derived, values);
   }
-  void save(Archive&) const override {}
-  void restore(const Archive&) override {}
+
+ private:
+  void do_place(std::span<const double>) override {}
+  RimState do_rim(int) const override { return {}; }
+  Outcome do_advance(std::span<const Wrench>, double, int) override { return {}; }
+  rigs::WheelReport do_report(int) const override { return {}; }
+  rigs::RigAccounts do_accounts() const override { return rigs::RigAccounts::none(); }
+  void do_save(Archive&) const override {}
+  void do_restore(const Archive&) override {}
 };
 
 std::vector<std::string> split(const std::string& line) {
@@ -424,13 +425,12 @@ TEST(Subjects, a_row_of_rigs_numbers_wheels_through_and_keeps_each_heading) {
   EXPECT_EQ(row->heading(0), Vec3(1, 0, 0));
   EXPECT_EQ(row->heading(1), Vec3(-1, 0, 0));
   const auto subjects = row->subjects();
-  ASSERT_EQ(subjects.size(), 4U);
-  const char* const names[] = {"wheel0", "wheel1", "vehicle0", "vehicle1"};
-  for (int k = 0; k < 4; ++k) {
-    EXPECT_EQ(subjects[k].name, names[k]);
+  ASSERT_EQ(subjects.size(), 2U);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(subjects[k].name, "wheel" + std::to_string(k));
     std::vector<double> values(subjects[k].columns.size());
     row->measure(k, values);
-    EXPECT_EQ((LineView{subjects[k].columns, values}["heave_m"]), k % 2 == 0 ? 1.0 : -1.0);
+    EXPECT_EQ((LineView{subjects[k].columns, values}["heave_m"]), k == 0 ? 1.0 : -1.0);
   }
 }
 

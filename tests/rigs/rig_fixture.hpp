@@ -3,11 +3,10 @@
 
 #include <array>
 #include <memory>
-#include <string_view>
-#include <vector>
 
 #include "rigs/drawbar_rig.hpp"
 #include "tests/rigs/reference_options.hpp"
+#include "tests/rigs/rig_probe.hpp"
 
 namespace furrow::testing {
 inline constexpr double kRadius = 0.4673;  // m
@@ -40,14 +39,6 @@ inline void advance(rigs::Rig& rig, const Wrench& wrench, int count, double step
     const Outcome outcome = rig.advance({&wrench, 1}, step, substeps);
     if (!outcome.ok) throw physics_error(outcome, "rig");
   }
-}
-
-/// What the rig measures of wheel 0 beside its report, by the name of its column.
-inline double measured(const rigs::Rig& rig, std::string_view column) {
-  const rigs::Subject wheel = rig.subjects().front();
-  std::vector<double> values(wheel.columns.size());
-  rig.measure(0, values);
-  return LineView{wheel.columns, values}[column];
 }
 
 inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {force, moment}; }

@@ -13,6 +13,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
 #include "rigs/vehicle/vehicle_rig.hpp"
+#include "tests/rigs/rig_probe.hpp"
 #include "vehicle/driver/read_driver.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
 
@@ -83,13 +84,6 @@ struct Track {
   }
 };
 
-/// What the rig measures of a subject besides what every wheel has, by the name of its column.
-inline double measured(const rigs::Rig& rig, int subject, std::string_view column) {
-  const rigs::Subject of = rig.subjects().at(subject);
-  std::vector<double> values(of.columns.size());
-  rig.measure(subject, values);
-  return LineView{of.columns, values}[column];
-}
 inline double of_vehicle(const rigs::Rig& rig, std::string_view column) {
   return measured(rig, rig.wheel_count(), column);
 }

@@ -18,12 +18,6 @@ struct Case {
   double least = 0.0, most = 0.0;
 };
 
-std::map<std::string, Archive::Array> saved(const rigs::Rig& rig) {
-  Archive archive;
-  rig.save(archive);
-  return archive.arrays();
-}
-
 }  // namespace
 
 TEST(VehicleRestart, continues_bit_for_bit_in_the_air_in_a_shift_in_a_brake_hold_and_on_a_path) {

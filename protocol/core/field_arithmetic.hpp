@@ -1,0 +1,40 @@
+// Sums and differences of structs of numbers and vectors, member by member of their lists of fields.
+#pragma once
+
+#include <vector>
+
+#include "protocol/core/fields.hpp"
+
+namespace furrow {
+
+/// The struct whose members are call(that of a, that of b); structs within are combined likewise.
+template <HasFields T, class Call>
+T combined(T a, const T& b, const Call& call) {
+  std::vector<const void*> others;
+  visit_fields([&](const auto&, const auto& value) { others.push_back(&value); }, b);
+  auto next = others.begin();
+  visit_fields(
+      [&](const auto&, auto& value) {
+        using Value = std::remove_reference_t<decltype(value)>;
+        const auto& other = *static_cast<const Value*>(*next++);
+        if constexpr (HasFields<Value>)
+          value = combined(value, other, call);
+        else
+          value = call(value, other);
+      },
+      a);
+  return a;
+}
+
+template <HasFields T>
+T sum_of(const T& a, const T& b) {
+  return combined(a, b, [](const auto& x, const auto& y) { return x + y; });
+}
+
+/// a − b
+template <HasFields T>
+T difference_of(const T& a, const T& b) {
+  return combined(a, b, [](const auto& x, const auto& y) { return x - y; });
+}
+
+}  // namespace furrow

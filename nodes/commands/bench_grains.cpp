@@ -1,5 +1,6 @@
 // `furrow bench grains`: what the command line says, and the result as JSON.
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,11 +15,12 @@ namespace furrow::commands {
 namespace {
 
 void check(const GrainBench& bench) {
-  const auto require = [](bool ok, const char* key, const char* expected) {
-    if (!ok) throw input_error("command line", key, std::string("expected ") + expected);
+  const auto require = [](bool ok, const char* key, const std::string& expected) {
+    if (!ok) throw input_error("command line", key, "expected " + expected);
   };
-  require(bench.law == "mindlin" || bench.law == "hertz_tanh" || bench.law == "coulomb", "--law",
-          "mindlin or hertz_tanh");
+  bool known = false;
+  terrain::dem::for_each_law([&](auto law) { known |= bench.law == law.kName; });
+  require(known, "--law", terrain::dem::law_names());
   require(bench.precision == "mixed" || bench.precision == "double", "--precision", "mixed or double");
   require(bench.threads >= 1 && bench.threads <= 1024, "--threads", "1 to 1024");
   require(bench.steps >= 1, "--steps", "1 or more");
@@ -32,7 +34,7 @@ void check(const GrainBench& bench) {
 
 terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   terrain::dem::DemOptions options;
-  options.law = terrain::dem::law_name(terrain::dem::law_from(bench.law));
+  options.law = bench.law;
   options.cohesion = bench.cohesion;
   options.rolling_friction = bench.rolling_friction;
   options.precision = bench.precision;
@@ -69,7 +71,7 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
                                        {"bytes_per_grain", r.bytes / n},
                                        {"steps", bench.steps},
                                        {"threads", bench.threads},
-                                       {"law", terrain::dem::law_name(terrain::dem::law_from(bench.law))},
+                                       {"law", bench.law},
                                        {"precision", bench.precision},
                                        {"cohesion_Pa", bench.cohesion},
                                        {"rolling_friction", bench.rolling_friction},

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "protocol/files/printable.hpp"
+#include "terrain/dem/contact/laws.hpp"
 
 namespace furrow::commands {
 
@@ -29,7 +30,8 @@ void add_grain_bench(CLI::App& command, GrainBench& bench) {
                   "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, "
                   "y from 0 to 0.6 and z ≥ 0. 'default' is the reference bed.")
       ->capture_default_str();
-  command.add_option("--law", bench.law, "Choose the contact law: mindlin or hertz_tanh.")->capture_default_str();
+  command.add_option("--law", bench.law, "Choose the contact law: " + terrain::dem::law_names() + ".")
+      ->capture_default_str();
   command.add_option("--precision", bench.precision, "Choose the precision of the contact law: mixed or double.")
       ->capture_default_str();
   command.add_option("--cohesion", bench.cohesion, "Set the cohesion of the contacts, Pa.")->capture_default_str();

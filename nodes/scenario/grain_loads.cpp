@@ -23,13 +23,17 @@ constexpr double kCount = 0.6;         // A, see the header
 constexpr double kLargest = 8.0;       // the largest force of a run over the mean one
 constexpr double kSoundOverlap = 0.2;  // of the diameter: what advice aims at
 
-/// F = K δ^{3/2} − F_c.
+/// A contact where nothing moves.
 struct Contact {
-  double stiffness = 0.0, cohesion = 0.0;  // K, N/m^1.5; F_c, N
+  dem::LawKind law;
+  dem::ContactCoefficients coefficients;
 
-  explicit Contact(const dem::ContactCoefficients& c) : stiffness(c.stiffness), cohesion(c.cohesion_force) {}
-  double force(double overlap) const { return std::max(0.0, stiffness * std::pow(overlap, 1.5) - cohesion); }
-  double overlap(double force) const { return std::pow((force + cohesion) / stiffness, 2.0 / 3.0); }
+  double force(double overlap) const {
+    return dem::with_law(law, [&](auto of) { return of.resting_force(coefficients.of<decltype(of)>(), overlap); });
+  }
+  double overlap(double force) const {
+    return dem::with_law(law, [&](auto of) { return of.resting_overlap(coefficients.of<decltype(of)>(), force); });
+  }
 };
 
 /// A wheel's grains.
@@ -41,17 +45,18 @@ struct Pressed {
 
 std::vector<Pressed> pressed_grains(const Scenario& s, const dem::DemOptions& o) {
   const dem::GrainProperties grain = dem::grain_properties(o.radius, o.density);
-  dem::LawSettings law = dem::law_settings(o);
-  law.step = s.terrain_step();
+  const dem::LawKind law = dem::law_from(o.law);
   const ContactMaterial material = dem::grain_material(o);
-  const Contact pair(dem::mix(material, material, dem::Partner::grain, grain, law));
+  const Contact pair{law, dem::mix(material, material, dem::Partner::grain, grain, o)};
   const std::vector<WheelScales> scales = wheel_scales(s);
   std::vector<Pressed> all;
   for (std::size_t k = 0; k < scales.size(); ++k) {
     FURROW_ASSERT(scales[k].grains.has_value(), k);
     const WheelScales::OnGrains& g = *scales[k].grains;
-    all.push_back({4.0 * g.pressure * o.radius * o.radius, g.grains_wide * g.grains_long, pair,
-                   Contact(dem::mix(material, s.tires[k]->shape().material, dem::Partner::surface, grain, law))});
+    all.push_back({4.0 * g.pressure * o.radius * o.radius,
+                   g.grains_wide * g.grains_long,
+                   pair,
+                   {law, dem::mix(material, s.tires[k]->shape().material, dem::Partner::surface, grain, o)}});
   }
   return all;
 }
@@ -102,21 +107,19 @@ std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
       loads.on_tire ? "a grain and a tire" : "two grains", 100.0 * loads.overlap, 100.0 * dem::kDeepestShare);
   std::vector<std::string> wheels;
   if (const std::string label = wheel_label(describe_rig(s), loads.wheel); !label.empty()) wheels.push_back(label);
-  // Under a given force Hertz's overlap goes with the modulus as E^(−2/3).
+  // As StiffnessKey says.
   const double stiffer = std::pow(loads.overlap / kSoundOverlap, 1.5);
   if (loads.on_tire)
     return Bound{"tire.file",
                  what + fmt::format("expected {} times the contact.young_modulus of the tire's file", digits(stiffer)),
                  wheels};
   dem::DemOptions other = dem::with_context(*s.terrain->grains(), s.terrain_context());
-  const bool hertz = dem::law_from(other.law) == dem::LawKind::mindlin;
-  double& stiffness = hertz ? other.young_modulus : other.normal_stiffness;
-  stiffness *= stiffer;
-  return Bound{
-      hertz ? "terrain.young_modulus" : "terrain.normal_stiffness",
-      what + fmt::format("expected about {:.2g} {}, which needs a step of the terrain of at most {:.2g} s", stiffness,
-                         hertz ? "Pa" : "N/m^1.5", dem::stable_at(other, dem::stated_overlap(other)).step),
-      wheels};
+  const dem::StiffnessKey key = dem::stiffness_key(other);
+  *key.value *= stiffer;
+  return Bound{"terrain." + key.name,
+               what + fmt::format("expected about {:.2g} {}, which needs a step of the terrain of at most {:.2g} s",
+                                  *key.value, key.unit, dem::stable_at(other, dem::stated_overlap(other)).step),
+               wheels};
 }
 
 }  // namespace furrow::scenario

@@ -1,7 +1,7 @@
 // Several numbers at once: the one vocabulary of vector registers that all kernels use. Float8, Double4 are as wide on
 // every machine; where there are no registers of 32 bytes the compiler splits them (vector extensions of GCC and
-// Clang). Beyond + − × ÷ and comparison these are the few operations that kernels need. The contact law is written once
-// for a type T that is `double`, Float8 or Double4.
+// Clang). Beyond + − × ÷ and comparison these are the few operations that kernels need. Triples and the operations that
+// single numbers have too are in triple.hpp.
 #pragma once
 
 #include <cmath>
@@ -11,6 +11,8 @@
 #if defined(__AVX__) || defined(__AVX2__) || defined(__AVX512F__)
 #include <immintrin.h>
 #endif
+
+#include "protocol/core/triple.hpp"
 
 namespace furrow::simd {
 
@@ -53,82 +55,40 @@ inline void store_lanes(Real* p, Lanes v) {
   std::memcpy(p, &v, sizeof v);
 }
 
-template <class T>
-struct Triple {
-  T x, y, z;
-};
-template <class T>
-inline Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class T>
-inline Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class T>
-inline Triple<T> operator*(const T& s, const Triple<T>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
 inline Triple<Double4> operator*(double s, const Triple<Double4>& a) { return {s * a.x, s * a.y, s * a.z}; }
-template <class T>
-inline Triple<T>& operator+=(Triple<T>& a, const Triple<T>& b) {
-  return a = a + b;
-}
-template <class T>
-inline T dot(const Triple<T>& a, const Triple<T>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class T>
-inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
-/// The scalar type of T.
-template <class T>
-struct RealOf {
-  using type = T;
+template <>
+struct Numbers<Float8> {
+  using Real = float;
+  static Float8 root(Float8 a) {
+#ifdef __AVX__
+    return _mm256_sqrt_ps(a);
+#else
+    for (int k = 0; k < 8; ++k) a[k] = std::sqrt(a[k]);
+    return a;
+#endif
+  }
+  static Float8 power_of_two(Float8 shifted) {
+    typedef std::uint32_t Bits __attribute__((vector_size(32)));
+    return (Float8)(((Bits)shifted + 127) << 23);
+  }
 };
 template <>
-struct RealOf<Float8> {
-  using type = float;
-};
-template <>
-struct RealOf<Double4> {
-  using type = double;
-};
-
-/// `a` in every lane.
-template <class T>
-inline T constant(double a) {
-  return T{} + static_cast<typename RealOf<T>::type>(a);
-}
-
-inline double root(double a) { return std::sqrt(a); }
-inline Float8 root(Float8 a) {
+struct Numbers<Double4> {
+  using Real = double;
+  static Double4 root(Double4 a) {
 #ifdef __AVX__
-  return _mm256_sqrt_ps(a);
+    return _mm256_sqrt_pd(a);
 #else
-  for (int k = 0; k < 8; ++k) a[k] = std::sqrt(a[k]);
-  return a;
+    for (int k = 0; k < 4; ++k) a[k] = std::sqrt(a[k]);
+    return a;
 #endif
-}
-inline Double4 root(Double4 a) {
-#ifdef __AVX__
-  return _mm256_sqrt_pd(a);
-#else
-  for (int k = 0; k < 4; ++k) a[k] = std::sqrt(a[k]);
-  return a;
-#endif
-}
-
-template <class T>
-inline T larger(T a, T b) {
-  return a > b ? a : b;
-}
-template <class T>
-inline T smaller(T a, T b) {
-  return a < b ? a : b;
-}
+  }
+  static Double4 power_of_two(Double4 shifted) {
+    typedef std::uint64_t Bits __attribute__((vector_size(32)));
+    return (Double4)(((Bits)shifted + 1023) << 52);
+  }
+};
 
 inline Float4 low_half(Float8 v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
 inline Float4 high_half(Float8 v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }

@@ -169,7 +169,6 @@ class DemTerrain : public Terrain {
 
   void save(Archive& archive) const override {
     Archive::Scope scope(archive, "terrain/");
-    archive.put("time", time_);
     archive.put("step", dt_);
     archive.put("stable_overlap", stable_overlap_);
     archive.put("surface_work", surface_work_);
@@ -180,7 +179,6 @@ class DemTerrain : public Terrain {
 
   void do_restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
-    time_ = archive.get_double("time");
     dem::require_same_parcels(archive, solver_.strips());
     solver_.restore(archive);
     set_step(dem::saved_step(archive, "step"));
@@ -227,7 +225,6 @@ class DemTerrain : public Terrain {
       if (lost >= 0) return lost_grain(lost);
     }
     refinement_.count(parts);
-    time_ += dt_;
     return {};
   }
 
@@ -251,7 +248,6 @@ class DemTerrain : public Terrain {
   dem::GrainSolver solver_;
   dem::StepRefinement refinement_;
   double dt_, part_;             // the step, and the part of it that contacts are evaluated for, s
-  double time_ = 0.0;            // advanced, s
   double stable_overlap_ = 0.0;  // largest overlap that the step was checked against, m
   double surface_work_ = 0.0;    // by tires on the grains, J
 };

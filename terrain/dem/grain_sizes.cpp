@@ -3,11 +3,13 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "terrain/dem/contact/laws.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -49,11 +51,13 @@ void check_sizes(const DemOptions& o) {
   if (!(o.size_spread >= 0.0 && o.size_spread <= kWidestSpread))
     throw input_error(o.scenario, "terrain.size_spread",
                       fmt::format("{} is out of range, expected 0 to {}", o.size_spread, kWidestSpread));
-  if (o.size_spread > 0.0 && o.law != "mindlin")
+  if (o.size_spread > 0.0 && !has_sizes(law_from(o.law))) {
+    std::string expected;
+    for_each_law([&](auto law) { expected += law.kSizes ? fmt::format("law '{}' or ", law.kName) : ""; });
     throw input_error(o.scenario, "terrain.size_spread",
-                      fmt::format("is {} with law '{}', whose stiffness is stated for one size, expected law "
-                                  "'mindlin' or 0",
-                                  o.size_spread, o.law));
+                      fmt::format("is {} with law '{}', whose stiffness is stated for one size, expected {}0",
+                                  o.size_spread, o.law, expected));
+  }
 }
 
 double smallest_radius(const DemOptions& o) { return o.radius * (1.0 - o.size_spread); }

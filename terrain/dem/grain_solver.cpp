@@ -21,7 +21,7 @@ Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
   o.reach = 2.0 * p.largest_radius() + p.skin;
   o.skin = p.skin;
-  o.history = p.law == LawKind::mindlin;
+  o.history = has_history(p.law);
   o.rolling = p.rolling;
   o.single = p.precision == Precision::mixed;
   o.cut = p.activity;
@@ -45,7 +45,7 @@ GrainSolver::GrainSolver(const SolverParams& params)
     : params_(params),
       up_(against(params.gravity)),
       strips_(strip_options(params)),
-      surfaces_(params.grain, params.largest_radius(), params.rolling),
+      surfaces_(params.grain, params.largest_radius(), params.law, params.rolling),
       energies_(params.sample_every) {
   FURROW_ASSERT(params.grain.radius > 0.0, params.grain.radius);
   FURROW_ASSERT(params.grain.mass > 0.0 && params.grain.inertia > 0.0, params.grain.mass, params.grain.inertia);
@@ -53,7 +53,7 @@ GrainSolver::GrainSolver(const SolverParams& params)
   FURROW_ASSERT(params.skin >= 0.0 && params.gravity.allFinite(), params.skin, params.gravity.norm());
   FURROW_ASSERT(params.threads > 0, params.threads);
   FURROW_ASSERT(!params.sizes() || params.smallest > 0.0, params.smallest, params.largest);
-  FURROW_ASSERT(!params.sizes() || params.law == LawKind::mindlin, params.smallest, params.largest);
+  FURROW_ASSERT(!params.sizes() || has_sizes(params.law), params.smallest, params.largest);
   make_chunks();
 }
 
@@ -166,11 +166,11 @@ void GrainSolver::contacts_of_part(Scratch<Real>& s, int k, const StripPart& par
                           if (!wanted.losses) return;
                           const double r_i = kSizes ? x[strip.grain_i(p)].w : reference,
                                        r_j = kSizes ? x[strip.grain_j(p)].w : reference;
-                          sums.sample.power.opening +=
-                              held_by_pair(pair_coefficients(coefficients_.pair, reference, r_i, r_j), strip, p) / dt;
+                          const auto c = sized_pair<Law>(coefficients_.pair.of<Law>(), reference, r_i, r_j);
+                          sums.sample.power.opening += Law::held(c, 0.0, pair_history(strip, p)).tangential / dt;
                         });
-  PairLaw<Real> law;
-  law.coefficients = rounded<Real>(coefficients_.pair);
+  PairLaw<Law, Real> law;
+  law.coefficients = coefficients_.pair.of<Law, Real>();
   law.diameter = static_cast<Real>(diameter);
   law.per_radius = static_cast<Real>(1.0 / params_.grain.radius);
   law.step = static_cast<Real>(dt);
@@ -192,8 +192,7 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
   const Loads loads{s.loads.force.data() + offset, s.loads.torque.data() + offset};
   const auto of_part = [&](const StripPart& part, Wanted what, ContactTotals& sums) {
     contacts_of_part<Real, Law, kRolling, kSizes>(s, k, part, x, offset, dt, what, sums);
-    if (surfaces_.any())
-      surfaces_.evaluate<Law>(grains_, strip, k, part.first, part.last, dt, wanted.losses, loads, sums);
+    if (surfaces_.any()) surfaces_.evaluate(grains_, strip, k, part.first, part.last, dt, wanted.losses, loads, sums);
   };
   const auto alone = [&](int p) {
     return parcels[p].asleep || (params_.activity && Activity::about_to_sleep(parcels[p]));
@@ -352,25 +351,14 @@ double GrainSolver::top() const {
   return top + params_.largest_radius();
 }
 
-template <class Real, class Law, bool kRolling, bool kSizes>
-void GrainSolver::evaluate(const StepPart& part, Wanted wanted) {
-  const int count = static_cast<int>(chunks_.size());
-#pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
-  for (int c = 0; c < count; ++c) run_chunk<Real, Law, kRolling, kSizes>(chunks_[c], part, wanted);
-}
-
 template <class Real>
 void GrainSolver::evaluate(const StepPart& part, Wanted wanted) {
-  if (params_.law == LawKind::hertz_tanh) {
-    params_.rolling ? evaluate<Real, HertzTanhLaw, true, false>(part, wanted)
-                    : evaluate<Real, HertzTanhLaw, false, false>(part, wanted);
-  } else if (params_.sizes()) {
-    params_.rolling ? evaluate<Real, MindlinLaw, true, true>(part, wanted)
-                    : evaluate<Real, MindlinLaw, false, true>(part, wanted);
-  } else {
-    params_.rolling ? evaluate<Real, MindlinLaw, true, false>(part, wanted)
-                    : evaluate<Real, MindlinLaw, false, false>(part, wanted);
-  }
+  with_law(params_.law, params_.rolling, params_.sizes(), [&](auto law, auto rolling, auto sizes) {
+    const int count = static_cast<int>(chunks_.size());
+#pragma omp parallel for num_threads(params_.threads) schedule(dynamic, 1)
+    for (int c = 0; c < count; ++c)
+      run_chunk<Real, decltype(law), decltype(rolling)::value, decltype(sizes)::value>(chunks_[c], part, wanted);
+  });
 }
 
 int GrainSolver::step_part(const StepPart& part, bool measure) {

@@ -27,7 +27,7 @@
 #include "protocol/core/terrain_state.hpp"
 #include "terrain/dem/accounts/energy_accounts.hpp"
 #include "terrain/dem/activity.hpp"
-#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/contact/contact_mixing.hpp"
 #include "terrain/dem/pair_forces.hpp"
 #include "terrain/dem/strips.hpp"
 #include "terrain/dem/tires/surface_contacts.hpp"
@@ -39,7 +39,7 @@ namespace furrow::terrain::dem {
 enum class Precision { mixed, full };
 
 struct SolverParams {
-  LawKind law = LawKind::mindlin;
+  LawKind law{};
   bool rolling = false;   // rolling resistance
   GrainProperties grain;  // of the reference radius, for which the coefficients are
   double smallest = 0.0;  // radius of any grain, m; 0: all have the reference radius
@@ -52,7 +52,7 @@ struct SolverParams {
   bool activity = false;                // let resting grains sleep
   int sample_every = kLossSampleSteps;  // steps from one sample of the losses to the next
 
-  /// Grains of several sizes: law mindlin only.
+  /// Grains of several sizes: only with a law that admits them.
   bool sizes() const { return largest > smallest; }
   double smallest_radius() const { return sizes() ? smallest : grain.radius; }
   double largest_radius() const { return sizes() ? largest : grain.radius; }
@@ -111,7 +111,7 @@ struct StepPart {
 
 class GrainSolver {
  public:
-  /// @pre radius, mass, inertia, bin and threads are positive; grains of several sizes have law mindlin
+  /// @pre radius, mass, inertia, bin and threads are positive; the law admits grains of several sizes if there are any
   explicit GrainSolver(const SolverParams& params);
 
   const SolverParams& params() const { return params_; }
@@ -217,8 +217,6 @@ class GrainSolver {
   template <class Real, class Law, bool kRolling, bool kSizes>
   void run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted);
   void finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, Wanted wanted);
-  template <class Real, class Law, bool kRolling, bool kSizes>
-  void evaluate(const StepPart& part, Wanted wanted);
   template <class Real>
   void evaluate(const StepPart& part, Wanted wanted);
   /// Moves the grains of the parcels of strip k whose loads are complete, or sees whether they are pushed awake.

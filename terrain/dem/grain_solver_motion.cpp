@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
+#include "terrain/dem/contact/size_scale.hpp"
 #include "terrain/dem/grain_solver.hpp"
-#include "terrain/dem/size_scale.hpp"
 
 namespace furrow::terrain::dem {
 namespace {

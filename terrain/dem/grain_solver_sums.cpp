@@ -3,8 +3,8 @@
 
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/accounts/stored_energy.hpp"
+#include "terrain/dem/contact/size_scale.hpp"
 #include "terrain/dem/grain_solver.hpp"
-#include "terrain/dem/size_scale.hpp"
 
 namespace furrow::terrain::dem {
 double GrainSolver::relative_mass() const {
@@ -35,7 +35,7 @@ void GrainSolver::reset_accounts() {
   for (int k = 0; k < strips_.count(); ++k) accounts_.active += grains_awake(strips_[k]);
   strips_.set_resorted(0);
   relative_mass_ = relative_mass();
-  energies_.begin(stored_energy(grains_, strips_, coefficients_, params_.grain.radius), rotation);
+  energies_.begin(stored_energy(grains_, strips_, params_.law, coefficients_, params_.grain.radius), rotation);
 }
 
 TerrainEnergies GrainSolver::reported_energies() const {

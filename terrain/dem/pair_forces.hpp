@@ -1,18 +1,15 @@
 // The contact law on the touching pairs of a strip, a register full at a time: eight in single, four in double
 // precision.
 //
-// With d = x_i − x_j the arms r − δ/2 are ±d/2, so v = v_i − v_j − ½ (ω_i + ω_j) × d, and the torque on i and on j is
-// −½ d × F_t. Grains of other sizes have the arms r_i − δ/2 = ½ (|d| + Δ) and ½ (|d| − Δ), Δ = r_i − r_j: then v gains
-// −½ Δ (ω_i − ω_j) × n, and the couple ∓½ Δ n × F_t stands beside that of rolling resistance. Velocity and spin of a
-// grain are one row: a pair costs two loads and one subtraction of rows, and one transposition turns the rows of eight
-// pairs into lanes. Forces are added up in double precision, the same number to i and with the other sign to j:
-// momentum is conserved to round-off of double whatever the law's precision.
+// Velocity and spin of a grain are one row: a pair costs two loads and one subtraction of rows, and one transposition
+// turns the rows of eight pairs into lanes. Forces are added up in double precision, the same number to i and with the
+// other sign to j: momentum is conserved to round-off of double whatever the law's precision.
 #pragma once
 
 #include <vector>
 
-#include "terrain/dem/contact_law.hpp"
-#include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/contact/kinematics.hpp"
+#include "terrain/dem/contact/size_scale.hpp"
 #include "terrain/dem/touching_pairs.hpp"
 
 namespace furrow::terrain::dem {
@@ -53,30 +50,22 @@ struct Motion {
 };
 
 /// What the law needs besides the pairs.
-template <class Real>
+template <class Law, class Real>
 struct PairLaw {
-  Coefficients<Real> coefficients;
+  typename Law::template Coefficients<Real> coefficients;
   Real diameter = 0;    // m; grains of several sizes have their own
   Real per_radius = 0;  // 1 / radius that the coefficients are for, 1/m
   Real step = 0;        // s
   Wanted wanted;
 };
 
-/// Relative motion of pairs: dv = v_i − v_j, turn = ω_i + ω_j and, where wanted, roll = ω_i − ω_j and delta = r_i −
-/// r_j.
-template <bool kRoll, class L>
-struct RelativeMotion {
-  Triple<L> dv, turn, roll;
-  L delta;
-};
-
 namespace detail {
 template <bool kRoll>
-inline RelativeMotion<kRoll, Float8> relative_motion(const Motion& motion, const std::uint32_t* i,
-                                                     const std::uint32_t* j, Float8) {
+inline RelativeMotion<Float8> relative_motion(const Motion& motion, const std::uint32_t* i, const std::uint32_t* j,
+                                              Float8) {
   const Float8 sign{-1, -1, -1, -1, 1, 1, 1, 1};
   const auto row = [&](std::uint32_t g) { return load_lanes<Float8>(motion.v + g); };
-  RelativeMotion<kRoll, Float8> m;
+  RelativeMotion<Float8> m;
   Float8 r[8];
   for (int k = 0; k < 8; ++k) r[k] = sign * row(j[k]) + row(i[k]);
   transpose(r);
@@ -95,9 +84,9 @@ inline RelativeMotion<kRoll, Float8> relative_motion(const Motion& motion, const
 }
 
 template <bool kRoll>
-inline RelativeMotion<kRoll, Double4> relative_motion(const Motion& motion, const std::uint32_t* i,
-                                                      const std::uint32_t* j, Double4) {
-  RelativeMotion<kRoll, Double4> m;
+inline RelativeMotion<Double4> relative_motion(const Motion& motion, const std::uint32_t* i, const std::uint32_t* j,
+                                               Double4) {
+  RelativeMotion<Double4> m;
   Double4 v[4], w[4], q[4];
   for (int k = 0; k < 4; ++k) {
     const Double4 w_i = load_lanes<Double4>(motion.w + i[k]), w_j = load_lanes<Double4>(motion.w + j[k]);
@@ -219,7 +208,7 @@ class PairForces {
   static constexpr int kAtOnce = kLanesOf<Real>;
 
   /// `motion` and `loads` start at the strip's first grain, those of the next strip follow.
-  PairForces(const PairLaw<Real>& law, const TouchingPairs<Real>& pairs, const Motion& motion,
+  PairForces(const PairLaw<Law, Real>& law, const TouchingPairs<Real>& pairs, const Motion& motion,
              PairHistory<Real>& histories, const Loads& loads)
       : law_(law), pairs_(pairs), motion_(motion), histories_(histories), loads_(loads) {}
 
@@ -258,31 +247,26 @@ class PairForces {
 
   void geometry(int first, int count) {
     L diameter = constant<L>(law_.diameter);
-    const L one = constant<L>(1.0);
     for (int at = 0; at < count; at += kAtOnce) {
       if constexpr (kSizes) diameter = load_lanes<L>(&pairs_.sum[first + at]);
-      const Triple<L> d = difference(first + at);
-      const L distance = root(dot(d, d));
-      const L overlap = load_lanes<L>(&pairs_.gap[first + at]) / (diameter + distance);
-      put(t_.nx, t_.ny, t_.nz, at, (one / distance) * d);
-      put(t_.overlap, at, overlap);
-      put(t_.root_overlap, at, root(overlap));
+      ContactMotion<L> m;
+      set_pair_overlap(m, difference(first + at), load_lanes<L>(&pairs_.gap[first + at]), diameter);
+      put(t_.nx, t_.ny, t_.nz, at, m.normal);
+      put(t_.overlap, at, m.overlap);
+      put(t_.root_overlap, at, m.root_overlap);
     }
   }
 
   void motion(int first, int count) {
-    const L half = constant<L>(0.5);
     for (int at = 0; at < count; at += kAtOnce) {
       const int p = first + at;
       const auto relative = detail::relative_motion<kCouple>(motion_, &pairs_.i[p], &pairs_.j[p], L{});
-      const Triple<L> normal = get(t_.nx, t_.ny, t_.nz, at);
-      Triple<L> velocity = relative.dv - half * cross(relative.turn, difference(p));
-      if constexpr (kSizes) {
-        velocity = velocity - (half * relative.delta) * cross(relative.roll, normal);
-        put(t_.delta, at, relative.delta);
-      }
-      put(t_.vx, t_.vy, t_.vz, at, velocity);
-      put(t_.spin, at, half * dot(relative.turn, normal));
+      ContactMotion<L> m;
+      m.normal = get(t_.nx, t_.ny, t_.nz, at);
+      set_pair_velocity<kSizes>(m, difference(p), relative);
+      put(t_.vx, t_.vy, t_.vz, at, m.velocity);
+      put(t_.spin, at, m.spin);
+      if constexpr (kSizes) put(t_.delta, at, relative.delta);
       if constexpr (kCouple) put(t_.rx, t_.ry, t_.rz, at, relative.roll);
     }
   }
@@ -292,7 +276,7 @@ class PairForces {
     if constexpr (kSizes) {
       const L sum = load_lanes<L>(&pairs_.sum[p]), delta = get(t_.delta, at);
       const Real half = Real(0.5) * law_.per_radius;
-      return scaled(law_.coefficients, pair_scale<L>(half * (sum + delta), half * (sum - delta)));
+      return Law::scaled(law_.coefficients, pair_scale<L>(half * (sum + delta), half * (sum - delta)));
     } else {
       return law_.coefficients;
     }
@@ -331,7 +315,7 @@ class PairForces {
     const L zero{}, order = lane_numbers();
     ContactSampleOf<L> sum;
     for (int at = 0; at < count; at += kAtOnce) {
-      const ContactSampleOf<L> one = contact_sample<Law, kRolling>(
+      const ContactSampleOf<L> one = Law::template sample<kRolling>(
           coefficients(first + at, at), law_.step, contact_motion(at), contact_history(&pairs_.pair[first + at]));
       const auto real = order < constant<L>(count - at);
       const auto increase = [&](L& to, L by) { to += real ? by : zero; };
@@ -353,7 +337,7 @@ class PairForces {
   }
 
   void law(int first, int count) {
-    const L zero{}, half = constant<L>(0.5), order = lane_numbers();
+    const L zero{}, order = lane_numbers();
     L power{}, elastic{}, force_sum{}, largest{};
     for (int at = 0; at < count; at += kAtOnce) {
       const std::uint32_t* p = &pairs_.pair[first + at];
@@ -365,14 +349,12 @@ class PairForces {
         detail::write_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
         if constexpr (kRolling) detail::write_history(histories_.rolling.data(), p, history.rolling, zero);
       }
-      const Triple<L> force = f.normal * m.normal + f.tangential;
-      put(t_.fx, t_.fy, t_.fz, at, force);
-      put(t_.tx, t_.ty, t_.tz, at, -half * cross(difference(first + at), f.tangential));
-      if constexpr (kCouple) {
-        Triple<L> couple = f.rolling;
-        if constexpr (kSizes) couple = couple - (half * get(t_.delta, at)) * cross(m.normal, f.tangential);
-        put(t_.qx, t_.qy, t_.qz, at, couple);
-      }
+      L delta{};
+      if constexpr (kSizes) delta = get(t_.delta, at);
+      const PairLoads<L> loads = pair_loads<kSizes>(f, m.normal, difference(first + at), delta);
+      put(t_.fx, t_.fy, t_.fz, at, loads.force);
+      put(t_.tx, t_.ty, t_.tz, at, loads.torque);
+      if constexpr (kCouple) put(t_.qx, t_.qy, t_.qz, at, loads.couple);
 
       L work = power_of(f, m);
       if constexpr (kRolling) work += dot(f.rolling, m.roll);
@@ -380,7 +362,7 @@ class PairForces {
       power += real ? work : zero;
       elastic += real ? f.energy : zero;
       largest = larger(largest, m.overlap);
-      if (law_.wanted.forces) force_sum += real ? root(dot(force, force)) : zero;
+      if (law_.wanted.forces) force_sum += real ? root(dot(loads.force, loads.force)) : zero;
     }
     power_ += folded(power);
     elastic_ += folded(elastic);
@@ -397,7 +379,7 @@ class PairForces {
     }
   }
 
-  const PairLaw<Real>& law_;
+  const PairLaw<Law, Real>& law_;
   const TouchingPairs<Real>& pairs_;
   Motion motion_;
   PairHistory<Real>& histories_;

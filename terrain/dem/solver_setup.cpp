@@ -1,6 +1,8 @@
 #include "terrain/dem/solver_setup.hpp"
 
 #include <algorithm>
+#include <string>
+#include <type_traits>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -26,8 +28,7 @@ SolverParams solver_params(const DemOptions& o) {
   p.bin.width = o.width;
   p.bin.periodic_x = o.periodic_x;
   p.bin.periodic_y = o.periodic_y();
-  // Friction of law hertz_tanh without its limiter chatters: such a bed never rests.
-  p.activity = o.activity && (p.law == LawKind::mindlin || o.friction_impulse_limit);
+  p.activity = o.activity && with_law(p.law, [&](auto law) { return law.can_rest(o); });
   p.skin = kSkinShare * o.radius;
   p.threads = std::max(1, o.threads);
   return p;
@@ -42,20 +43,20 @@ SolverParams settling_params(const DemOptions& options) {
 
 SolverCoefficients run_coefficients(const DemOptions& options, double step) {
   FURROW_ASSERT(options.radius > 0.0 && options.density > 0.0, options.radius, options.density);
-  LawSettings law = law_settings(options);
-  law.step = step;
+  DemOptions at_step = options;
+  at_step.step = step;
   const GrainProperties grain = grain_properties(options.radius, options.density);
   const ContactMaterial material = grain_material(options);
-  const ContactCoefficients wall = mix(material, material, Partner::surface, grain, law);
-  return {mix(material, material, Partner::grain, grain, law), wall, wall};
+  const ContactCoefficients wall = mix(material, material, Partner::surface, grain, at_step);
+  return {mix(material, material, Partner::grain, grain, at_step), wall, wall};
 }
 
 ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material, double step) {
-  LawSettings law = law_settings(options);
-  law.step = step;
-  law.rolling_friction = 0.0;  // a couple could not be handed to vertices
+  DemOptions at_step = options;
+  at_step.step = step;
+  at_step.rolling_friction = 0.0;  // a couple could not be handed to vertices
   return mix(grain_material(options), material, Partner::surface, grain_properties(options.radius, options.density),
-             law);
+             at_step);
 }
 
 /// The smallest grains are the least stable. A contact of radii r and R = ρ r has R* = ρ/(1 + ρ) r, so that it is
@@ -67,7 +68,20 @@ ContactCoefficients surface_coefficients(const DemOptions& options, const Contac
 StableStep stable_at(const DemOptions& options, double overlap) {
   const double radius = smallest_radius(options);
   return stable_step(run_coefficients(of_one_size(options, radius), options.step).pair,
-                     grain_properties(radius, options.density), law_settings(options), overlap);
+                     grain_properties(radius, options.density), options, overlap);
+}
+
+StiffnessKey stiffness_key(DemOptions& options) {
+  const std::string name = with_law(law_from(options.law), [](auto law) { return law.kStiffnessKey; });
+  StiffnessKey found;
+  visit_fields(
+      [&](const Field& field, auto& value) {
+        if constexpr (std::is_same_v<decltype(value), double&>)
+          if (name == field.name) found = {field.name, field.unit, &value};
+      },
+      options);
+  FURROW_ASSERT(found.value != nullptr, name);
+  return found;
 }
 
 double stated_overlap(const DemOptions& options) { return kStatedOverlap * smallest_radius(options); }

@@ -1,6 +1,8 @@
 // From the options of a scenario to the parameters and coefficients of the grain solver.
 #pragma once
 
+#include <string>
+
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/grain_solver.hpp"
 
@@ -20,6 +22,13 @@ SolverCoefficients run_coefficients(const DemOptions& options, double step);
 ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material, double step);
 /// Of a bed of these grains whose contacts have overlap `overlap`, m.
 StableStep stable_at(const DemOptions& options, double overlap);
+/// The key that makes the law's contacts stiffer in proportion: under a given force Hertz's overlap goes with it as
+/// ^(−2/3).
+struct StiffnessKey {
+  std::string name, unit;
+  double* value = nullptr;  // in the options
+};
+StiffnessKey stiffness_key(DemOptions& options);
 /// The overlap at which scenarios are checked, m.
 double stated_overlap(const DemOptions& options);
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 
 #include "protocol/core/assert.hpp"
-#include "terrain/dem/contact_law.hpp"
-#include "terrain/dem/contact_mixing.hpp"
-#include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/contact/kinematics.hpp"
+#include "terrain/dem/contact/laws.hpp"
 #include "terrain/dem/strips.hpp"
 
 namespace furrow::terrain::dem {
@@ -24,14 +23,11 @@ void wall_forces(const Grains& grains, Strip& strip, int from, int to, const Bin
   FURROW_ASSERT(radius > 0.0 && dt > 0.0, radius, dt);
   FURROW_ASSERT(0 <= from && from <= to && static_cast<std::size_t>(to) <= strip.walls.size(), from, to,
                 strip.walls.size());
+  using Coefficients = typename Law::template Coefficients<double>;
+  const Coefficients floor = all.floor.of<Law>(), side = all.side.of<Law>();
   const auto coefficients = [&](const WallContact& contact) {
-    ContactCoefficients c = contact.wall == kFloor ? all.floor : all.side;
-    if constexpr (kSizes) c = scaled(c, surface_scale(grains.position[strip.first + contact.grain].w / radius, 0.0));
-    return c;
-  };
-  const auto held = [&](const WallContact& contact, const ContactCoefficients& c) {
-    const Quad &t = contact.tangential, &r = contact.rolling;
-    return held_by_springs(c, {t.x, t.y, t.z}, t.w, {r.x, r.y, r.z});
+    const Coefficients& c = contact.wall == kFloor ? floor : side;
+    return kSizes ? sized_surface<Law>(c, radius, grains.position[strip.first + contact.grain].w, 0.0) : c;
   };
   for (int n = from; n < to; ++n) {
     WallContact& contact = strip.walls[n];
@@ -39,32 +35,27 @@ void wall_forces(const Grains& grains, Strip& strip, int from, int to, const Bin
     FURROW_ASSERT(in_range(contact.wall, kWalls), contact.wall);
     const int g = strip.first + contact.grain;
     const double distance = bin.distance(contact.wall, grains.position[g]);
-    ContactMotion<double> motion;
-    motion.overlap = (kSizes ? grains.position[g].w : radius) - distance;
-    if (!(motion.overlap > 0.0)) {
-      if (wanted.losses) sums.sample.power.opening += held(contact, coefficients(contact)) / dt;
-      contact.tangential = contact.rolling = {};
+    const double overlap = (kSizes ? grains.position[g].w : radius) - distance;
+    Quad &t = contact.tangential, &r = contact.rolling;
+    ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
+    if (!(overlap > 0.0)) {
+      if (wanted.losses) sums.sample.power.opening += Law::held(coefficients(contact), 0.0, history).tangential / dt;
+      t = r = {};
       continue;
     }
     if (distance < 0.0) strip.lost = contact.grain;
     const Quad &v = grains.velocity[g], &w = grains.spin[g];
-    motion.normal = Bin::normal(contact.wall);
-    motion.roll = {w.x, w.y, w.z};
-    const Triple<double> arm = -distance * motion.normal;
-    motion.root_overlap = std::sqrt(motion.overlap);
-    motion.velocity = Triple<double>{v.x, v.y, v.z} + cross(motion.roll, arm);
-    motion.spin = 0.5 * dot(motion.roll, motion.normal);
-    Quad &t = contact.tangential, &r = contact.rolling;
-    ContactHistory<double> history{{t.x, t.y, t.z}, t.w, {r.x, r.y, r.z}};
-    const ContactCoefficients c = coefficients(contact);
+    const WallPoint<double> at =
+        point_on_wall(Bin::normal(contact.wall), distance, overlap, {v.x, v.y, v.z}, {w.x, w.y, w.z});
+    const ContactMotion<double>& motion = at.motion;
+    const Coefficients c = coefficients(contact);
     if (wanted.losses) add(sums.sample, sample_of<Law, kRolling>(c, dt, motion, history));
     const ContactForce<double> f = Law::template force<kRolling>(c, dt, motion, history);
     if constexpr (Law::kHistory) {
       t = {history.tangential.x, history.tangential.y, history.tangential.z, history.root_overlap};
       if constexpr (kRolling) r = {history.rolling.x, history.rolling.y, history.rolling.z, 0.0};
     }
-    const Triple<double> force = f.normal * motion.normal + f.tangential;
-    const Triple<double> torque = cross(arm, f.tangential) + f.rolling;
+    const auto [force, torque] = wall_loads(f, at);
     const Double4 push{force.x, force.y, force.z, 0.0};
     add(loads.force[contact.grain], push);
     add(loads.torque[contact.grain], Double4{torque.x, torque.y, torque.z, 0.0});

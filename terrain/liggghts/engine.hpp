@@ -22,12 +22,12 @@
 #include "protocol/core/vec.hpp"
 #include "terrain/dem/accounts/contact_losses.hpp"
 #include "terrain/dem/bin.hpp"
-#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/contact/contact_mixing.hpp"
 
 namespace furrow::terrain::liggghts {
 
 /// Changes with this header: a library made for another number is refused.
-inline constexpr int kEngineVersion = 6;
+inline constexpr int kEngineVersion = 7;
 /// What the library offers: kMakeEngine makes an engine, kEngineVersionOf tells kEngineVersion.
 inline constexpr char kMakeEngine[] = "furrow_make_engine";
 inline constexpr char kEngineVersionOf[] = "furrow_engine_version";
@@ -155,7 +155,7 @@ struct EngineSetup {
   double top = 0.0;      // no grain stands higher at the beginning, m
   double skin = 0.0;     // m
   double largest = 0.0;  // radius, m
-  dem::LawKind law = dem::LawKind::mindlin;
+  dem::LawKind law{};
   bool rolling = false;
   bool sizes = false;               // radii differ
   dem::GrainProperties grain;       // of the reference radius

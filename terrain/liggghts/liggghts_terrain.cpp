@@ -121,7 +121,6 @@ class LiggghtsTerrain final : public Terrain {
     run(steps, part);
     contacts_.end_interval(duration, forces, sums);
     for (int s = 0; s < substeps; ++s) refinement_.count(parts);
-    time_ += duration;
     SharedReports shared = share_reports(group(), own_interval(), own_state(), forces, sums);
     states_ = std::move(shared.states);
     if (Outcome outcome = judge(shared.intervals); !outcome.ok) return outcome;
@@ -150,7 +149,6 @@ class LiggghtsTerrain final : public Terrain {
 
   void save(Archive& archive) const override {
     const Archive::Scope scope(archive, "terrain/");
-    archive.put("time", time_);
     archive.put("step", dt_);
     archive.put("part", part_);
     archive.put("since", since_);
@@ -167,7 +165,6 @@ class LiggghtsTerrain final : public Terrain {
 
   void do_restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
-    time_ = saved_finite(archive, "time");
     dt_ = dem::saved_step(archive, "step");
     since_ = saved_finite(archive, "since");
     surface_work_ = saved_finite(archive, "surface_work");
@@ -321,7 +318,6 @@ class LiggghtsTerrain final : public Terrain {
   double top_ = 0.0;                 // of the bed at the beginning, m
   double dt_, part_;                 // the step, and the part of it that contacts are evaluated for, s
   double since_ = 0.0;               // forces were last taken, s; 0: not yet
-  double time_ = 0.0;                // advanced, s
   double surface_work_ = 0.0;        // by tires on the grains, J
 };
 

@@ -9,9 +9,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
-#include "terrain/dem/contact_tangent.hpp"
 #include "terrain/dem/grain_sizes.hpp"
-#include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/tires/surface_touch.hpp"
 #include "terrain/surface/surface_check.hpp"
 
@@ -25,7 +23,6 @@ constexpr double kTireRoom = 1.0;  // that a tire may move before grains near it
 
 using dem::ContactForce;
 using dem::ContactHistory;
-using dem::ContactMotion;
 using dem::Quad;
 using dem::Triple;
 
@@ -158,19 +155,15 @@ void RankContacts::forget_grains() {
 
 void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool losses) {
   if (first == 0) look(grains);
-  if (params_.law == dem::LawKind::hertz_tanh) {
-    params_.rolling ? add_forces_of<dem::HertzTanhLaw, true>(grains, last, losses)
-                    : add_forces_of<dem::HertzTanhLaw, false>(grains, last, losses);
-  } else {
-    params_.rolling ? add_forces_of<dem::MindlinLaw, true>(grains, last, losses)
-                    : add_forces_of<dem::MindlinLaw, false>(grains, last, losses);
-  }
+  dem::with_law(params_.law, params_.rolling, params_.sizes(), [&](auto law, auto rolling, auto sizes) {
+    add_forces_of<decltype(law), rolling, sizes>(grains, last, losses);
+  });
 }
 
-template <class Law, bool kRolling>
+template <class Law, bool kRolling, bool kSizes>
 void RankContacts::add_forces_of(const OwnGrains& grains, int last, bool losses) {
   WallContacts::Findings found;
-  walls_.add_forces<Law, kRolling>(grains, last, {coefficients_, times_.since, losses, params_.sizes()}, now_, found);
+  walls_.add_forces<Law, kRolling, kSizes>(grains, last, {coefficients_, times_.since, losses}, now_, found);
   if (found.lost >= 0) note_lost(grains, found.lost);
   if (found.hardest >= 0) note(found.overlap, found.share, grains.position[found.hardest]);
   const std::size_t touchable = touchable_.size();
@@ -208,10 +201,8 @@ void RankContacts::touch_tires(const OwnGrains& grains, Touchable& t, bool losse
   for (std::size_t p = 0; p < past_.size(); ++p) {
     if (taken_[p]) continue;
     const Tire& tire = tires_[static_cast<int>(past_[p].partner) - dem::kWalls];
-    dem::ContactCoefficients room;
-    now_.sample.power.opening += dem::held_by_springs(of_tire(tire, r, room), triple(past_[p].tangential),
-                                                      past_[p].root_overlap, triple(past_[p].rolling)) /
-                                 times_.since;
+    now_.sample.power.opening +=
+        Law::held(coefficients<Law>(tire, r), 0.0, history_of(past_[p])).tangential / times_.since;
   }
 }
 
@@ -291,12 +282,6 @@ bool RankContacts::looked_far_enough() const {
          });
 }
 
-const dem::ContactCoefficients& RankContacts::of_tire(const Tire& tire, double radius,
-                                                      dem::ContactCoefficients& scaled) const {
-  if (radius == params_.grain.radius) return tire.coefficients;
-  return scaled = dem::scaled(tire.coefficients, dem::surface_scale(radius / params_.grain.radius, tire.mass_share));
-}
-
 void RankContacts::note(double overlap, double share, const double* at) {
   now_.max_overlap = std::max(now_.max_overlap, overlap);
   if (share <= hardest_share_) return;
@@ -310,30 +295,27 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
   const double r = grains.radius[g];
   const Vec3 centre(grains.position[g][0], grains.position[g][1], grains.position[g][2]);
   const int partner = dem::kWalls + k;
-  dem::ContactCoefficients room;
-  const dem::ContactCoefficients& c = of_tire(tire, r, room);
+  const auto c = coefficients<Law>(tire, r);
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (const SurfaceHit& hit : hits) {
-    const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
-    const ContactMotion<double> motion = dem::motion_at(*tire.collider, hit, arm, v, w);
+    const dem::SurfacePoint at(*tire.collider, hit, centre, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     double cosine = dem::kSameNormal;
     int nearest = -1;
     for (std::size_t p = 0; p < past_.size(); ++p) {
       if (static_cast<int>(past_[p].partner) != partner) continue;
-      const double same = dot(triple(past_[p].normal), motion.normal);
+      const double same = dot(triple(past_[p].normal), at.motion.normal);
       if (same > cosine) cosine = same, nearest = static_cast<int>(p);
     }
     if (nearest >= 0) history = history_of(past_[nearest]), taken_[nearest] = 1;
-    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, motion, history), hit.share);
-    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, motion, history);
-    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(partner, motion.normal, history));
-    const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
-    add(grains.force[g], push + drag);
-    add(grains.torque[g], cross(arm, push + drag) + hit.share * f.rolling);
-    tire.forces.push_back({hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}});
-    if (options_.contact_tangents) tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
-    on_grains_ += dem::vec(push + drag);
+    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, at.motion, history), hit.share);
+    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, at.motion, history);
+    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(partner, at.motion.normal, history));
+    const dem::PointLoads loads = dem::point_loads<Law>(c, f, at, options_.contact_tangents);
+    add(grains.force[g], loads.force);
+    add(grains.torque[g], loads.torque);
+    tire.forces.push_back(loads.on_surface);
+    on_grains_ += dem::vec(loads.force);
     now_.elastic += hit.share * f.energy;
     ++now_.contacts;
     note(hit.overlap, 0.5 * hit.overlap / r, grains.position[g]);

@@ -123,7 +123,7 @@ class RankContacts final : public StepWork {
     bool carries = false;  // a history with a tire
   };
 
-  template <class Law, bool kRolling>
+  template <class Law, bool kRolling, bool kSizes>
   void add_forces_of(const OwnGrains& grains, int last, bool losses);
   template <class Law, bool kRolling>
   void touch_tires(const OwnGrains& grains, Touchable& t, bool losses);
@@ -137,8 +137,10 @@ class RankContacts final : public StepWork {
   /// What a grain and a tire may come nearer to each other before the next look, m.
   double look_room() const;
   void note_lost(const OwnGrains& grains, int g);
-  /// Where the radius is not that of the reference, `scaled` takes the coefficients.
-  const dem::ContactCoefficients& of_tire(const Tire& tire, double radius, dem::ContactCoefficients& scaled) const;
+  template <class Law>
+  auto coefficients(const Tire& tire, double radius) const {
+    return dem::sized_surface<Law>(tire.coefficients.of<Law>(), params_.grain.radius, radius, tire.mass_share);
+  }
   void note(double overlap, double share, const double* at);
 
   dem::DemOptions options_;

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "protocol/core/assert.hpp"
-#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/contact/contact_mixing.hpp"
 
 namespace furrow::terrain::soil {
 namespace {

@@ -40,7 +40,7 @@ std::string text(FuzzedDataProvider& in) {
   static constexpr const char* kTexts[] = {"",
                                            "auto",
                                            "mindlin",
-                                           "coulomb",
+                                           "hertz_tanh",
                                            "rigid",
                                            "periodic",
                                            "lattice",

@@ -7,6 +7,8 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "tests/peers/switched_law.hpp"
+#undef MindlinLaw
 
 namespace furrow::peers {
 namespace {
@@ -33,15 +35,17 @@ terrain::dem::DemOptions options_of(const Job& job) {
 }
 
 terrain::dem::SolverCoefficients coefficients_of(const Job& job, const terrain::dem::DemOptions& options) {
-  terrain::dem::SolverCoefficients all = terrain::dem::run_coefficients(options, options.step);
-  all.floor.cohesion_force = all.side.cohesion_force = 0.0;
-  all.floor.friction = all.side.friction = job.at("wall_friction");
-  for (terrain::dem::ContactCoefficients* c : {&all.pair, &all.floor, &all.side}) {
-    c->velocity_scale = job.at("switches").get<int>();
+  const terrain::dem::SolverCoefficients all = terrain::dem::run_coefficients(options, options.step);
+  const auto with_switches = [&](const terrain::dem::ContactCoefficients& mixed, bool wall) {
+    terrain::dem::SwitchedLaw::Coefficients<double> c;
+    static_cast<terrain::dem::OwnLaw::Coefficients<double>&>(c) = mixed.of<terrain::dem::OwnLaw>();
+    if (wall) c.cohesion_force = 0.0, c.friction = job.at("wall_friction");
+    c.switches = job.at("switches").get<int>();
     // m* in place of 2/7 m*.
-    if (job.at("damper_mass") == "full") c->shear_damping *= std::sqrt(3.5);
-  }
-  return all;
+    if (job.at("damper_mass") == "full") c.shear_damping *= std::sqrt(3.5);
+    return terrain::dem::ContactCoefficients(c);
+  };
+  return {with_switches(all.pair, false), with_switches(all.floor, true), with_switches(all.side, true)};
 }
 
 }  // namespace

@@ -1,18 +1,23 @@
 // The engine's law `mindlin` with each of its differences from LIGGGHTS's `hertz` + `tangential history` on a switch.
 //
 // Included ahead of the engine's own sources when they are compiled for the comparison (CMakeLists.txt): there it
-// is in the place of MindlinLaw, all else is the engine as it is. Coefficients::velocity_scale, which mindlin does
-// not use, holds the sum of the switches; 0 is the engine's law itself, kAll that of LIGGGHTS 3.8.
+// is in the place of MindlinLaw, all else is the engine as it is. Its coefficients hold the sum of the switches in
+// addition; 0 is the engine's law itself, kAll that of LIGGGHTS 3.8.
 #pragma once
 
-#include "terrain/dem/contact_law.hpp"
+#include "terrain/dem/contact/mindlin_law.hpp"
 
 namespace furrow::terrain::dem {
 
 using OwnLaw = MindlinLaw;
 
-struct SwitchedLaw {
-  static constexpr bool kHistory = true;
+struct SwitchedLaw : MindlinLaw {
+  static constexpr bool kSizes = false;
+
+  template <class S>
+  struct Coefficients : OwnLaw::Coefficients<S> {
+    S switches{};
+  };
 
   enum Switch {
     kRescaleOnLoading = 1,  // spring = 8 G* √(R*δ) × displacement: rescaled by √(δ/δ_old) on loading too
@@ -28,9 +33,9 @@ struct SwitchedLaw {
                                       ContactHistory<T>& history) {
     int on = 0;  // the same in all lanes
     if constexpr (std::is_arithmetic_v<C>) {
-      on = static_cast<int>(c.velocity_scale);
+      on = static_cast<int>(c.switches);
     } else {
-      on = static_cast<int>(c.velocity_scale[0]);
+      on = static_cast<int>(c.switches[0]);
     }
     if (kRolling || on == 0) return OwnLaw::force<kRolling>(c, dt, at, history);
     const T zero = constant<T>(0.0), one = constant<T>(1.0), tiny = constant<T>(kTiny);

@@ -67,7 +67,7 @@ std::vector<double> press(GrainSolver& solver, const DemOptions& options, double
   const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
   solver.surfaces().attach(
       plate.mesh, rubber,
-      mix(grain_material(options), rubber, Partner::surface, solver.params().grain, law_settings(options)),
+      mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options),
       plate.state);
   solver.surfaces().restrict_to({Vec3(-1, -1, -1), Vec3(2, 1, solver.top() + 0.1)});
   const double dt = options.step;
@@ -111,7 +111,7 @@ TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
   few.gravity = kStandardGravity;
   few.activity = true;
   const double load = grain_properties(few.options.radius, few.options.density).mass * kStandardGravity;
-  const double z = few.options.radius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+  const double z = few.options.radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
   GrainSolver s = few.make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
   const double speed = 0.4 * kSleepMeanSpeed * std::sqrt(kStandardGravity * few.options.radius);
   for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));

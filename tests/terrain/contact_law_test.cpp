@@ -1,12 +1,9 @@
 // The contact laws against closed forms.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
-#include "terrain/dem/size_scale.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/terrain/few_grains.hpp"
 
@@ -28,19 +25,10 @@ TEST(Lanes, tanh_agrees_with_the_standard_library) {
   }
 }
 
-// By position in memory: a coefficient that is added and not carried over is zero there.
-TEST(Coefficients, none_is_lost_or_exchanged_when_rounded_or_scaled) {
-  constexpr std::size_t kCount = sizeof(ContactCoefficients) / sizeof(double);
-  std::array<double, kCount> numbers;
-  for (std::size_t k = 0; k < kCount; ++k) numbers[k] = 1.0 + static_cast<double>(k);
-  const auto coefficients = std::bit_cast<ContactCoefficients>(numbers);
-  const auto same = std::bit_cast<std::array<double, kCount>>(rounded<double>(coefficients));
-  const auto floats = std::bit_cast<std::array<float, kCount>>(rounded<float>(coefficients));
-  const auto unscaled = std::bit_cast<std::array<double, kCount>>(scaled(coefficients, pair_scale<double>(1.0, 1.0)));
-  for (std::size_t k = 0; k < kCount; ++k) {
-    EXPECT_EQ(same[k], numbers[k]);
-    EXPECT_EQ(floats[k], static_cast<float>(numbers[k]));
-    EXPECT_DOUBLE_EQ(unscaled[k], numbers[k]);
+TEST(Lanes, tanh_of_one_float_agrees_with_the_standard_library_and_with_eight_floats) {
+  for (const float x : {0.0f, 1e-6f, 1e-3f, 0.1f, 0.5f, 1.0f, 3.0f, 9.0f, 50.0f}) {
+    EXPECT_NEAR(tanh_of_positive(x), std::tanh(x), 2e-7f) << x;
+    EXPECT_EQ(tanh_of_positive(constant<Float8>(x))[5], tanh_of_positive(x)) << x;
   }
 }
 
@@ -54,23 +42,22 @@ TEST(Accounts, the_list_of_fields_forgets_no_member) {
 
 TEST(MindlinLaw, hertz_force_matches_johnson_1985_eq_4_23) {
   FewGrains few;
-  const SolverCoefficients c = few.coefficients();
+  const auto pair_of = few.pair<MindlinLaw>(), wall_of = few.floor<MindlinLaw>();
   const double e_star = few.options.young_modulus / (2.0 * (1.0 - 0.09)), delta = 3e-4;
   ContactHistory<double> history{};
-  const auto pair = MindlinLaw::force<false>(c.pair, 1e-6, touching(delta), history);
+  const auto pair = MindlinLaw::force<false>(pair_of, 1e-6, touching(delta), history);
   EXPECT_NEAR(pair.normal, 4.0 / 3.0 * e_star * std::sqrt(0.003) * std::pow(delta, 1.5), 1e-12);
-  const auto wall = MindlinLaw::force<false>(c.floor, 1e-6, touching(delta), history);
+  const auto wall = MindlinLaw::force<false>(wall_of, 1e-6, touching(delta), history);
   EXPECT_NEAR(wall.normal, 4.0 / 3.0 * e_star * std::sqrt(0.006) * std::pow(delta, 1.5), 1e-12);
-  EXPECT_NEAR(c.pair.stiffness, 1e6, 1e4);  // the report's k_n is E = 2.49e7 Pa at r = 6 mm
+  EXPECT_NEAR(pair_of.stiffness, 1e6, 1e4);  // the report's k_n is E = 2.49e7 Pa at r = 6 mm
 }
 
 TEST(MindlinLaw, tangential_stiffness_matches_mindlin_1949) {
   FewGrains few;
-  const SolverCoefficients c = few.coefficients();
   const double g = few.options.young_modulus / 2.6, delta = 3e-4;
   const double g_star = g / (2.0 * (2.0 - 0.3)), contact_radius = std::sqrt(0.003 * delta);
   ContactHistory<double> history{};
-  ContactCoefficients undamped = c.pair;
+  auto undamped = few.pair<MindlinLaw>();
   undamped.damping = undamped.shear_damping = 0.0;
   const double v = 1e-4, dt = 1e-5;
   ContactForce<double> f{};
@@ -81,7 +68,7 @@ TEST(MindlinLaw, tangential_stiffness_matches_mindlin_1949) {
 TEST(MindlinLaw, sliding_is_cut_at_coulomb_of_the_force_before_cohesion) {
   FewGrains few;
   few.options.cohesion = 80e3;
-  const ContactCoefficients c = few.coefficients().pair;
+  const auto c = few.pair<MindlinLaw>();
   ContactHistory<double> history{};
   const double delta = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0);  // no net load
   ContactForce<double> f{};
@@ -93,7 +80,7 @@ TEST(MindlinLaw, sliding_is_cut_at_coulomb_of_the_force_before_cohesion) {
 
 TEST(MindlinLaw, tangential_spring_is_rescaled_on_unloading) {
   FewGrains few;
-  const ContactCoefficients c = few.coefficients().pair;
+  const auto c = few.pair<MindlinLaw>();
   ContactHistory<double> history{{0, 1.0, 0}, std::sqrt(4e-4), {0, 0, 0}};
   const auto f = MindlinLaw::force<false>(c, 1e-6, touching(1e-4), history);
   EXPECT_NEAR(f.tangential.y, 0.5, 1e-14);  // √(δ/δ_old) = ½
@@ -119,7 +106,7 @@ TEST(HertzTanhLaw, force_is_the_reports) {
   few.options.law = "hertz_tanh";
   few.options.friction_impulse_limit = false;
   few.options.cohesion = 80e3;
-  const ContactCoefficients c = few.coefficients().pair;
+  const auto c = few.pair<HertzTanhLaw>();
   ContactHistory<double> history{};
   const double delta = 4e-4, v_n = 0.02, v_t = 0.1;
   const auto f = HertzTanhLaw::force<false>(c, 1e-6, touching(delta, {v_n, 0, v_t}), history);
@@ -133,13 +120,12 @@ TEST(HertzTanhLaw, impulse_limit_caps_friction_at_three_tenths) {
   FewGrains few;
   few.options.law = "hertz_tanh";
   few.options.step = 4e-5;
-  const SolverCoefficients c = few.coefficients();
   const double m = grain_properties(0.006, 2500).mass;
   ContactHistory<double> history{};
   const double v_t = 1e-4;
-  const auto pair = HertzTanhLaw::force<false>(c.pair, 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
+  const auto pair = HertzTanhLaw::force<false>(few.pair<HertzTanhLaw>(), 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
   EXPECT_NEAR(pair.tangential.y, -0.3 * m / 7.0 * v_t / 4e-5, 1e-15);
-  const auto wall = HertzTanhLaw::force<false>(c.floor, 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
+  const auto wall = HertzTanhLaw::force<false>(few.floor<HertzTanhLaw>(), 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
   EXPECT_NEAR(wall.tangential.y, -0.3 * 2.0 * m / 7.0 * v_t / 4e-5, 1e-15);
 }
 
@@ -149,20 +135,20 @@ TEST(Mixing, follows_the_stated_rules) {
   few.options.cohesion = 80e3;
   ContactMaterial tire{2e7, 0.4, 0.8, 0.1, 2e6, 13.0, 0.0};
   const GrainProperties grain = grain_properties(0.006, 2500);
-  LawSettings law = law_settings(few.options);
-  ContactCoefficients c = mix(grain_material(few.options), tire, Partner::surface, grain, law);
-  EXPECT_DOUBLE_EQ(c.stiffness, 1.5e6);
-  EXPECT_DOUBLE_EQ(c.damping, 36.5);
-  EXPECT_DOUBLE_EQ(c.friction, 0.8);
-  EXPECT_EQ(c.cohesion_force, 0.0);
-  law.kind = LawKind::mindlin;
-  c = mix(grain_material(few.options), tire, Partner::surface, grain, law);
+  const auto mixed = [&] { return mix(grain_material(few.options), tire, Partner::surface, grain, few.options); };
+  const auto by_report = mixed().of<HertzTanhLaw>();
+  EXPECT_DOUBLE_EQ(by_report.stiffness, 1.5e6);
+  EXPECT_DOUBLE_EQ(by_report.damping, 36.5);
+  EXPECT_DOUBLE_EQ(by_report.friction, 0.8);
+  EXPECT_EQ(by_report.cohesion_force, 0.0);
+  few.options.law = "mindlin";
+  auto c = mixed().of<MindlinLaw>();
   const double e_star = 1.0 / ((1 - 0.09) / 2.49e7 + (1 - 0.16) / 2e7);
   EXPECT_NEAR(c.stiffness, 4.0 / 3.0 * e_star * std::sqrt(0.006), 1e-6);
   // A tire of 4.2 kg/m² moves with 0.52 g under a grain of 2.26 g: its damper is that of the lighter pair.
   const double heavy = c.damping, heavy_shear = c.shear_damping, skin = 4.2 * 2.0 * std::sqrt(3.0) * 0.006 * 0.006;
   tire.area_density = 4.2;
-  c = mix(grain_material(few.options), tire, Partner::surface, grain, law);
+  c = mixed().of<MindlinLaw>();
   EXPECT_NEAR(c.damping / heavy, std::sqrt(skin / (skin + grain.mass)), 1e-12);
   EXPECT_NEAR(c.shear_damping / heavy_shear, std::sqrt(skin / (skin + grain.mass / 3.5)), 1e-12);
 }
@@ -170,16 +156,14 @@ TEST(Mixing, follows_the_stated_rules) {
 TEST(StableStep, names_what_limits_it) {
   FewGrains few;
   const GrainProperties grain = grain_properties(0.006, 2500);
-  LawSettings law = law_settings(few.options);
-  const StableStep mindlin = stable_step(few.coefficients().pair, grain, law, 6e-4);
+  const StableStep mindlin = stable_step(few.coefficients().pair, grain, few.options, 6e-4);
   EXPECT_GT(mindlin.step, 4e-5);
   EXPECT_LT(mindlin.step, 1.5e-4);
   few.options.law = "hertz_tanh";
   few.options.friction_impulse_limit = false;
   few.options.cohesion = 80e3;
-  law = law_settings(few.options);
-  const StableStep report = stable_step(few.coefficients().pair, grain, law, 4.342e-4);
-  EXPECT_EQ(report.reason, "friction viscosity");
+  const StableStep report = stable_step(few.coefficients().pair, grain, few.options, 4.342e-4);
+  EXPECT_STREQ(report.reason, "friction viscosity");
   // 7 c μ F dt/m = 5 at F = 9 N and 4e-5 s; stable below 2.
   EXPECT_NEAR(report.step, 2.0 / 5.0 * 4e-5, 0.02 * 1.6e-5);
 }

@@ -29,7 +29,7 @@ double mass_of(const FewGrains& few) { return grain_properties(few.options.radiu
 
 /// Height of the centre at which the floor carries the grain's weight, m.
 double resting_height(const FewGrains& few) {
-  return few.options.radius - std::pow(mass_of(few) * few.gravity / few.coefficients().floor.stiffness, 2.0 / 3.0);
+  return few.options.radius - std::pow(mass_of(few) * few.gravity / few.floor_stiffness(), 2.0 / 3.0);
 }
 
 void run(GrainSolver& s, double step, double time) {
@@ -160,7 +160,7 @@ TEST(EnergyAccounts, pulling_off_costs_what_cohesion_stored_and_loses_nothing) {
   few.options.cohesion = 20e3;
   few.options.restitution = 1.0;
   few.options.friction = 0.0;
-  const ContactCoefficients c = few.coefficients().pair;
+  const auto c = few.pair<MindlinLaw>();
   const double overlap = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0), half = few.options.radius - 0.5 * overlap;
   GrainSolver s = few.make({{0.3 - half, 0.0, 0.3, 0.0}, {0.3 + half, 0.0, 0.3, 0.0}});
   set_velocity(s, 0, Vec3(-1, 0, 0));

@@ -48,9 +48,24 @@ struct FewGrains {
   SolverCoefficients coefficients() const {
     const ContactMaterial material = grain_material(options);
     const GrainProperties grain = grain_properties(options.radius, options.density);
-    const LawSettings law = law_settings(options);
-    const ContactCoefficients wall = mix(material, material, Partner::surface, grain, law);
-    return {mix(material, material, Partner::grain, grain, law), wall, wall};
+    const ContactCoefficients wall = mix(material, material, Partner::surface, grain, options);
+    return {mix(material, material, Partner::grain, grain, options), wall, wall};
+  }
+  /// The same as the law itself takes them. @pre options.law is its name
+  template <class Law>
+  typename Law::template Coefficients<double> pair() const {
+    return coefficients().pair.template of<Law>();
+  }
+  template <class Law>
+  typename Law::template Coefficients<double> floor() const {
+    return coefficients().floor.template of<Law>();
+  }
+  /// K of F_e = K δ^{3/2}, N/m^1.5.
+  double pair_stiffness() const {
+    return with_law(law_from(options.law), [&](auto law) { return pair<decltype(law)>().stiffness; });
+  }
+  double floor_stiffness() const {
+    return with_law(law_from(options.law), [&](auto law) { return floor<decltype(law)>().stiffness; });
   }
 };
 

@@ -13,19 +13,19 @@
 #include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
-#include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/contact/size_scale.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
 
-std::array<double, 7> sized_part(const ContactCoefficients& c) {
+std::array<double, 7> sized_part(const MindlinLaw::Coefficients<double>& c) {
   return {c.stiffness,      c.damping,     c.shear_stiffness, c.shear_damping,
           c.cohesion_force, c.rolling_arm, c.rolling_damping};
 }
 
-void expect_same(const ContactCoefficients& a, const ContactCoefficients& b) {
+void expect_same(const MindlinLaw::Coefficients<double>& a, const MindlinLaw::Coefficients<double>& b) {
   const auto x = sized_part(a), y = sized_part(b);
   for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k] / y[k], 1.0, 1e-14) << k;
   EXPECT_EQ(a.friction, b.friction);
@@ -39,15 +39,17 @@ TEST(GrainSizes, scaled_coefficients_are_those_mixed_for_that_size) {
   ContactMaterial tread = material;
   tread.young_modulus *= 0.3, tread.area_density = 12.0;
   const GrainProperties reference = grain_properties(o.radius, o.density);
-  const LawSettings law = law_settings(o);
+  const auto mixed = [&](const ContactMaterial& other, Partner partner, const GrainProperties& grain) {
+    return mix(material, other, partner, grain, o).of<MindlinLaw>();
+  };
   for (const double size : {0.4, 0.9, 1.0, 1.7}) {
     const GrainProperties other = grain_properties(size * o.radius, o.density);
-    expect_same(scaled(mix(material, material, Partner::grain, reference, law), pair_scale<double>(size, size)),
-                mix(material, material, Partner::grain, other, law));
+    expect_same(MindlinLaw::scaled(mixed(material, Partner::grain, reference), pair_scale<double>(size, size)),
+                mixed(material, Partner::grain, other));
     for (const ContactMaterial& surface : {material, tread})
-      expect_same(scaled(mix(material, surface, Partner::surface, reference, law),
-                         surface_scale(size, mass_share(reference, surface))),
-                  mix(material, surface, Partner::surface, other, law));
+      expect_same(MindlinLaw::scaled(mixed(surface, Partner::surface, reference),
+                                     surface_scale(size, mass_share(reference, surface))),
+                  mixed(surface, Partner::surface, other));
   }
 }
 
@@ -58,9 +60,9 @@ TEST(GrainSizes, against_a_giant_the_pair_is_a_contact_with_a_wall) {
   o.rolling_friction = 0.1;
   const ContactMaterial material = grain_material(o);
   const GrainProperties reference = grain_properties(o.radius, o.density);
-  const auto pair = mix(material, material, Partner::grain, reference, law_settings(o));
-  const auto wall = mix(material, material, Partner::surface, reference, law_settings(o));
-  const auto giant = sized_part(scaled(pair, pair_scale<double>(1.0, 1e9))), flat = sized_part(wall);
+  const auto pair = mix(material, material, Partner::grain, reference, o).of<MindlinLaw>();
+  const auto wall = mix(material, material, Partner::surface, reference, o).of<MindlinLaw>();
+  const auto giant = sized_part(MindlinLaw::scaled(pair, pair_scale<double>(1.0, 1e9))), flat = sized_part(wall);
   for (std::size_t k = 0; k < flat.size(); ++k) EXPECT_NEAR(giant[k] / flat[k], 1.0, 1e-8) << k;
 }
 
@@ -243,9 +245,9 @@ double row_of_bound(double coefficient, double like, double ratio) {
 
 TEST(GrainSizes, contacts_with_larger_grains_are_stiffer_and_yet_no_less_stable_than_those_with_their_like) {
   DemOptions o;
-  const ContactCoefficients like = run_coefficients(o, o.step).pair;
+  const auto like = run_coefficients(o, o.step).pair.of<MindlinLaw>();
   for (double ratio = 1.0; ratio < 4.01; ratio += 0.05) {
-    const ContactCoefficients c = scaled(like, pair_scale<double>(1.0, ratio));
+    const auto c = MindlinLaw::scaled(like, pair_scale<double>(1.0, ratio));
     EXPECT_NEAR(c.stiffness / like.stiffness, std::sqrt(2.0 * ratio / (1.0 + ratio)), 1e-12);
     EXPECT_LE(row_of_bound(c.stiffness, like.stiffness, ratio), 1.0 + 1e-12) << ratio;
     EXPECT_LE(row_of_bound(c.shear_stiffness, like.shear_stiffness, ratio), 1.0 + 1e-12) << ratio;
@@ -261,7 +263,7 @@ double growth_of_pair(double ratio, double share_of_limit) {
   few.options.cohesion = 80e3;
   few.smallest = few.options.radius, few.largest = ratio * few.options.radius * 1.0001;
   const double small = few.options.radius, large = ratio * small;
-  const ContactCoefficients c = scaled(few.coefficients().pair, pair_scale<double>(1.0, ratio));
+  const auto c = MindlinLaw::scaled(few.pair<MindlinLaw>(), pair_scale<double>(1.0, ratio));
   // K δ^{3/2} = F_c; about it ω² = 3/2 K √δ (1/m + 1/M).
   const double overlap = std::pow(c.cohesion_force / c.stiffness, 2.0 / 3.0);
   const double m = grain_properties(small, few.options.density).mass, big = m * ratio * ratio * ratio;

@@ -63,7 +63,7 @@ class Plate {
     const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
     solver.surfaces().attach(
         mesh, rubber,
-        mix(grain_material(options), rubber, Partner::surface, solver.params().grain, law_settings(options)), state_);
+        mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options), state_);
     solver.surfaces().restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, solver.top() + 0.1)});
   }
 
@@ -72,7 +72,7 @@ class Plate {
     const DemOptions options = wide_options();
     SurfaceContacts& surfaces = restored.surfaces();
     surfaces.set_coefficients(0, mix(grain_material(options), surfaces.material(0), Partner::surface,
-                                     restored.params().grain, law_settings(options)));
+                                     restored.params().grain, options));
     surfaces.restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, restored.top() + 0.1)});
   }
 
@@ -295,7 +295,7 @@ TEST(Parcels, grain_that_is_sorted_into_another_sleeping_parcel_is_counted_once)
   few.activity = true;
   const double radius = few.options.radius;
   const double load = grain_properties(radius, few.options.density).mass * kStandardGravity;
-  const double z = radius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+  const double z = radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
   const int columns = static_cast<int>(few.options.width / (2.6 * radius)), across = parcels_across(columns);
   ASSERT_GT(across, 1);
   const double side = -0.5 * few.options.width + few.options.width / columns * (3 * columns / across);

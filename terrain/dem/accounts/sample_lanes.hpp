@@ -2,16 +2,20 @@
 #pragma once
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/simd.hpp"
 #include "terrain/dem/accounts/contact_losses.hpp"
+#include "terrain/dem/contact/contact.hpp"
 
 namespace furrow::terrain::dem {
 
-/// @tparam Law as contact_sample takes it. All contacts have the same coefficients.
+/// All contacts have the same coefficients.
 template <class Law, bool kRolling>
 class SampleLanes {
+  using Coefficients = typename Law::template Coefficients<double>;
+
  public:
   /// @param sum  that samples are added to, at the latest by finish()  @pre dt > 0, s
-  SampleLanes(const ContactCoefficients& c, double dt, ContactSample& sum) : c_(c), dt_(dt), sum_(sum) {
+  SampleLanes(const Coefficients& c, double dt, ContactSample& sum) : c_(c), dt_(dt), sum_(sum) {
     FURROW_ASSERT(dt > 0.0, dt);
   }
 
@@ -38,7 +42,7 @@ class SampleLanes {
   /// Out of line, as sample_of() is. Lanes that nobody waits in hold a contact of before, and count for nothing.
   [[gnu::noinline]] void evaluate() {
     for (int k = count_; k < kDoubleLanes; ++k) share_[k] = 0.0;
-    const ContactSampleOf<Double4> s = contact_sample<Law, kRolling>(c_, dt_, motion_, history_);
+    const ContactSampleOf<Double4> s = Law::template sample<kRolling>(c_, dt_, motion_, history_);
     const auto of = [this](const Double4& v) { return sum(share_ * v); };
     dem::add(sum_, {{of(s.power.sliding), of(s.power.normal_damping), of(s.power.tangential_damping),
                      of(s.power.rolling), of(s.power.opening)},
@@ -52,7 +56,7 @@ class SampleLanes {
     return {{none, none, one}, one, one, {none, none, none}, none, {none, none, none}};
   }
 
-  ContactCoefficients c_;
+  Coefficients c_;
   double dt_;  // s
   ContactSample& sum_;
   int count_ = 0;

@@ -10,17 +10,11 @@
 
 namespace furrow::terrain::dem {
 
-/// Of grains with radii r_i, r_j; `radius`: for which the coefficients are, m.
-inline ContactCoefficients pair_coefficients(const ContactCoefficients& c, double radius, double r_i, double r_j) {
-  if (r_i == radius && r_j == radius) return c;
-  return scaled(c, pair_scale(r_i / radius, r_j / radius));
-}
-
-/// What the springs of the listed pair p hold since they were last evaluated, J.
-double held_by_pair(const ContactCoefficients& c, const Strip& strip, int p);
+/// What the listed pair p remembers since it was last evaluated.
+ContactHistory<double> pair_history(const Strip& strip, int p);
 
 /// Of the pairs and walls that each strip lists. `radius`: for which the coefficients are, m.
-std::vector<Stored> stored_energy(const Grains& grains, const Strips& strips, const SolverCoefficients& c,
+std::vector<Stored> stored_energy(const Grains& grains, const Strips& strips, LawKind law, const SolverCoefficients& c,
                                   double radius);
 
 }  // namespace furrow::terrain::dem

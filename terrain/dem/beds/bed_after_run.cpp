@@ -25,7 +25,7 @@ Archive grains_of(const Archive& state) {
     const std::string own = name.substr(sizeof kPrefix - 1);
     if (!own.starts_with("surface")) grains.put_array(own, values);
   }
-  SurfaceContacts({}, 0.0, false).save(grains);
+  SurfaceContacts({}, 0.0, {}, false).save(grains);
   return grains;
 }
 

@@ -13,7 +13,7 @@
 #include "protocol/files/text_file.hpp"
 #include "terrain/dem/beds/bed_format_4.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
-#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/contact/contact_mixing.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
@@ -55,9 +55,7 @@ std::string bed_digest(const DemOptions& o, const std::string& arithmetic) {
   const auto add = [&](const auto& value) { hash.add(&value, sizeof value); };
   add(kBedFormat);
   add(kSkinShare);
-  DemOptions named = o;
-  named.law = law_name(law_from(o.law));  // the law has a former name
-  add_fields(hash, named, role::bed);
+  add_fields(hash, o, role::bed);
   add(o.periodic_x);
   if (o.piece) hash.add("piece of a tiled bed");
   add(o.seed);

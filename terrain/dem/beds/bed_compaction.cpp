@@ -61,10 +61,10 @@ std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& opt
   LoadedLid body(area, options.compaction_pressure, kSolidFraction * options.density, depth, grain_modulus(options));
   Lid lid = lid_at(bin, depth);
   solver.set_coefficients(settle_coefficients(options));
-  ContactCoefficients smooth = solver.coefficients().floor;
-  smooth.friction = smooth.rolling_arm = smooth.cohesion_force = 0.0;
+  DemOptions smooth = options;
+  smooth.friction = smooth.rolling_friction = smooth.cohesion = 0.0;
   SurfaceContacts& surfaces = solver.surfaces();
-  surfaces.attach(lid.mesh, grain_material(options), smooth, lid.state);
+  surfaces.attach(lid.mesh, grain_material(options), settle_coefficients(smooth).floor, lid.state);
 
   std::vector<NodalForces> forces(1);
   std::vector<ContactSums> sums(1);

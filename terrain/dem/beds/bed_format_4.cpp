@@ -99,7 +99,7 @@ Archive from_format_4(const Archive& bed) {
   save_fields(named, "accounts", accounts_of(bed));
   name_strips(bed, named);
   name_walls(bed, named);
-  SurfaceContacts({}, 0.0, false).save(named);         // a bed bears none
+  SurfaceContacts({}, 0.0, {}, false).save(named);     // a bed bears none
   named.put("samples/strips", std::vector<double>());  // none taken: the first step does
   named.put("samples/until", std::int64_t{0});
   return named;

@@ -41,12 +41,12 @@ void check_bed(const Archive& bed, const DemOptions& o) {
         o.scenario, "terrain.sides",
         fmt::format("is '{}' but the bed '{}' was made with '{}'", sides(o.periodic_y()), o.bed, sides(periodic)));
   const auto& law = bed.get<std::uint8_t>("bed/law");
-  if (law_from(std::string(law.begin(), law.end())) != law_from(o.law))
+  if (std::string(law.begin(), law.end()) != o.law)
     throw input_error(
         o.scenario, "terrain.law",
         fmt::format("is {} but the bed '{}' was settled with {}", o.law, o.bed, std::string(law.begin(), law.end())));
   if ((o.rolling_friction > 0.0) && bed.get<double>("pairs/rolling").empty() && bed.get_int("count") > 0 &&
-      o.law == "mindlin")
+      has_history(law_from(o.law)))
     throw input_error(o.scenario, "terrain.rolling_friction",
                       fmt::format("is {} but the bed '{}' was settled without", o.rolling_friction, o.bed));
 }
@@ -89,7 +89,7 @@ Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, Settl
   const std::vector<Quad> positions = tiled_positions(positions_by_id(solver), options, progress);
   // Only what is near a joint or a wall has much to move: the rest may sleep meanwhile.
   SolverParams params = settling_params(options);
-  params.activity = params.law == LawKind::mindlin;
+  params.activity = has_history(params.law);
   solver = GrainSolver(params);
   solver.place(positions);
   result = settle(solver, options, named("joints of the bed: ", progress), kMaxSettleTime, kJointDrag);
@@ -149,8 +149,7 @@ Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const 
   bed.put("bed/geometry", geometry(options));
   bed.put("bed/size_spread", options.size_spread);
   bed.put("bed/periodic_sides", std::int64_t{options.periodic_y()});
-  const std::string law = law_name(law_from(options.law));
-  bed.put("bed/law", std::vector<std::uint8_t>(law.begin(), law.end()));
+  bed.put("bed/law", std::vector<std::uint8_t>(options.law.begin(), options.law.end()));
   return bed;
 }
 

@@ -12,9 +12,9 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kStepShareMindlin = 0.8;    // of the stable step
-constexpr double kStepShareHertzTanh = 0.7;  // grains that fall on each other overlap more without history
-constexpr double kLyingSpeed = 0.03;         // rms, m/s: a bed that is slower gets the drag of one that lies
+constexpr double kStepShare = 0.8;         // of the stable step, with a law that has history
+constexpr double kStepShareWithout = 0.7;  // grains that fall on each other overlap more without history
+constexpr double kLyingSpeed = 0.03;       // rms, m/s: a bed that is slower gets the drag of one that lies
 
 DemOptions with_impulse_limit(DemOptions options) {
   options.friction_impulse_limit = true;
@@ -30,13 +30,16 @@ void wake_all(GrainSolver& solver) {
 
 double settle_step(const DemOptions& options) {
   const DemOptions limited = with_impulse_limit(options);
-  const double share = law_from(options.law) == LawKind::mindlin ? kStepShareMindlin : kStepShareHertzTanh;
+  const double share = has_history(law_from(options.law)) ? kStepShare : kStepShareWithout;
   return share * stable_at(limited, stated_overlap(limited)).step;
 }
 
 SolverCoefficients settle_coefficients(const DemOptions& options) {
-  SolverCoefficients c = run_coefficients(with_impulse_limit(options), settle_step(options));
-  c.side.friction = c.side.rolling_arm = 0.0;
+  const double dt = settle_step(options);
+  DemOptions smooth = with_impulse_limit(options);
+  SolverCoefficients c = run_coefficients(smooth, dt);
+  smooth.friction = smooth.rolling_friction = 0.0;
+  c.side = run_coefficients(smooth, dt).side;
   return c;
 }
 

@@ -10,14 +10,14 @@
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
+#include "terrain/dem/contact/laws.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {
 
-/// Young's modulus of the grains; of law hertz_tanh that which gives two grains the stiffness k_n = 4/3 E* √R*, Pa.
+/// Young's modulus of the grains, Pa.
 inline double grain_modulus(const DemOptions& o) {
-  if (o.law == "mindlin") return o.young_modulus;
-  return 1.5 * (1.0 - o.poisson_ratio * o.poisson_ratio) * o.normal_stiffness / std::sqrt(0.5 * o.radius);
+  return with_law(law_from(o.law), [&](auto law) { return law.young_modulus(o); });
 }
 
 class LoadedLid {

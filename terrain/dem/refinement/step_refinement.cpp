@@ -108,13 +108,11 @@ void StepRefinement::restore(const State& state) {
   state_.level = std::clamp(state_.level, 0, std::max(0, static_cast<int>(limits_.size()) - 1));
 }
 
-/// Under a given force Hertz's overlap goes with the modulus as E^(−2/3).
 Outcome StepRefinement::too_hard(const HardContacts& hard) const {
   const double stiffer = std::pow(hard.share / kSoundShare, 1.5);
   DemOptions other = options_;
-  const bool hertz = law_from(options_.law) == LawKind::mindlin;
-  double& stiffness = hertz ? other.young_modulus : other.normal_stiffness;
-  stiffness *= stiffer;
+  const StiffnessKey key = stiffness_key(other);
+  *key.value *= stiffer;
   return Outcome::failure(
       "has contacts that are too hard for its grains",
       fmt::format("{} {} deeper than {:.0f} % of a grain's diameter, the deepest by {:.3g} m ({:.0f} %) between {} "
@@ -122,9 +120,8 @@ Outcome StepRefinement::too_hard(const HardContacts& hard) const {
                   "({:.4g}, {:.4g}, {:.4g}) m; expected stiffer grains (about {:.2g} {} in terrain.{}, which needs a "
                   "step of at most {:.2g} s), or less load or speed; {}",
                   hard.past, hard.past == 1 ? "contact is" : "contacts are", 100.0 * kDeepestShare, hard.deepest,
-                  100.0 * hard.share, hard.between, hard.at.x(), hard.at.y(), hard.at.z(), stiffness,
-                  hertz ? "Pa" : "N/m^1.5", hertz ? "young_modulus" : "normal_stiffness",
-                  stable_at(other, stated_overlap(other)).step, kNoStepHelps));
+                  100.0 * hard.share, hard.between, hard.at.x(), hard.at.y(), hard.at.z(), *key.value, key.unit,
+                  key.name, stable_at(other, stated_overlap(other)).step, kNoStepHelps));
 }
 
 }  // namespace furrow::terrain::dem

@@ -10,8 +10,6 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
-#include "terrain/dem/contact_tangent.hpp"
-#include "terrain/dem/size_scale.hpp"
 #include "terrain/dem/tires/surface_touch.hpp"
 #include "terrain/surface/surface_check.hpp"
 
@@ -32,6 +30,8 @@ const SurfaceHistory* nearest(const std::vector<SurfaceHistory>& history, std::s
   }
   return best;
 }
+
+ContactHistory<double> of(const SurfaceHistory& h) { return {triple(h.tangential), h.tangential.w, triple(h.rolling)}; }
 
 }  // namespace
 
@@ -121,23 +121,18 @@ void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
   }
 }
 
-ContactCoefficients SurfaceContacts::coefficients(const Surface& surface, double radius) const {
-  if (radius == grain_.radius) return surface.coefficients;
-  return scaled(surface.coefficients, surface_scale(radius / grain_.radius, surface.mass_share));
-}
-
+template <class Law>
 double SurfaceContacts::abandoned(const Grains& grains, const SurfaceStrip& mine) const {
   double held = 0.0;
   for (std::size_t k = 0; k < mine.history.size(); ++k) {
     const SurfaceHistory& h = mine.history[k];
     if (!mine.taken[k])
-      held += held_by_springs(coefficients(surfaces_[h.surface], grains.position[h.grain].w), triple(h.tangential),
-                              h.tangential.w, triple(h.rolling));
+      held += Law::held(coefficients<Law>(surfaces_[h.surface], grains.position[h.grain].w), 0.0, of(h)).tangential;
   }
   return held;
 }
 
-template <class Law>
+template <class Law, bool kRolling>
 void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses,
                             const Loads& load, ContactTotals& sums) {
   FURROW_ASSERT(in_range(k, count()) && in_range(g, grains.count), k, count(), g, grains.count);
@@ -148,7 +143,7 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   const Vec3 centre(x.x, x.y, x.z);
   const int count = surface.collider->hits(centre, x.w, hits);
   if (count == 0) return;
-  const ContactCoefficients c = coefficients(surface, x.w);
+  const auto c = coefficients<Law>(surface, x.w);
   const auto before = [](const SurfaceHistory& h, const std::pair<int, int>& key) {
     return std::pair<int, int>(h.grain, h.surface) < key;
   };
@@ -159,31 +154,23 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];
-    const Triple<double> arm = triple(Vec3(hit.point - centre));
-    const ContactMotion<double> motion = motion_at(*surface.collider, hit, arm, v, w);
+    const SurfacePoint at(*surface.collider, hit, centre, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {
-      history = {triple(past->tangential), past->tangential.w, triple(past->rolling)};
+      history = of(*past);
       if (losses) mine.taken[past - old.data()] = 1;
     }
-    if (losses)
-      add(sums.sample,
-          rolling_ ? sample_of<Law, true>(c, dt, motion, history) : sample_of<Law, false>(c, dt, motion, history),
-          hit.share);
-    const ContactForce<double> f = rolling_ ? Law::template force<true>(c, dt, motion, history)
-                                            : Law::template force<false>(c, dt, motion, history);
-    const auto& t = history.tangential;
-    const auto& r = history.rolling;
-    const Quad normal{motion.normal.x, motion.normal.y, motion.normal.z, 0.0};
+    if (losses) add(sums.sample, sample_of<Law, kRolling>(c, dt, at.motion, history), hit.share);
+    const ContactForce<double> f = Law::template force<kRolling>(c, dt, at.motion, history);
+    const auto &n = at.motion.normal, &t = history.tangential, &r = history.rolling;
     if constexpr (Law::kHistory)
-      mine.next.push_back({g, k, normal, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
+      mine.next.push_back({g, k, {n.x, n.y, n.z, 0.0}, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
 
-    const Triple<double> push = (hit.share * f.normal) * motion.normal, drag = hit.share * f.tangential;
-    add(*load.force, push + drag);
-    add(*load.torque, cross(arm, push + drag) + hit.share * f.rolling);
-    mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}}});
-    if (tangents_) mine.touches.back().force.tangent = contact_tangent<Law>(c, motion, f, hit.share);
-    sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
+    const PointLoads loads = point_loads<Law>(c, f, at, tangents_);
+    add(*load.force, loads.force);
+    add(*load.torque, loads.torque);
+    mine.touches.push_back({k, loads.on_surface});
+    sums.power += hit.share * (power_of(f, at.motion) + dot(f.rolling, at.motion.roll));
     sums.elastic += hit.share * f.energy;
     sums.max_overlap = std::max(sums.max_overlap, hit.overlap);
     ++sums.contacts;
@@ -198,7 +185,6 @@ void SurfaceContacts::begin(int s, bool losses) {
   if (losses) mine.taken.assign(mine.history.size(), 0);
 }
 
-template <class Law>
 void SurfaceContacts::evaluate(const Grains& grains, const Strip& strip, int s, int from, int to, double dt,
                                bool losses, const Loads& loads, ContactTotals& sums) {
   FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
@@ -207,23 +193,21 @@ void SurfaceContacts::evaluate(const Grains& grains, const Strip& strip, int s, 
   const bool any_near =
       std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& surface) { return near(surface, strip); });
   if (!any_near) return;
-  for (int g = strip.first + from; g < strip.first + to; ++g)
-    for (int k = 0; k < count(); ++k)
-      if (inside(surfaces_[k].near, grains.position[g]))
-        touch<Law>(grains, mine, k, g, dt, losses, loads.from(g - strip.first), sums);
+  with_law(law_, rolling_, false, [&](auto law, auto rolling, auto) {
+    for (int g = strip.first + from; g < strip.first + to; ++g)
+      for (int k = 0; k < count(); ++k)
+        if (inside(surfaces_[k].near, grains.position[g]))
+          touch<decltype(law), rolling>(grains, mine, k, g, dt, losses, loads.from(g - strip.first), sums);
+  });
 }
 
 void SurfaceContacts::end(const Grains& grains, int s, double dt, bool losses, ContactTotals& sums) {
   FURROW_ASSERT(in_range(s, strips_.size()), s, strips_.size());
   SurfaceStrip& mine = strips_[s];
-  if (losses) sums.sample.power.opening += abandoned(grains, mine) / dt;
+  if (losses)
+    sums.sample.power.opening += with_law(law_, [&](auto law) { return abandoned<decltype(law)>(grains, mine); }) / dt;
   mine.history.swap(mine.next);
 }
-
-template void SurfaceContacts::evaluate<MindlinLaw>(const Grains&, const Strip&, int, int, int, double, bool,
-                                                    const Loads&, ContactTotals&);
-template void SurfaceContacts::evaluate<HertzTanhLaw>(const Grains&, const Strip&, int, int, int, double, bool,
-                                                      const Loads&, ContactTotals&);
 
 Vec3 SurfaceContacts::add_substep_forces(double kick, double dt) {
   FURROW_ASSERT(kick > 0.0 && dt > 0.0, kick, dt);

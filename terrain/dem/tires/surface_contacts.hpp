@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "protocol/core/assert.hpp"
-#include "terrain/dem/contact_mixing.hpp"
+#include "terrain/dem/contact/contact_mixing.hpp"
 #include "terrain/dem/strips.hpp"
 #include "terrain/surface/surface_collider.hpp"
 #include "terrain/surface/surface_forces.hpp"
@@ -51,8 +51,8 @@ struct SurfaceStrip {
 class SurfaceContacts {
  public:
   /// grain: for which the coefficients are; largest: radius of any grain, m.
-  SurfaceContacts(const GrainProperties& grain, double largest, bool rolling)
-      : grain_(grain), largest_(largest), rolling_(rolling) {}
+  SurfaceContacts(const GrainProperties& grain, double largest, LawKind law, bool rolling)
+      : grain_(grain), largest_(largest), law_(law), rolling_(rolling) {}
 
   /// @pre start has the mesh's vertex count.
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const ContactCoefficients& coefficients,
@@ -120,7 +120,6 @@ class SurfaceContacts {
   void begin(int s, bool losses);
   /// Evaluates the contacts of the grains [from, to) of strip s, counted from its first, and adds to the loads (of the
   /// strip's grains, in order) and to `sums`, to those of its losses if they are wanted.
-  template <class Law>
   void evaluate(const Grains& grains, const Strip& strip, int s, int from, int to, double dt, bool losses,
                 const Loads& loads, ContactTotals& sums);
   /// Adds to `sums` what contacts that ended held, if losses are wanted.
@@ -168,15 +167,20 @@ class SurfaceContacts {
     const double slack = largest_;  // grains stray from where they were sorted by less
     return surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack;
   }
-  template <class Law>
+  template <class Law, bool kRolling>
   void touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses, const Loads& load,
              ContactTotals& sums);
-  ContactCoefficients coefficients(const Surface& surface, double radius) const;
+  template <class Law>
+  auto coefficients(const Surface& surface, double radius) const {
+    return sized_surface<Law>(surface.coefficients.of<Law>(), grain_.radius, radius, surface.mass_share);
+  }
   /// What is left in histories that nobody took over, J.
+  template <class Law>
   double abandoned(const Grains& grains, const SurfaceStrip& mine) const;
 
   GrainProperties grain_;
   double largest_;  // m
+  LawKind law_;
   bool rolling_;
   bool tangents_ = false;
   double top_ = 1e300;  // no grain reaches higher, m

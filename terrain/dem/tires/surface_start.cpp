@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
-#include "terrain/dem/material_check.hpp"
+#include "terrain/dem/contact/contact_mixing.hpp"
 #include "terrain/dem/tires/bin_sides.hpp"
 
 namespace furrow::terrain::dem {
 
 void check_surface_start(const DemOptions& options, const Bin& bin, const SurfaceMesh& mesh,
                          const ContactMaterial& material, const SurfaceState& start, int index) {
-  check_material(material, options.law, index);
+  check_material(material, law_from(options.law), index);
   for (const Vec3& x : start.position)
     if (const char* wall = side_crossed(bin, {x, x}))
       throw input_error(options.scenario, "terrain",

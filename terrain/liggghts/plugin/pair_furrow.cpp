@@ -5,7 +5,8 @@
 
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/accounts/sample_lanes.hpp"
-#include "terrain/dem/size_scale.hpp"
+#include "terrain/dem/contact/kinematics.hpp"
+#include "terrain/dem/contact/laws.hpp"
 
 namespace furrow::terrain::liggghts {
 namespace {
@@ -51,19 +52,8 @@ std::vector<PairRecord> PairFurrow::records() {
 void PairFurrow::compute_force(int, int, int) {
   if (!shearupdate()) return;  // the set-up of a run: no step
   sums_ = {};
-  if (law_ == dem::LawKind::hertz_tanh) {
-    rolling_ ? evaluate<dem::HertzTanhLaw, true, false>() : evaluate<dem::HertzTanhLaw, false, false>();
-  } else if (sizes_) {
-    rolling_ ? evaluate<dem::MindlinLaw, true, true>() : evaluate<dem::MindlinLaw, false, true>();
-  } else {
-    rolling_ ? evaluate<dem::MindlinLaw, true, false>() : evaluate<dem::MindlinLaw, false, false>();
-  }
-}
-
-double PairFurrow::held(int entry, double r_i, double r_j) const {
-  const auto c = sizes_ ? dem::scaled(coefficients_, dem::pair_scale(r_i / radius_, r_j / radius_)) : coefficients_;
-  const PairHistory h = lists_.history(entry);
-  return dem::held_by_springs(c, triple(h.tangential), h.tangential.w, triple(h.rolling));
+  dem::with_law(law_, rolling_, sizes_,
+                [&](auto law, auto rolling, auto sizes) { evaluate<decltype(law), rolling, sizes>(); });
 }
 
 /// Seen from the other grain every vector turns its sign and nothing else changes: on either side of a border the pair
@@ -83,7 +73,8 @@ void PairFurrow::evaluate() {
   std::uint8_t* const touching = lists_.touching();
   dem::Quad* const tangential = lists_.tangential();
   dem::Quad* const rolling = lists_.rolling();
-  dem::SampleLanes<Law, kRoll> samples(coefficients_, dt, sums_.sample);
+  const auto reference = coefficients_.of<Law>();
+  dem::SampleLanes<Law, kRoll> samples(reference, dt, sums_.sample);
   int asked = 0;  // rows for whose grains the work is done
   const int rows = lists_.rows(), last = rows > 0 ? lists_.end(rows - 1) : 0;
   for (int row = 0; row < rows; ++row) {
@@ -105,7 +96,13 @@ void PairFurrow::evaluate() {
       const double sum = r_i + radius[j], gap = sum * sum - dot(d, d);
       if (!(gap > 0.0)) {
         if (touching[e]) {
-          if (losses_) sums_.sample.power.opening += (j < owned ? 1.0 : 0.5) * held(e, r_i, radius[j]) / dt;
+          if (losses_) {
+            const PairHistory h = lists_.history(e);
+            const ContactHistory<double> before{triple(h.tangential), h.tangential.w, triple(h.rolling)};
+            const double held =
+                Law::held(dem::sized_pair<Law>(reference, radius_, r_i, radius[j]), 0.0, before).tangential;
+            sums_.sample.power.opening += (j < owned ? 1.0 : 0.5) * held / dt;
+          }
           touching[e] = 0;
           tangential[e] = {};
           if constexpr (kRoll) rolling[e] = {};
@@ -113,18 +110,14 @@ void PairFurrow::evaluate() {
         continue;
       }
       const double share = j < owned ? 1.0 : 0.5;
-      const double distance = std::sqrt(dot(d, d)), delta = r_i - radius[j];
-      const Triple<double> w_j = triple(w[j]), turn = w_i + w_j;
+      const double delta = r_i - radius[j];
+      const Triple<double> w_j = triple(w[j]);
       ContactMotion<double> m;
-      m.normal = (1.0 / distance) * d;
-      m.overlap = gap / (sum + distance);
-      m.root_overlap = std::sqrt(m.overlap);
+      dem::set_pair_overlap(m, d, gap, sum);
       m.roll = w_i - w_j;
-      m.velocity = v_i - triple(v[j]) - 0.5 * cross(turn, d);
-      if constexpr (kSizes) m.velocity = m.velocity - (0.5 * delta) * cross(m.roll, m.normal);
-      m.spin = 0.5 * dot(turn, m.normal);
-      dem::ContactCoefficients c = coefficients_;
-      if constexpr (kSizes) c = dem::scaled(c, dem::pair_scale(r_i / radius_, radius[j] / radius_));
+      dem::set_pair_velocity<kSizes>(m, d, {v_i - triple(v[j]), w_i + w_j, m.roll, delta});
+      auto c = reference;
+      if constexpr (kSizes) c = dem::sized_pair<Law>(reference, radius_, r_i, radius[j]);
       ContactHistory<double> history{triple(tangential[e]), tangential[e].w, {0, 0, 0}};
       if constexpr (kRoll) history.rolling = triple(rolling[e]);
       if (losses_) {
@@ -140,10 +133,7 @@ void PairFurrow::evaluate() {
         tangential[e] = {s.x, s.y, s.z, history.root_overlap};
         if constexpr (kRoll) rolling[e] = {history.rolling.x, history.rolling.y, history.rolling.z, 0.0};
       }
-      const Triple<double> push = at.normal * m.normal + at.tangential;
-      const Triple<double> arm = -0.5 * cross(d, at.tangential);
-      Triple<double> couple = at.rolling;
-      if constexpr (kSizes) couple = couple - (0.5 * delta) * cross(m.normal, at.tangential);
+      const auto [push, arm, couple] = dem::pair_loads<kSizes>(at, m.normal, d, delta);
       force = force + push;
       torque = torque + (arm + couple);
       if (j < owned) {

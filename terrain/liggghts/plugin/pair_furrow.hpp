@@ -41,9 +41,8 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
   void compute_force(int, int, int) override;
   template <class Law, bool kRoll, bool kSizes>
   void evaluate();
-  double held(int entry, double r_i, double r_j) const;
 
-  dem::LawKind law_ = dem::LawKind::mindlin;
+  dem::LawKind law_{};
   bool rolling_ = false, sizes_ = false, losses_ = false;
   double radius_ = 0.0;  // for which the coefficients are, m
   double since_ = 0.0;   // s

@@ -31,7 +31,7 @@ RUNS = {  # case: (scenario, more arguments)
     "drawbar_pull_small": ("drawbar_pull_small.json", sets(run__end=0.5, run__average_from=0.2)),
     "rigid_ground": ("rigid_ground.json", sets(run__end=0.25, run__average_from=0.1)),
     "four_wheels": ("four_wheels.json", sets(run__end=0.6, run__average_from=0.3)),
-    "extra_coulomb": ("first_look.json", SHORT + sets(terrain__law="hertz_tanh")),
+    "extra_hertz_tanh": ("first_look.json", SHORT + sets(terrain__law="hertz_tanh")),
     "extra_options": ("first_look.json", SHORT + sets(
         terrain__precision="double", terrain__rolling_friction=0.1, terrain__size_spread=0.2,
         terrain__sides="periodic", terrain__compaction_pressure="20e3", terrain__settling_friction=0.3,
@@ -44,7 +44,7 @@ RUNS = {  # case: (scenario, more arguments)
 COARSE = sets(tire__elements_circumference=40, tire__elements_width=8)
 BENCHES = {
     "bench_grains_mindlin": ["grains", "--bed", "default", "--law", "mindlin", "--steps", "100", "--warm", "20"],
-    "bench_grains_coulomb": ["grains", "--bed", "default", "--law", "hertz_tanh", "--cohesion", "80e3",
+    "bench_grains_hertz_tanh": ["grains", "--bed", "default", "--law", "hertz_tanh", "--cohesion", "80e3",
                              "--steps", "100", "--warm", "20"],
     "bench_tire": ["tire", "--steps", "200", "--warm", "0.1"],
 }

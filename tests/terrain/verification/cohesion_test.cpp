@@ -60,7 +60,7 @@ terrain::dem::GrainSolver pair(const EngineGrains& few, double overlap) {
 TEST(Cohesion, pulling_a_pair_apart_takes_the_cohesion_force) {
   for (const char* law : kLaws) {
     const EngineGrains few = heavy(law);
-    const double stiffness = few.coefficients().pair.stiffness, start = 1e-5;
+    const double stiffness = few.pair_stiffness(), start = 1e-5;
     terrain::dem::GrainSolver s = pair(few, start);
     Worst path(std::string(law) + ", pair", "force on the way to pull-off", 1e-5, "K delta^1.5 - F_c");
     double largest = 0.0;
@@ -85,7 +85,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
       const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
       few.options.cohesion = share * weight / (M_PI * kRadius * kRadius);
       const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-      const double overlap = rest_overlap(k.stiffness, std::max(share - 1.0, 0.005) * weight);
+      const double overlap = rest_overlap(few.floor_stiffness(), std::max(share - 1.0, 0.005) * weight);
       terrain::dem::GrainSolver s = few.make({{0.3, 0.0, 0.3 - kRadius + overlap}});
       testing::Surface ceiling = testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [](double, double) { return 0.3; });
       for (auto& t : ceiling.mesh.triangles) std::swap(t[1], t[2]);  // outside down
@@ -98,7 +98,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
         EXPECT_LT(depth, -0.05) << law;
       } else {
         verify(std::string(law) + ", hanging from a mesh, F_c = " + brief(share) + " m g", "overlap, m", depth,
-               rest_overlap(k.stiffness, (share - 1.0) * weight), 1e-6, "K delta^1.5 = F_c - m g");
+               rest_overlap(few.floor_stiffness(), (share - 1.0) * weight), 1e-6, "K delta^1.5 = F_c - m g");
       }
     }
 }
@@ -107,7 +107,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
 TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
   EngineGrains few = heavy("mindlin");
   few.options.friction = 0.05;  // a short way to slip, on which the line of centres hardly turns
-  const terrain::dem::ContactCoefficients k = few.coefficients().pair;
+  const auto k = few.pair<terrain::dem::MindlinLaw>();
   const double limit = few.options.friction * cohesion_force();
   const double delta = rest_overlap(k.stiffness, cohesion_force());
   const double at_slip = limit / (k.shear_stiffness * std::sqrt(delta));  // m
@@ -130,7 +130,7 @@ TEST(Cohesion, hertz_tanh_pair_without_net_load_resists_by_speed) {
   const double limit = few.options.friction * cohesion_force();
   Worst worst("hertz_tanh, pair, no net load", "friction by speed, of mu F_c", 1e-4, "mu F_c tanh(c v)");
   for (const double speed : {0.001, 0.01, 0.1, 1.0}) {
-    terrain::dem::GrainSolver s = pair(few, rest_overlap(few.coefficients().pair.stiffness, cohesion_force()));
+    terrain::dem::GrainSolver s = pair(few, rest_overlap(few.pair_stiffness(), cohesion_force()));
     const double friction = -force_while_moving(s, {0, speed, 0}).y();
     worst.add(friction / limit, std::tanh(few.options.friction_velocity_scale * speed), 0.0, brief(speed) + " m/s");
   }

@@ -44,7 +44,7 @@ std::vector<Vec3> forces_along(const testing::Surface& surface, const std::funct
   for (Vec3& x : start.position) x += kPlace;
   s.surfaces().attach(surface.mesh, {}, k, start);
   s.surfaces().move_to(0.0);
-  const double plane = k.stiffness * std::pow(kOverlap, 1.5);
+  const double plane = few.floor_stiffness() * std::pow(kOverlap, 1.5);
   std::vector<Vec3> forces;
   for (int step = 0; step < steps; ++step) {
     // Towards the path and not along it: errors of the last step are made good.

@@ -107,7 +107,7 @@ TEST(HertzTanhLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
       const double load = mass_of(few) * few.gravity * std::cos(angle);
       const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));  // +x runs downhill
       const Vec3 foot(0.2, 0.0, 0.3);
-      const double rest = kRadius - std::pow(load / k.stiffness, 2.0 / 3.0);
+      const double rest = kRadius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
       terrain::dem::GrainSolver s = few.make({terrain::dem::quad(foot + turn * Vec3(0.0, 0.0, rest))});
       testing::Surface slope = testing::sheet(-0.0931, -0.0172, 0.02, 20, 2, [](double, double) { return 0.0; });
       for (Vec3& x : slope.vertex) x = foot + turn * x;
@@ -138,7 +138,7 @@ TEST(HertzTanhLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
   const double speed = 0.4, c = few.options.friction_velocity_scale;
   const double load = mass_of(few) * few.gravity;
   terrain::dem::GrainSolver s =
-      few.make({{0.1, 0, kRadius - std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0)}});
+      few.make({{0.1, 0, kRadius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0)}});
   terrain::dem::set_velocity(s, 0, {speed, 0, 0});
   // The arm is r − δ; δ/r is 1.3e-3.
   Worst path("hertz_tanh, sliding sphere", "speed along the way", 1e-3, "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");

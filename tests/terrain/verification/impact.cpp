@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Coefficients of the contact equations, from the cited formulas and not from terrain/dem/contact_mixing.cpp.
+/// Coefficients of the contact equations, from the cited formulas and not from terrain/dem/contact/mindlin_law.hpp.
 struct Law {
   double radius, mass, inertia;
   double stiffness, damping, shear_stiffness, shear_damping, friction;
@@ -83,12 +83,12 @@ terrain::dem::ContactCoefficients solver_coefficients(const ImpactCase& c) {
   partner.young_modulus = c.partner.young, partner.poisson_ratio = c.partner.poisson;
   sphere.friction = partner.friction = c.friction;
   sphere.restitution = partner.restitution = c.restitution;
-  terrain::dem::ContactCoefficients k = terrain::dem::mix(sphere, partner, terrain::dem::Partner::surface, grain, {});
+  auto k = terrain::dem::mix(sphere, partner, terrain::dem::Partner::surface, grain, {}).of<terrain::dem::MindlinLaw>();
   // The engine's surfaces are flat; a round partner is one with another R*.
   const double share = 1.0 / (1.0 + c.radius / c.partner_radius);
   k.stiffness *= std::sqrt(share), k.shear_stiffness *= std::sqrt(share);
   k.damping *= std::pow(share, 0.25), k.shear_damping *= std::pow(share, 0.25);
-  return k;
+  return terrain::dem::ContactCoefficients(k);
 }
 
 using terrain::dem::quad;
@@ -139,7 +139,7 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   solver.grains().velocity[0] = terrain::dem::quad(turn * Vec3(before.tangential, 0.0, -before.normal));
   solver.grains().spin[0] = terrain::dem::quad(turn * Vec3(0.0, before.spin, 0.0));
 
-  const double hertz = hertz_impact(k.stiffness, params.grain.mass, before.normal).duration;
+  const double hertz = hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, params.grain.mass, before.normal).duration;
   const double dt = hertz / steps;
   Rebound out;
   double speed = -before.normal;

@@ -59,7 +59,7 @@ using Watch = std::function<void(double, double, double)>;
 Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground ground, int steps,
                       const Watch& watch = {});
 
-/// Runge–Kutta integration of the equations above with the law of Eqs. (2), (3) of contact_law.hpp.
+/// Runge–Kutta integration of the equations above with the law of Eqs. (2), (3) of mindlin_law.hpp.
 Rebound integrated_impact(const ImpactCase& impact, const Motion& before);
 
 /// Frictionless elastic impact [Hertz 1882; Johnson 1985, Contact Mechanics, § 11.4].

@@ -38,7 +38,9 @@ terrain::dem::GrainSolver column(EngineGrains& few) {
                       0.0064 + 0.0125 * k + any(), 0.0});
   terrain::dem::GrainSolver s = few.make(at);
   terrain::dem::SolverCoefficients k = few.coefficients();
-  k.side.friction = k.side.rolling_arm = 0.0;
+  EngineGrains smooth = few;
+  smooth.options.friction = smooth.options.rolling_friction = 0.0;
+  k.side = smooth.coefficients().side;
   s.set_coefficients(k);
   return s;
 }

@@ -39,7 +39,7 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
   const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
   constexpr int kGrains = 9;
   const double weight = kGrains * mass * kStandardGravity, speed = 0.5, dt = 2e-5, height = 0.05;
-  const double rest = kRadius - std::pow(weight / kGrains / k.stiffness, 2.0 / 3.0);
+  const double rest = kRadius - std::pow(weight / kGrains / few.floor_stiffness(), 2.0 / 3.0);
   std::vector<terrain::dem::Quad> at;
   for (int n = 0; n < kGrains; ++n)
     at.push_back({0.1 + 0.0153 * (n % 3), 0.0153 * (n / 3) - 0.0147, height + rest, 0.0});
@@ -79,7 +79,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   const Vec3 foot(0.1, 0.0, 0.3), down = turn * Vec3::UnitX(), up = turn * Vec3::UnitZ();
   const double load = mass * few.gravity * std::cos(angle);
-  const double overlap = std::pow(load / k.stiffness, 2.0 / 3.0), arm = kRadius - overlap;
+  const double overlap = std::pow(load / few.floor_stiffness(), 2.0 / 3.0), arm = kRadius - overlap;
   terrain::dem::GrainSolver s = few.make({terrain::dem::quad(foot + arm * up)});
   attach(s, plane_at(foot, turn), k);
   // Rolling without slip on the arm r − δ: a = g sin α / (1 + I/(m arm²)), F_t = m g sin α − m a.
@@ -127,7 +127,7 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
       s.step(dt);
       const Vec3 force = mass / dt * (terrain::dem::velocity(s, 0) - way);
       if (step % 50 != 0) continue;
-      const double spring = k.shear_stiffness * std::sqrt(overlap) * step * dt * way.norm();
+      const double spring = k.of<terrain::dem::MindlinLaw>().shear_stiffness * std::sqrt(overlap) * step * dt * way.norm();
       worst.add(-force.dot(way) / way.norm(), spring, 0.0, brief(step * dt * speed) + " m");
     }
   }

@@ -42,8 +42,8 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
         std::vector<double> overlap(kCount);
         for (int n = 0; n < kCount; ++n) {
-          const terrain::dem::ContactCoefficients& c = n == 0 ? k.floor : k.pair;
-          overlap[n] = std::pow(((kCount - n) * weight + c.cohesion_force) / c.stiffness, 2.0 / 3.0);
+          const double stiffness = n == 0 ? few.floor_stiffness() : few.pair_stiffness();
+          overlap[n] = std::pow(((kCount - n) * weight + M_PI * kRadius * kRadius * cohesion) / stiffness, 2.0 / 3.0);
         }
         std::vector<terrain::dem::Quad> at;
         double z = bottom + kRadius;
@@ -103,7 +103,7 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
   Worst share("tetrahedron, mindlin", "overlap of a lower grain with the floor, m", 1e-4, "K delta^1.5 = 4/3 m g");
   for (int n = 0; n < 3; ++n)
     share.add(kRadius - terrain::dem::position(s, n).z(),
-              std::pow(4.0 / 3.0 * weight / few.coefficients().floor.stiffness, 2.0 / 3.0));
+              std::pow(4.0 / 3.0 * weight / few.floor_stiffness(), 2.0 / 3.0));
   EXPECT_LT(std::hypot(terrain::dem::position(s, 3).x() - 0.3, terrain::dem::position(s, 3).y()), 1e-6);
   EXPECT_LT(s.accounts().kinetic, 1e-14);
 }

@@ -1,0 +1,58 @@
+// From materials to the coefficients of a contact, and the step that a bed of such contacts allows.
+#pragma once
+
+#include <string>
+
+#include "protocol/core/surface.hpp"
+#include "terrain/dem/contact/laws.hpp"
+#include "terrain/dem/dem_options.hpp"
+
+namespace furrow::terrain::dem {
+
+/// A grain.
+struct GrainProperties {
+  double radius = 0.0;   // m
+  double mass = 0.0;     // kg
+  double inertia = 0.0;  // 2/5 m r², kg m²
+};
+GrainProperties grain_properties(double radius, double density);
+
+/// The grains' own material as options state it.
+ContactMaterial grain_material(const DemOptions& options);
+
+enum class Partner { grain, surface };  // surface: wall or tire, flat; of infinite mass, or of its area density
+
+/// A grain and its partner, as laws mix them.
+struct MixedPair {
+  const ContactMaterial &a, &b;
+  double radius;          // r of the grain, m
+  double reduced_radius;  // R* = r/2 or r, m
+  double mass;            // m*, 1/m* = Σ 1/m, kg
+  double slide_mass;      // with which surfaces resist sliding, kg
+  double inertia;         // I*, kg m²
+
+  /// F_c = π r² min(c_t), N.
+  double cohesion_force() const;
+};
+
+/// Of a tire counts its area density × 2√3 r²: a damper made for the grain's mass alone would, felt one step late,
+/// throw the lighter tire back and forth. For other sizes see size_scale.hpp.
+/// @pre radius and mass of the grain are positive, and options.step where the law needs it
+ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& other, Partner partner,
+                        const GrainProperties& properties, const DemOptions& options);
+
+/// Mass of the grain over that of the piece of surface its contact moves, -; 0 for a wall.
+double mass_share(const GrainProperties& grain, const ContactMaterial& surface);
+
+/// For a bed whose contacts have overlap `overlap` and six neighbours per grain. @pre overlap, mass > 0
+StableStep stable_step(const ContactCoefficients& pair, const GrainProperties& grain, const DemOptions& options,
+                       double overlap);
+
+/// @param index of the surface, for the message
+/// @throws Error(bad_input) naming the first value with which the law has no force that is finite and resists
+void check_material(const ContactMaterial& material, LawKind law, int index);
+
+/// Overlap as a share of the radius at which scenarios are checked: 5 % of the diameter, reached under a tire.
+inline constexpr double kStatedOverlap = 0.10;
+
+}  // namespace furrow::terrain::dem

@@ -1,0 +1,53 @@
+// How the sizes of two grains change R*, m* and I* of their contact.
+//
+// Coefficients are mixed for grains of a reference radius r₀; a contact of other sizes has the same materials, so that
+// each coefficient of a law follows from its reference by a power law of these ratios.
+#pragma once
+
+#include "protocol/core/triple.hpp"
+
+namespace furrow::terrain::dem {
+
+/// Of a radius in reference radii: the volume and mass in those of the reference grain.
+template <class T>
+inline T cube(T a) {
+  return a * a * a;
+}
+
+/// Of a contact against the reference contact, all -.
+template <class T>
+struct SizeScale {
+  T radius;      // R*/R₀*
+  T mass;        // m*/m₀*
+  T slide_mass;  // of the mass that resists sliding
+  T inertia;     // I*/I₀*
+  T smaller;     // smaller radius / r₀
+};
+
+/// Two grains with radii a r₀ and b r₀. The same bits for (b, a).
+template <class T>
+inline SizeScale<T> pair_scale(T a, T b) {
+  const T two = simd::constant<T>(2.0);
+  const T product = a * b, a3 = cube(a), b3 = cube(b);
+  SizeScale<T> s;
+  s.radius = two * product / (a + b);
+  s.mass = s.slide_mass = two * cube(product) / (a3 + b3);
+  s.inertia = two * (cube(product) * product * product) / (a3 * a * a + b3 * b * b);
+  s.smaller = simd::smaller(a, b);
+  return s;
+}
+
+/// A grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of surface
+/// it moves, 0 for a wall; that piece grows as r². @pre a > 0, share ≥ 0
+template <class T>
+inline SizeScale<T> surface_scale(T a, double share) {
+  using simd::constant;
+  const T light = constant<T>(share) / (a * a), heavy = constant<T>(1.0) / cube(a);
+  return {.radius = a,
+          .mass = constant<T>(1.0 + share) / (heavy + light),
+          .slide_mass = constant<T>(3.5 + share) / (constant<T>(3.5) * heavy + light),
+          .inertia = cube(a) * a * a,
+          .smaller = a};
+}
+
+}  // namespace furrow::terrain::dem

@@ -163,12 +163,6 @@ void refuse_both(const json& object, const char* one, const char* other, const R
 
 }  // namespace
 
-std::vector<Field> drawbar_fields() {
-  std::vector<Field> fields = fields_of<DrawbarRigOptions>();
-  fields.push_back({"wheels", "", role::key});
-  return fields;
-}
-
 std::unique_ptr<RigSpec> read_drawbar(const json& section, const ReadContext& context) {
   DrawbarRigOptions common;
   read_fields(section, common);

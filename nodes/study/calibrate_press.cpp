@@ -289,7 +289,7 @@ class PressModel final : public CalibrationModel {
                                               number_text(kMostPressure)));
         target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
         for (const scenario::Problem& odd :
-             scenario::Schema::load().unusual({{"tire", {{"pressure", *press.pressure}}}}))
+             scenario::Schema::of_scenarios().unusual({{"tire", {{"pressure", *press.pressure}}}}))
           notes_.emplace_back(input_error(study.string(), reader.full("pressure"), odd.what).what());
       }
       reader.finish();

@@ -43,12 +43,6 @@ class Draw {
 }  // namespace
 
 void check_sizes(const DemOptions& o) {
-  if (o.size_distribution != "uniform" && o.size_distribution != "normal")
-    throw input_error(o.scenario, "terrain.size_distribution",
-                      "'" + o.size_distribution + "' is unknown, expected uniform or normal");
-  if (!(o.size_spread >= 0.0 && o.size_spread <= kWidestSpread))
-    throw input_error(o.scenario, "terrain.size_spread",
-                      fmt::format("{} is out of range, expected 0 to {}", o.size_spread, kWidestSpread));
   if (o.size_spread > 0.0 && o.law != "mindlin")
     throw input_error(o.scenario, "terrain.size_spread",
                       fmt::format("is {} with law '{}', whose stiffness is stated for one size, expected law "

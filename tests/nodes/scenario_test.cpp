@@ -93,17 +93,6 @@ TEST(Scenario, digest_depends_on_what_decides_the_results_alone) {
   EXPECT_NE(file.load({{"run.seed", "2"}}).digest, digest);
 }
 
-TEST(Scenario, former_name_of_the_contact_law_means_the_same_and_gives_the_same_digest) {
-  const testing::ScenarioFile file(testing::kSmallest);
-  const scenario::Scenario former = file.load({{"terrain.law", "coulomb"}}),
-                           present = file.load({{"terrain.law", "hertz_tanh"}});
-  EXPECT_EQ(former.terrain->describe().law, "hertz_tanh");
-  EXPECT_EQ(former.completed, present.completed);
-  EXPECT_EQ(former.digest, present.digest);
-  const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"law": "coulomb"}})");
-  EXPECT_EQ(file.load({{"terrain.material", '"' + soil.path().string() + '"'}}).terrain->describe().law, "hertz_tanh");
-}
-
 TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
   const testing::ScenarioFile file(testing::kSmallest);
   const double radius = 0.4673;  // m, of the tire
@@ -416,7 +405,7 @@ TEST(Scenario, of_very_many_mistakes_the_first_are_told) {
 }
 
 TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
-  const scenario::Schema schema = scenario::Schema::load();
+  const scenario::Schema& schema = scenario::Schema::of_scenarios();
   std::set<std::string> unique;
   for (const std::string& key : schema.keys()) {
     EXPECT_NE(schema.find(key), nullptr) << key;
@@ -430,7 +419,7 @@ TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
 
 TEST(Schema, defaults_obey_the_schema) {
   nlohmann::json document = nlohmann::json::parse(testing::kSmallest);
-  const scenario::Schema schema = scenario::Schema::load();
+  const scenario::Schema& schema = scenario::Schema::of_scenarios();
   schema.fill_defaults(document);
   schema.normalize(document);
   EXPECT_TRUE(schema.problems(document).empty());

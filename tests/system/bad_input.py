@@ -127,7 +127,7 @@ SCENARIOS = [
      "key 'terrain.material': 'moon.json' does not exist, expected a file at one of"),
     ("spread_too_wide", text(terrain={"size_spread": 0.9}), [],
      "key 'terrain.size_spread': is 0.9, expected a number, 0 to 0.6"),
-    ("spread_with_hertz_tanh", text(terrain={"size_spread": 0.2, "law": "coulomb"}),
+    ("spread_with_hertz_tanh", text(terrain={"size_spread": 0.2, "law": "hertz_tanh"}),
      [], "key 'terrain.size_spread': is 0.2 with law 'hertz_tanh'"),
     ("missing_bed", text(terrain={"bed": "bed.h5"}), [], "key 'terrain.bed': 'bed.h5' does not exist"),
     ("not_a_number", json.dumps(SMALL).replace("0.3", "NaN", 1), [], "is not valid JSON"),

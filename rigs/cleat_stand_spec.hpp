@@ -7,7 +7,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/files/read_context.hpp"
+#include "rigs/rig_keys.hpp"
 #include "rigs/rig_spec.hpp"
 
 namespace furrow::rigs {
@@ -28,17 +30,21 @@ struct CleatStandOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<CleatStandOptions> auto& s) {
-  visit(Field{"speed", "m/s", role::key}, s.speed);
-  visit(Field{"ramp", "s", role::key}, s.ramp);
-  visit(Field{"move_from", "s", role::key}, s.move_from);
-  visit(Field{"hold_axle_from", "s", role::key}, s.hold_axle_from);
-  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
-  visit(Field{"start", "m", role::key}, s.start);
-  visit(Field{"load", "N", role::key}, s.load);
-  visit(Field{"carrier_mass", "kg", role::key}, s.carrier_mass);
-  visit(Field{"rim_mass", "kg", role::key}, s.rim_mass);
-  visit(Field{"rim_spin_inertia", "kg m²", role::key}, s.rim_spin_inertia);
-  visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
+  using namespace allowed;
+  visit(keys::kSpeed, s.speed);
+  visit(keys::kRamp, s.ramp);
+  visit(keys::kMoveFrom, s.move_from);
+  visit(key("hold_axle_from", "s", from(0, 1e5),
+            "Until then the damper lets the wheel of a cleat test stand down; from then on a stop holds its axle at "
+            "the height where it stands on its load."),
+        s.hold_axle_from);
+  visit(keys::kLoweringSpeed, s.lowering_speed);
+  visit(keys::kStart, s.start);
+  visit(keys::kLoad, s.load);
+  visit(keys::kCarrierMass, s.carrier_mass);
+  visit(keys::kRimMass, s.rim_mass);
+  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
+  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
 }
 
 /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key

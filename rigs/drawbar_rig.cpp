@@ -9,6 +9,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/key_schema.hpp"
 #include "rigs/assembled_rig.hpp"
 #include "vehicle/multibody/system.hpp"
 
@@ -18,37 +19,19 @@ namespace {
 // Chassis and set-toe rotate only as imposed, so their inertia has no effect on any result either.
 constexpr double kRidingInertia = 1.0;  // kg m²
 
-void require(bool ok, const std::string& key, const std::string& what) {
-  if (!ok) throw input_error("scenario", "rig." + key, what);
-}
-
 void validate(const DrawbarRigOptions& o) {
-  require(o.mode == "fixed_angular_speed" || o.mode == "fixed_speed" || o.mode == "free_rolling", "mode",
-          "unknown mode '" + o.mode + "'; expected fixed_angular_speed, fixed_speed or free_rolling");
-  require(std::isfinite(o.slip), "slip", "must be finite");
-  require(o.mode != "fixed_speed" || o.slip < 1.0, "slip", "must be below 1 in mode fixed_speed");
-  require(std::isfinite(o.angular_speed) && std::isfinite(o.speed), "angular_speed", "speeds must be finite");
-  require(o.ramp >= 0.0 && std::isfinite(o.ramp), "ramp", "must be 0 or a positive time in s");
-  require(o.move_from >= 0.0 && std::isfinite(o.move_from), "move_from", "must not be negative");
-  require(o.touchdown_damping >= 0.0 && std::isfinite(o.touchdown_damping), "touchdown_damping",
-          "must not be negative");
-  require(o.touchdown_time >= 0.0, "touchdown_time", "must not be negative");
-  require(std::abs(o.toe_angle) < 0.5 * std::numbers::pi, "toe_angle", "must lie between -pi/2 and pi/2 rad");
-  require(o.toe_time >= 0.0 && std::isfinite(o.toe_time), "toe_time", "must not be negative");
-  require(o.toe_ramp > 0.0 && std::isfinite(o.toe_ramp), "toe_ramp", "must be positive");
-  require(std::abs(o.camber_angle) < 0.25 * std::numbers::pi, "camber_angle", "must lie between -pi/4 and pi/4 rad");
-  require(o.travel_sign == 1.0 || o.travel_sign == -1.0, "travel_sign", "must be 1 or -1");
-  require(std::isfinite(o.start), "start", "must be finite");
-  require(std::isfinite(o.lateral), "lateral", "must be finite");
-  const auto positive = [](double value, const char* key) {
-    require(value > 0.0 && std::isfinite(value), key, "must be positive");
-  };
-  positive(o.carrier_mass, "carrier_mass");
-  positive(o.chassis_mass, "chassis_mass");
-  positive(o.set_toe_mass, "set_toe_mass");
-  positive(o.rim_mass, "rim_mass");
-  positive(o.rim_spin_inertia, "rim_spin_inertia");
-  positive(o.rim_diametral_inertia, "rim_diametral_inertia");
+  check_values(o, "scenario", "rig");
+  if (o.mode == "fixed_speed" && !(o.slip < 1.0))
+    throw input_error("scenario", "rig.slip", "must be below 1 in mode fixed_speed");
+  const std::pair<const char*, double> masses[] = {{"carrier_mass", o.carrier_mass},
+                                                   {"rim_mass", o.rim_mass},
+                                                   {"rim_spin_inertia", o.rim_spin_inertia},
+                                                   {"rim_diametral_inertia", o.rim_diametral_inertia}};
+  for (const auto& [key, mass] : masses)
+    if (!(mass > 0.0))
+      throw input_error("scenario", std::string("rig.") + key, "is missing, expected a number above 0");
+  FURROW_ASSERT(std::abs(o.travel_sign) == 1.0, o.travel_sign);
+  FURROW_ASSERT(o.touchdown_damping >= 0.0 && o.touchdown_time >= 0.0, o.touchdown_damping, o.touchdown_time);
 }
 
 /// What the rig measures with its longitudinal drive and its damper: columns of the wheel's table.

@@ -7,7 +7,9 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "rigs/rig.hpp"
+#include "rigs/rig_keys.hpp"
 
 namespace furrow::rigs {
 
@@ -45,29 +47,53 @@ struct DrawbarRigOptions {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
-  visit(Field{"mode", "", role::key}, s.mode);
-  visit(Field{"slip", "-", role::key}, s.slip);
-  visit(Field{"angular_speed", "rad/s", role::key}, s.angular_speed);
-  visit(Field{"speed", "m/s", role::key}, s.speed);
-  visit(Field{"ramp", "s", role::key}, s.ramp);
-  visit(Field{"move_from", "s", role::key}, s.move_from);
-  visit(Field{"touchdown_damping", "N s/m", role::key}, s.touchdown_damping);
-  visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
-  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
-  visit(Field{"toe_angle", "rad", role::key}, s.toe_angle);
-  visit(Field{"toe_time", "s", role::key}, s.toe_time);
-  visit(Field{"toe_ramp", "s", role::key}, s.toe_ramp);
-  visit(Field{"camber_angle", "rad", role::key}, s.camber_angle);
-  visit(Field{"travel_sign", "", role::key}, s.travel_sign);
-  visit(Field{"start", "m", role::key}, s.start);
+  using namespace allowed;
+  visit(key("mode", "", words("fixed_angular_speed fixed_speed free_rolling"),
+            "What is imposed. fixed_angular_speed: the carriage moves at v = angular_speed · R · (1 − slip). "
+            "fixed_speed: the wheel turns at ω = speed / (R · (1 − slip)). free_rolling: the speed is imposed, and "
+            "there is no spindle torque."),
+        s.mode);
+  visit(key("slip", "-", from(-10, 1),
+            "Slip 1 − v/(ω R), R the undeformed tire radius. It is below 1 in mode fixed_speed. A braking slip of −0.2 "
+            "by the definition ω R/v − 1 is −0.25 here."),
+        s.slip);
+  visit(key("angular_speed", "rad/s", from(0, 1000).usual(0.1, 100), "Spin of the wheel, mode fixed_angular_speed."),
+        s.angular_speed);
+  visit(keys::kSpeed, s.speed);
+  visit(keys::kRamp, s.ramp);
+  visit(keys::kMoveFrom, s.move_from);
+  visit(key("touchdown_damping", "N s/m", from(0, 1e7).or_null(),
+            "Coefficient of the vertical damper on the slider while the tire touches down. null: the load over "
+            "lowering_speed."),
+        s.touchdown_damping);
+  visit(keys::kTouchdownTime, s.touchdown_time);
+  visit(keys::kLoweringSpeed, s.lowering_speed);
+  visit(key("toe_angle", "rad", from(-1.5, 1.5).usual(-0.5, 0.5), "Angle between wheel plane and travel, about +z."),
+        s.toe_angle);
+  visit(key("toe_time", "s", from(0, 1e5),
+            "When the wheel turns from straight ahead to toe_angle: a step of the slip angle. 0: it has toe_angle from "
+            "the start."),
+        s.toe_time);
+  visit(key("toe_ramp", "s", above(0).to(1e4), "How long the turn at toe_time takes; it is smooth."), s.toe_ramp);
+  visit(key("camber_angle", "rad", from(-0.7, 0.7).usual(-0.3, 0.3),
+            "Inclination of the wheel about its forward axis. A positive one leans the top to the right of travel."),
+        s.camber_angle);
+  visit(key("travel_sign", "", shaped(R"({"type": "integer", "enum": [1, -1]})"),
+            "Direction of travel. 1: along +x. -1: along −x."),
+        s.travel_sign);
+  visit(keys::kStart, s.start);
   visit(Field{"lateral", "m"}, s.lateral);
-  visit(Field{"load", "N", role::key}, s.load);
-  visit(Field{"carrier_mass", "kg", role::key}, s.carrier_mass);
-  visit(Field{"chassis_mass", "kg", role::key}, s.chassis_mass);
-  visit(Field{"set_toe_mass", "kg", role::key}, s.set_toe_mass);
-  visit(Field{"rim_mass", "kg", role::key}, s.rim_mass);
-  visit(Field{"rim_spin_inertia", "kg m²", role::key}, s.rim_spin_inertia);
-  visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
+  visit(keys::kLoad, s.load);
+  visit(keys::kCarrierMass, s.carrier_mass);
+  visit(
+      key("chassis_mass", "kg", above(0).to(1e6), "Mass that the rail carries, not the soil: the chassis of the rig."),
+      s.chassis_mass);
+  visit(key("set_toe_mass", "kg", above(0).to(1e6),
+            "Mass that the rail carries, not the soil: the part that sets the toe angle."),
+        s.set_toe_mass);
+  visit(keys::kRimMass, s.rim_mass);
+  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
+  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
 }
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options);

@@ -151,12 +151,6 @@ class DrawbarSpec final : public RigSpec {
 
 }  // namespace
 
-std::vector<Field> drawbar_fields() {
-  std::vector<Field> fields = fields_of<DrawbarRigOptions>();
-  fields.push_back({"wheels", "", role::key});
-  return fields;
-}
-
 std::unique_ptr<RigSpec> read_drawbar(const json& section, const ReadContext& context) {
   DrawbarRigOptions common;
   read_fields(section, common);

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <type_traits>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/key.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "rigs/drawbar_rig.hpp"
@@ -13,22 +17,50 @@ namespace furrow::rigs {
 
 /// One of several wheels: what its entry of `rig.wheels` says, and for the rest what the rig says.
 struct DrawbarWheel {
+  static constexpr SchemaName kSchema{"wheel",
+                                      "One of several wheels, each on a rig of its own over the same terrain."};
   DrawbarRigOptions rig;
 };
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<DrawbarWheel> auto& s) {
-  visit(Field{"lateral", "m", role::key}, s.rig.lateral);
-  visit(Field{"start", "m", role::key}, s.rig.start);
-  visit(Field{"slip", "-", role::key}, s.rig.slip);
-  visit(Field{"toe_angle", "rad", role::key}, s.rig.toe_angle);
-  visit(Field{"camber_angle", "rad", role::key}, s.rig.camber_angle);
-  visit(Field{"load", "N", role::key}, s.rig.load);
-  visit(Field{"carrier_mass", "kg", role::key}, s.rig.carrier_mass);
+  using namespace allowed;
+  visit(key("lateral", "m", from(-1e3, 1e3), "Place along y of the wheel's mid-plane. The bin's is y = 0."),
+        s.rig.lateral);
+  visit(key("start", "m", from(-1e6, 1e6).or_null(), "Place along x of the axle at t = 0. null: as rig.start."),
+        s.rig.start);
+  visit(key("slip", "-", from(-10, 1).or_null(), "Slip of this wheel. null: as rig.slip."), s.rig.slip);
+  visit(key("toe_angle", "rad", from(-1.5, 1.5).usual(-0.5, 0.5).or_null(),
+            "Toe angle of this wheel. null: as rig.toe_angle."),
+        s.rig.toe_angle);
+  visit(key("camber_angle", "rad", from(-0.7, 0.7).usual(-0.3, 0.3).or_null(),
+            "Camber angle of this wheel. null: as rig.camber_angle."),
+        s.rig.camber_angle);
+  visit(key("load", "N", above(0).to(1e7).usual(1, 200000).or_null(),
+            "Load of this wheel. null: as the rig states, unless carrier_mass is given here."),
+        s.rig.load);
+  visit(key("carrier_mass", "kg", above(0).to(1e6).usual(0.1, 20000).or_null(),
+            "Carrier mass of this wheel. null: as the rig states, unless load is given here."),
+        s.rig.carrier_mass);
 }
 
-/// Those of DrawbarRigOptions, and the list `wheels`.
-std::vector<Field> drawbar_fields();
+/// The keys of the section: those of every wheel, and the list of what single wheels have otherwise.
+struct DrawbarKeys : DrawbarRigOptions {
+  nlohmann::json wheels = nlohmann::json::array();  // each with the keys of DrawbarWheel
+};
+
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<DrawbarKeys> auto& s) {
+  using namespace allowed;
+  using Base = std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(s)>>, const DrawbarRigOptions,
+                                  DrawbarRigOptions>;
+  visit_fields(visit, static_cast<Base&>(s));
+  visit(key("wheels", "",
+            shaped(R"({"type": "array", "minItems": 0, "maxItems": 64, "items": {"$ref": "#/definitions/wheel"}})"),
+            "Several wheels side by side or one behind the other, one entry each. A key that an entry leaves out has "
+            "the value of the section. Empty: one wheel."),
+        s.wheels);
+}
 
 /// @throws Error(bad_input) naming file and key
 std::unique_ptr<RigSpec> read_drawbar(const nlohmann::json& section, const ReadContext& context);

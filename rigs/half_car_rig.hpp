@@ -14,7 +14,9 @@
 
 #include "protocol/core/column.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "rigs/rig.hpp"
+#include "rigs/rig_keys.hpp"
 
 namespace furrow::rigs {
 
@@ -42,25 +44,40 @@ struct HalfCarOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<HalfCarOptions> auto& s) {
-  visit(Field{"speed", "m/s", role::key}, s.speed);
-  visit(Field{"ramp", "s", role::key}, s.ramp);
-  visit(Field{"move_from", "s", role::key}, s.move_from);
-  visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
-  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
-  visit(Field{"start", "m", role::key}, s.start);
-  visit(Field{"wheelbase", "m", role::key}, s.wheelbase);
-  visit(Field{"front_share", "-", role::key}, s.front_share);
-  visit(Field{"load", "N", role::key}, s.load);
-  visit(Field{"body_mass", "kg", role::key}, s.body_mass);
-  visit(Field{"pitch_inertia", "kg m²", role::key}, s.pitch_inertia);
-  visit(Field{"unsprung_mass", "kg", role::key}, s.unsprung_mass);
-  visit(Field{"suspension_stiffness", "N/m", role::key}, s.suspension_stiffness);
-  visit(Field{"suspension_damping", "N s/m", role::key}, s.suspension_damping);
-  visit(Field{"rear_suspension_stiffness", "N/m", role::key}, s.rear_suspension_stiffness);
-  visit(Field{"rear_suspension_damping", "N s/m", role::key}, s.rear_suspension_damping);
-  visit(Field{"rim_mass", "kg", role::key}, s.rim_mass);
-  visit(Field{"rim_spin_inertia", "kg m²", role::key}, s.rim_spin_inertia);
-  visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
+  using namespace allowed;
+  visit(keys::kSpeed, s.speed);
+  visit(keys::kRamp, s.ramp);
+  visit(keys::kMoveFrom, s.move_from);
+  visit(keys::kTouchdownTime, s.touchdown_time);
+  visit(keys::kLoweringSpeed, s.lowering_speed);
+  visit(keys::kStart, s.start);
+  visit(key("wheelbase", "m", above(0).to(1e3).usual(0.1, 20),
+            "Distance of the rear axle of a half car behind its front axle."),
+        s.wheelbase);
+  visit(key("front_share", "-", above(0).below(1).usual(0.2, 0.8),
+            "Share of a half car's body weight on its front wheel at rest: distance of the rear axle from the body's "
+            "centre over the wheelbase."),
+        s.front_share);
+  visit(keys::kLoad, s.load);
+  visit(keys::kBodyMass, s.body_mass);
+  visit(key("pitch_inertia", "kg m²", above(0).to(1e8).usual(0.1, 1e5).or_null(),
+            "Moment of inertia of a half car's body about the lateral axis through its centre. null: body_mass times "
+            "the distances of both axles from the centre, by which front and rear do not feel each other."),
+        s.pitch_inertia);
+  visit(keys::kUnsprungMass, s.unsprung_mass);
+  visit(keys::kSuspensionStiffness, s.suspension_stiffness);
+  visit(keys::kSuspensionDamping, s.suspension_damping);
+  visit(key("rear_suspension_stiffness", "N/m", from(0, 1e9).usual(10, 1e6).or_null(),
+            "Spring between body and rear wheel of a half car. null: suspension_stiffness in proportion to the body "
+            "weights that the wheels bear."),
+        s.rear_suspension_stiffness);
+  visit(key("rear_suspension_damping", "N s/m", from(0, 1e8).usual(0.1, 1e5).or_null(),
+            "Damper between body and rear wheel of a half car. null: suspension_damping in proportion to the body "
+            "weights that the wheels bear."),
+        s.rear_suspension_damping);
+  visit(keys::kRimMass, s.rim_mass);
+  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
+  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
 }
 
 /// The body's own table (subject `body`).

@@ -9,7 +9,9 @@
 #include <memory>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "rigs/rig.hpp"
+#include "rigs/rig_keys.hpp"
 
 namespace furrow::rigs {
 
@@ -32,20 +34,20 @@ struct QuarterCarOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<QuarterCarOptions> auto& s) {
-  visit(Field{"speed", "m/s", role::key}, s.speed);
-  visit(Field{"ramp", "s", role::key}, s.ramp);
-  visit(Field{"move_from", "s", role::key}, s.move_from);
-  visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
-  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
-  visit(Field{"start", "m", role::key}, s.start);
-  visit(Field{"load", "N", role::key}, s.load);
-  visit(Field{"body_mass", "kg", role::key}, s.body_mass);
-  visit(Field{"unsprung_mass", "kg", role::key}, s.unsprung_mass);
-  visit(Field{"suspension_stiffness", "N/m", role::key}, s.suspension_stiffness);
-  visit(Field{"suspension_damping", "N s/m", role::key}, s.suspension_damping);
-  visit(Field{"rim_mass", "kg", role::key}, s.rim_mass);
-  visit(Field{"rim_spin_inertia", "kg m²", role::key}, s.rim_spin_inertia);
-  visit(Field{"rim_diametral_inertia", "kg m²", role::key}, s.rim_diametral_inertia);
+  visit(keys::kSpeed, s.speed);
+  visit(keys::kRamp, s.ramp);
+  visit(keys::kMoveFrom, s.move_from);
+  visit(keys::kTouchdownTime, s.touchdown_time);
+  visit(keys::kLoweringSpeed, s.lowering_speed);
+  visit(keys::kStart, s.start);
+  visit(keys::kLoad, s.load);
+  visit(keys::kBodyMass, s.body_mass);
+  visit(keys::kUnsprungMass, s.unsprung_mass);
+  visit(keys::kSuspensionStiffness, s.suspension_stiffness);
+  visit(keys::kSuspensionDamping, s.suspension_damping);
+  visit(keys::kRimMass, s.rim_mass);
+  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
+  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
 }
 
 /// @pre every option is given

@@ -16,11 +16,14 @@ namespace furrow::rigs {
 namespace {
 
 constexpr auto kKinds = std::to_array<RigKind>({
-    {"cleat_stand", key_list<CleatStandOptions>(), read_cleat_stand},
-    {"drawbar", {drawbar_fields, changed_fields<DrawbarRigOptions>}, read_drawbar},
-    {"half_car", key_list<HalfCarOptions>(), read_half_car},
-    {"quarter_car", key_list<QuarterCarOptions>(), read_quarter_car},
-    {"vehicle", key_list<VehicleRigOptions>(), read_vehicle_rig, tires_of_vehicle},
+    {"cleat_stand", "rolls one tire freely along x, lets it down on its load and then holds its axle at that height",
+     key_list<CleatStandOptions>(), read_cleat_stand},
+    {"drawbar", "pulls one tire along x at imposed speed and slip", key_list<DrawbarKeys>(), read_drawbar},
+    {"half_car", "a quarter car whose body pitches on two wheels behind each other", key_list<HalfCarOptions>(),
+     read_half_car},
+    {"quarter_car", "carries a body over a freely rolling wheel on a spring and a damper, along x at imposed speed",
+     key_list<QuarterCarOptions>(), read_quarter_car},
+    {"vehicle", "a whole vehicle with a driver", key_list<VehicleRigOptions>(), read_vehicle_rig, tires_of_vehicle},
 });
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/read_context.hpp"
 #include "rigs/rig_spec.hpp"
@@ -23,13 +24,20 @@ struct RigOptions {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RigOptions> auto& s) {
-  visit(Field{"type", "", role::key}, s.type);
-  visit(Field{"substeps", "", role::key}, s.substeps);
-  visit(Field{"drop_height", "m", role::key}, s.drop_height);
+  using namespace allowed;
+  visit(key("type", "", "Kind of rig."), s.type);
+  visit(key("substeps", "", from(1, 1000), "Number of steps that the rig takes in one communication step."),
+        s.substeps);
+  visit(
+      key("drop_height", "m", from(0, 100),
+          "Height that the tires fall before they meet the ground, beyond the gap they start with. The damper of "
+          "touchdown_damping slows the fall unless that is 0. A vehicle falls freely unless lowering_speed is given."),
+      s.drop_height);
 }
 
 struct RigKind {
   const char* name;  // rig.type
+  const char* says;  // what it does, for the description of that key: "holds a wheel"
   KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
   std::unique_ptr<RigSpec> (*read)(const nlohmann::json& section, const ReadContext& context);

@@ -12,6 +12,7 @@ namespace furrow::terrain {
 
 struct TerrainEntry {
   const char* name;  // terrain.engine
+  const char* says;  // what its terrain is, for the description of that key: "hard ground"
   KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) for a file that does not exist
   std::unique_ptr<TerrainSpec> (*read)(const nlohmann::json& section, const ReadContext& context);

@@ -12,6 +12,7 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/core/rank_group.hpp"
 #include "terrain/terrain.hpp"
 
@@ -40,9 +41,15 @@ struct CommonOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<CommonOptions> auto& s) {
-  visit(Field{"engine", "", role::key}, s.engine);
-  visit(Field{"ranks", "-", role::key}, s.ranks);
-  visit(Field{"substeps", "-", role::key}, s.substeps);
+  using namespace allowed;
+  visit(key("engine", "", "Engine of the terrain."), s.engine);
+  visit(key("ranks", "", from(1, 4096),
+            "Number of MPI ranks of the terrain. Engine liggghts takes up to 4096, each with one core, and parts of "
+            "the bed at least three grains long. Engines dem, rigid and scm take one rank; only dem takes more than "
+            "one thread."),
+        s.ranks);
+  visit(key("substeps", "", from(1, 1000), "Number of steps that the terrain takes in one communication step."),
+        s.substeps);
 }
 
 /// A terrain ends at the walls of a bin: x from 0 to length, y from −width/2 to width/2.

@@ -22,10 +22,12 @@ namespace furrow::terrain {
 namespace {
 
 constexpr auto kTerrains = std::to_array<TerrainEntry>({
-    {"dem", key_list<dem::DemOptions>(), dem::read_dem_spec},
-    {"rigid", key_list<GroundOptions>(), read_ground_spec},
-    {"liggghts", key_list<liggghts::LiggghtsOptions>(), liggghts::read_liggghts_spec, liggghts::is_key_of_dem_only},
-    {"scm", key_list<scm::ScmOptions>(), scm::read_scm_spec},
+    {"dem", "soil made of grains", key_list<dem::DemOptions>(), dem::read_dem_spec},
+    {"rigid", "hard ground, the plane z = 0 or a profile", key_list<GroundOptions>(), read_ground_spec},
+    {"liggghts", "soil made of grains, in LIGGGHTS, on any number of ranks", key_list<liggghts::LiggghtsOptions>(),
+     liggghts::read_liggghts_spec, liggghts::is_key_of_dem_only},
+    {"scm", "empirical soil, described by the results of plate and shear tests", key_list<scm::ScmOptions>(),
+     scm::read_scm_spec},
 });
 
 /// "'dem' or 'rigid'", of the engines that `wanted` takes.
@@ -55,8 +57,6 @@ const TerrainEntry& find_terrain(const std::string& engine, const ReadContext& c
   const std::string names = names_of([](const TerrainEntry&) { return true; });
   throw input_error(context.file, context.key("engine"), "is '" + engine + "', expected " + names);
 }
-
-std::vector<Field> common_terrain_fields() { return fields_of<CommonOptions>(); }
 
 std::vector<std::string> engines_of_key(const std::string& key) {
   std::vector<std::string> engines;

@@ -13,6 +13,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/reader_fields.hpp"
 #include "tire/tire_file_chrono.hpp"
 #include "tire/tire_file_reader.hpp"
 #include "tire/tire_profile.hpp"
@@ -75,34 +76,14 @@ Section read_section(JsonReader reader, const std::vector<LayerMaterial>& materi
   return section;
 }
 
-std::vector<MaxwellBranch> read_prony(JsonReader& reader) {
-  std::vector<MaxwellBranch> branches;
-  if (!reader.has("prony")) return branches;
-  const json& rows = reader.array("prony");
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    JsonReader row(rows[i], reader.file(), reader.full(fmt::format("prony[{}]", i)));
-    if (branches.size() == kMaxBranches)
-      reader.fail("prony", fmt::format("has {} branches, expected at most {}", rows.size(), kMaxBranches));
-    branches.push_back({row.positive("relative_modulus"), row.positive("relaxation_time")});
-    row.finish();
-  }
-  return branches;
-}
-
 TireFile read_own(JsonReader& reader) {
   take_common_keys(reader);
   TireFile f;
   f.name = reader.text_or("name", "tire");
   reader.skip("template");
-  f.radius = length_of(reader, "radius");
-  f.rim_radius = length_of(reader, "rim_radius");
-  f.rim_width = length_of(reader, "rim_width");
-  f.pressure = reader.not_negative("pressure");
-  f.structural_damping = reader.not_negative("structural_damping");
-  f.prony = read_prony(reader);
-  f.tread_mass_per_area = reader.not_negative_or("tread_mass_per_area", 0.0);
-  f.elements_circumference = reader.count("elements_circumference", 8, kMaxAround);
-  f.contact = read_contact(reader.child("contact"));
+  read_keys(reader, f);
+  if (f.prony.size() > kMaxBranches)
+    reader.fail("prony", fmt::format("has {} branches, expected at most {}", f.prony.size(), kMaxBranches));
   JsonReader materials = reader.child("materials");
   for (const auto& [name, value] : materials.object().items())
     f.materials.push_back(read_material(materials.child(name), name));

@@ -3,11 +3,15 @@
 #pragma once
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 
 namespace furrow::tire {
 
 /// Negative: the file does not say.
 struct RimProperties {
+  static constexpr SchemaName kSchema{"rim",
+                                      "The rim that the tire is mounted on and what the wheel carries. A scenario that "
+                                      "states the keys of its rig does not need it."};
   double mass = -1.0;               // rim with spindle, without tire, kg
   double spin_inertia = -1.0;       // of the rim about its axle, without tire, kg m²
   double diametral_inertia = -1.0;  // of the rim about a diameter, without tire, kg m²
@@ -16,10 +20,20 @@ struct RimProperties {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RimProperties> auto& s) {
-  visit(Field{"mass", "kg"}, s.mass);
-  visit(Field{"spin_inertia", "kg m²"}, s.spin_inertia);
-  visit(Field{"diametral_inertia", "kg m²"}, s.diametral_inertia);
-  visit(Field{"carrier_mass", "kg"}, s.carrier_mass);
+  constexpr Allowed kPositive = allowed::above(0).optional();
+  visit(key("mass", "kg", kPositive, "Mass of the rim with its spindle, without the tire; rig.rim_mass overrides it."),
+        s.mass);
+  visit(key("spin_inertia", "kg m²", kPositive,
+            "Moment of inertia of the rim about its axle, without the tire; rig.rim_spin_inertia overrides it."),
+        s.spin_inertia);
+  visit(key("diametral_inertia", "kg m²", kPositive,
+            "Moment of inertia of the rim about a diameter, without the tire; rig.rim_diametral_inertia overrides it. "
+            "The "
+            "default is half of the spin inertia, as of a thin ring."),
+        s.diametral_inertia);
+  visit(key("carrier_mass", "kg", kPositive,
+            "Mass that the wheel carries besides rim and tire; rig.load and rig.carrier_mass override it."),
+        s.carrier_mass);
 }
 
 }  // namespace furrow::tire

@@ -13,6 +13,27 @@
 
 namespace furrow::tire {
 
+const char* const kMaterialsShape = R"({"type": "object",
+  "additionalProperties": {
+    "type": "object", "additionalProperties": false, "required": ["density", "young_modulus", "poisson_ratio"],
+    "properties": {
+      "density": {"type": "number", "exclusiveMinimum": 0, "unit": "kg/m³", "description": "Density."},
+      "young_modulus": {"allOf": [{"$ref": "#/definitions/one_or_three"}], "unit": "Pa",
+        "description": "Young's modulus; one number for an isotropic material, or x, y, z."},
+      "poisson_ratio": {"allOf": [{"$ref": "#/definitions/one_or_three"}], "unit": "-",
+        "description": "Poisson's ratio; one number, or xy, xz, yz with nu_xy / E_x = nu_yx / E_y."},
+      "shear_modulus": {"allOf": [{"$ref": "#/definitions/one_or_three"}], "unit": "Pa",
+        "description": "Shear modulus; one number, or xy, xz, yz. Default: E / (2 (1 + nu)) of an isotropic material."}
+    }}})";
+
+const char* const kSectionsShape = R"({"type": "object", "additionalProperties": false,
+  "required": ["bead", "sidewall", "tread"],
+  "properties": {"bead": {"$ref": "#/definitions/section"}, "sidewall": {"$ref": "#/definitions/section"},
+                 "tread": {"$ref": "#/definitions/section"}}})";
+
+const char* const kProfileShape = R"({"type": "array", "minItems": 4, "maxItems": 2000,
+  "items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}})";
+
 const Section& TireFile::section(int j) const {
   FURROW_ASSERT(in_range(j, elements_width()), j, elements_width());
   const int from_edge = std::min(j, elements_width() - 1 - j);

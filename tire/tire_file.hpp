@@ -6,9 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/core/surface.hpp"
+#include "tire/tire_file_keys.hpp"
 
 namespace furrow::tire {
+
+// What the schema says of the lists in a tire file.
+extern const char* const kMaterialsShape;
+extern const char* const kSectionsShape;
+extern const char* const kProfileShape;
 
 /// Elements that a file may ask for: around, and of a band on each side; a mesh has at most kMaxElements.
 inline constexpr int kMaxAround = 10000, kMaxPerSide = 500, kMaxElements = 1000000;
@@ -41,9 +49,19 @@ struct Section {
 
 /// A spring and a dashpot in series, beside the tire's elastic stiffness.
 struct MaxwellBranch {
+  static constexpr SchemaName kSchema{"branch", "A branch of the generalised Maxwell model."};
   double modulus = 0.0;  // g, relative to the long-term stiffness
   double time = 0.0;     // relaxation time, s
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<MaxwellBranch> auto& s) {
+  visit(
+      needed(
+          "relative_modulus", "-", allowed::above(0),
+          "g_i: stiffness of the branch relative to the materials' moduli, which are those after complete relaxation."),
+      s.modulus);
+  visit(needed("relaxation_time", "s", allowed::above(0), "tau_i: relaxation time of the branch."), s.time);
+}
 
 /// One knot of the meridian of the mid-surface.
 struct ProfileKnot {
@@ -53,6 +71,10 @@ struct ProfileKnot {
 };
 
 struct TireFile {
+  static constexpr SchemaName kSchema{"shell",
+                                      "A tire as a layered shell on a rim. SI units. The program reads this layout "
+                                      "(template ancf_shell) and the public "
+                                      "ANCFTire layout of Project Chrono."};
   std::string path;
   std::string name;
   double rim_radius = 0.0;           // m
@@ -62,7 +84,7 @@ struct TireFile {
   double structural_damping = 0.0;   // τ of the Kelvin–Voigt law, s
   std::vector<MaxwellBranch> prony;  // branches of a generalised Maxwell model; none: no relaxation
   double tread_mass_per_area = 0.0;  // rubber outside the tread's layup, kg/m²
-  ContactMaterial contact;
+  ContactBlock contact;
   std::vector<LayerMaterial> materials;
   Section bead, sidewall, tread;
   int elements_circumference = 0;
@@ -74,6 +96,45 @@ struct TireFile {
   /// The section of element j of the width, counted from the left bead. @pre 0 ≤ j < elements_width()
   const Section& section(int j) const;
 };
+
+/// The keys of our own layout. Materials, sections and profile refer to each other: read_tire_file.cpp reads them.
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TireFile> auto& s) {
+  using namespace allowed;
+  visit(key("template", "", role::by_hand, shaped(R"({"const": "ancf_shell"})").required(), "Name of the layout."),
+        s.path);
+  visit(needed("radius", "m", keys::kSize,
+               "Radius of the undeformed mid-surface at the crown; must agree with the profile within 1 %."),
+        s.radius);
+  visit(needed("rim_radius", "m", keys::kSize, "Radius at which the beads sit."), s.rim_radius);
+  visit(needed("rim_width", "m", keys::kSize, "Distance between the beads' seats."), s.rim_width);
+  visit(keys::kPressure, s.pressure);
+  visit(needed("structural_damping", "s", from(0), "Kelvin-Voigt time tau: stress = C (strain + tau × strain rate)."),
+        s.structural_damping);
+  visit(key("prony", "", optional(),
+            "Generalised Maxwell model beside tau: stress = C (strain + tau × strain rate + sum of g_i h_i), h_i' = "
+            "strain "
+            "rate - h_i / tau_i. The same in all layers; static results are those without it."),
+        s.prony);
+  visit(key("tread_mass_per_area", "kg/m²", from(0),
+            "Mass of rubber outside the tread's layup; adds inertia, no stiffness."),
+        s.tread_mass_per_area);
+  visit(needed("elements_circumference", "", from(8, kMaxAround), "Elements around the tire."),
+        s.elements_circumference);
+  visit(keys::kContact, s.contact);
+  visit(key("materials", "", role::by_hand, shaped(kMaterialsShape).required(),
+            "Materials by name; x along the fibre, y across it in the layer, z through the thickness."),
+        s.materials);
+  visit(key("sections", "", role::by_hand, shaped(kSectionsShape).required(),
+            "The bands from each bead to the crown; both sides are alike."),
+        s.bead);
+  visit(
+      key("profile", "", role::by_hand, shaped(kProfileShape).required(),
+          "Meridian of the mid-surface from the left to the right bead: rows t, x, y with t from 0 to 1, x the height "
+          "above the rim radius in m, y axial in m. Natural cubic splines interpolate it; node rows lie at equal steps "
+          "of t."),
+      s.profile);
+}
 
 /// Stiffness matrix in material axes; strain order xx, yy, 2xy, zz, 2xz, 2yz.
 /// @throws Error(bad_input) when it is not positive definite.

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "protocol/files/reader_fields.hpp"
 #include "tire/tire_file_reader.hpp"
 #include "tire/tire_profile.hpp"
 
@@ -63,8 +64,8 @@ Section section(JsonReader reader, std::size_t materials) {
   return s;
 }
 
-ContactMaterial contact(JsonReader reader) {
-  ContactMaterial c;
+ContactBlock contact(JsonReader reader) {
+  ContactBlock c;
   c.friction = reader.not_negative("Coefficient of Friction");
   c.restitution = reader.not_negative_or("Coefficient of Restitution", kRestitution);
   c.young_modulus = kYoungModulus;
@@ -101,9 +102,9 @@ TireFile read_chrono(JsonReader& reader) {
   if (const auto type = reader.text("Type"); type != "Tire") reader.fail("Type", "is '" + type + "', expected 'Tire'");
   if (reader.flag_or("8-Node Elements", false))
     reader.fail("8-Node Elements", "is true, only tires of 4-node elements (false) can be read");
-  f.radius = length_of(reader, "Tire Radius");
-  f.rim_radius = length_of(reader, "Rim Radius");
-  f.rim_width = length_of(reader, "Rim Width");
+  detail::take_value(reader, needed("Tire Radius", "m", keys::kSize, ""), f.radius);
+  detail::take_value(reader, needed("Rim Radius", "m", keys::kSize, ""), f.rim_radius);
+  detail::take_value(reader, needed("Rim Width", "m", keys::kSize, ""), f.rim_width);
   f.contact = contact(reader.child("Contact Material"));
   const json& materials = reader.array("Materials");
   for (std::size_t m = 0; m < materials.size(); ++m)

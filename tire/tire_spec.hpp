@@ -13,6 +13,7 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "tire/pressure_schedule.hpp"
 #include "tire/rim_properties.hpp"
 #include "tire/tire.hpp"
@@ -21,6 +22,7 @@ namespace furrow::tire {
 
 /// What the section `tire` of a scenario says: every field is the key `tire.<name>`, null where it says the default.
 struct TireOptions {
+  static constexpr SchemaName kSchema{"tire", "The tire, and what the scenario changes of its file."};
   std::filesystem::path file;        // resolved
   PressureSchedule pressure;         // gauge, Pa; empty: the file's, constant
   double friction = -1.0;            // contact friction; negative: the file's
@@ -34,16 +36,41 @@ struct TireOptions {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<TireOptions> auto& s) {
-  using furrow::Field;
-  visit(Field{"file", "", role::key}, s.file);
-  visit(Field{"pressure", "Pa", role::key}, s.pressure);
-  visit(Field{"friction", "-", role::key}, s.friction);
-  visit(Field{"elements_circumference", "", role::key}, s.elements_circumference);
-  visit(Field{"elements_width", "", role::key}, s.elements_width);
-  visit(Field{"structural_damping", "s", role::key}, s.structural_damping);
-  visit(Field{"rigid", "", role::key}, s.rigid);
-  visit(Field{"contact_tangent", "", role::key}, s.contact_tangent);
-  visit(Field{"substeps", "", role::key}, s.substeps);
+  using namespace allowed;
+  visit(key("file", "", not_empty().required(),
+            "Tire file, relative to the scenario, then to the folders rigs/ and tire/data/."),
+        s.file);
+  visit(key("pressure", "Pa",
+            from(0, 1e8)
+                .usual(5e3, 2e6)
+                .shaped(
+                    R"({"type": ["number", "array"], "minItems": 1, "maxItems": 10000, "entries": "[t, p] in s and Pa",
+                      "items": {"type": "array", "minItems": 2, "maxItems": 2,
+                                "items": {"type": "number", "minimum": -1e8, "maximum": 1e8}}})")
+                .or_null(),
+            "Inflation pressure above the atmosphere. A list of [t, p] in s and Pa makes it a function of time: "
+            "straight between the entries, constant before the first and after the last. Rigid tires ignore it. null: "
+            "as in the tire file."),
+        s.pressure);
+  visit(key("friction", "-", from(0, 10).or_null(), "Coulomb coefficient of the tread. null: as in the tire file."),
+        s.friction);
+  visit(key("elements_circumference", "", from(8, 10000).or_null(),
+            "Shell elements around the tire. null: as in the tire file."),
+        s.elements_circumference);
+  visit(key("elements_width", "", from(6, 1000).multiple_of(2).or_null(),
+            "Shell elements across the tire from bead to bead. null: as in the tire file."),
+        s.elements_width);
+  visit(key("structural_damping", "s", from(0, 10).usual(1e-5, 0.2).or_null(),
+            "Time constant τ of the Kelvin–Voigt law, the factor of the strain rate. null: as in the tire file."),
+        s.structural_damping);
+  visit(key("rigid", "", "Hold the tire rigid: same surface and mass, but no deformation."), s.rigid);
+  visit(key("contact_tangent", "",
+            "Contact tangents: with each contact force the terrain sends how it changes with the tire's motion, and "
+            "the tire applies that within its step. The coupling is then stable at several times the step. Rigid tires "
+            "do not use it."),
+        s.contact_tangent);
+  visit(key("substeps", "", from(1, 1000), "Number of steps that the tire takes in one communication step."),
+        s.substeps);
 }
 
 /// What is known of a tire before its model is made. How far it reaches once inflated only the model can say

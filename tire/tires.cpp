@@ -13,22 +13,44 @@
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_reader.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/key_schema.hpp"
+#include "protocol/files/reader_fields.hpp"
 #include "tire/ancf/shell_spec.hpp"
 #include "tire/handling/handling_spec.hpp"
+#include "tire/planar/planar_file.hpp"
 #include "tire/planar/planar_spec.hpp"
 #include "tire/rigid/rigid_spec.hpp"
+#include "tire/rim_properties.hpp"
 #include "tire/ring/ring_spec.hpp"
+#include "tire/tire_file.hpp"
 
 namespace furrow::tire {
 namespace {
 
 using nlohmann::json;
 
+/// The definition of a model's files, with the keys that all models share.
+template <HasFields File>
+nlohmann::ordered_json add_keys_of(SchemaWriter& writer, std::string_view model, bool is_default) {
+  nlohmann::ordered_json file = object_schema(File::kSchema.description);
+  const auto add = [&](const Key& key, const char* type) { add_key(file, key, key_schema(key, type, nullptr)); };
+  add(key("$schema", "", allowed::optional(), "Path of this schema, for editors."), "string");
+  add(needed("format_version", "", allowed::shaped(R"({"const": 1})"), "Version of this layout."), "");
+  nlohmann::ordered_json name{{"const", model}, {"description", "Model that the file describes."}};
+  if (is_default) name["default"] = model;
+  add_key(file, is_default ? key("model") : needed("model"), name);
+  add(key("name", "", allowed::optional(), "Name for reports."), "string");
+  add(key("source", "", allowed::optional(), "Where the data come from."), "string");
+  add_key(file, key("rim"), writer.reference<RimProperties>());
+  writer.add_keys<File>(file);
+  return file;
+}
+
 constexpr auto kModels = std::to_array<TireModel>({
-    {"shell", read_shell},
-    {"ring", read_ring},
-    {"planar", read_planar},
-    {"handling", read_handling},
+    {"shell", read_shell, add_keys_of<TireFile>},
+    {"ring", read_ring, add_keys_of<RingFile>},
+    {"planar", read_planar, add_keys_of<PlanarFile>},
+    {"handling", read_handling, add_keys_of<HandlingFile>},
 });
 // Names that tire files may come to use.
 constexpr std::array<std::string_view, 1> kLater{"wheel"};
@@ -53,11 +75,7 @@ RimProperties rim_of(const json& document, const std::string& file) {
   if (!document.contains("rim")) return rim;
   JsonReader whole(document, file);
   JsonReader reader = whole.child("rim");
-  visit_fields(
-      [&](const Field& field, double& value) {
-        if (reader.has(field.name)) value = reader.positive(field.name);
-      },
-      rim);
+  read_keys(reader, rim);
   reader.finish();
   return rim;
 }
@@ -105,5 +123,35 @@ std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext
 }
 
 std::unique_ptr<Tire> make_tire(const TireOptions& options) { return read_tire(options)->make(); }
+
+nlohmann::ordered_json tire_schema() {
+  SchemaWriter writer;
+  nlohmann::ordered_json root = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                                 {"title", "Furrow tire file"},
+                                 {"description", "Keys of a tire file: one definition for each model. SI units."}};
+  writer.definitions["one_or_three"] = nlohmann::ordered_json::parse(R"({
+    "anyOf": [{"type": "number"}, {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}]})");
+  writer.definitions["section"] = nlohmann::ordered_json::parse(R"({
+    "type": "object", "additionalProperties": false, "required": ["elements_per_side", "layers"],
+    "properties": {
+      "elements_per_side": {"type": "integer", "minimum": 1, "maximum": 500,
+                            "description": "Elements across this band on each side."},
+      "layers": {"type": "array", "minItems": 1, "description": "Layers of the band, from the inside outwards.",
+        "items": {"type": "object", "additionalProperties": false, "required": ["thickness", "angle_deg", "material"],
+          "properties": {
+            "thickness": {"type": "number", "exclusiveMinimum": 0, "unit": "m",
+                          "description": "Thickness of the layer."},
+            "angle_deg": {"type": "number", "unit": "deg",
+                          "description": "Fibre direction from the circumferential direction towards +y (left)."},
+            "material": {"type": "string", "description": "One of the names under materials."}}}}}})");
+  for (const TireModel& model : kModels) {
+    const std::string name(model.name);
+    root["oneOf"].push_back({{"$ref", "#/definitions/" + name}});
+    nlohmann::ordered_json file = model.schema(writer, name, &model == kModels.begin());
+    writer.definitions[name] = std::move(file);
+  }
+  root["definitions"] = writer.definitions;
+  return root;
+}
 
 }  // namespace furrow::tire

@@ -5,8 +5,9 @@
 #include <span>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
+#include "protocol/files/key_schema.hpp"
 #include "protocol/files/read_context.hpp"
 #include "tire/tire_spec.hpp"
 
@@ -16,10 +17,15 @@ struct TireModel {
   std::string_view name;  // of the key `model` in tire files
   /// Of a tire file and what the scenario changes of it. @throws Error(bad_input) naming file and key
   std::unique_ptr<TireSpec> (*read)(const nlohmann::json& file, const TireOptions& options);
+  /// Of its files. @param is_default of files without the key `model`
+  nlohmann::ordered_json (*schema)(SchemaWriter& writer, std::string_view model, bool is_default) = nullptr;
 };
 
 /// The first is that of files without the key `model`.
 std::span<const TireModel> tire_models();
+
+/// The JSON schema of tire files.
+nlohmann::ordered_json tire_schema();
 
 /// Reads the section of a scenario that describes a tire, and the tire's file.
 /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key

@@ -120,6 +120,10 @@ void CommandLine::add_questions() {
           "KEY", typed_.key,
           "Explain the key of this dotted path, for example terrain.cohesion, or calibrate for calibration studies "
           "(default: list all keys of a scenario).");
+
+  add("schema", "Print the JSON schema of a kind of files, for editors.", [this] { return schema_command(typed_.key); })
+      .add_option("KIND", typed_.key, "Print the schema of these files: scenario, tire, vehicle or driver.")
+      ->required();
 }
 
 void CommandLine::add_virtual_tests() {

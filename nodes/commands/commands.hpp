@@ -130,6 +130,9 @@ ExitCode kinematics_command(const KinematicsArguments& arguments);
 /// `furrow validate` of a vehicle's file (vehicle.cpp). @throws Error
 ExitCode validate_vehicle(const std::string& name, bool json);
 
+/// `furrow schema` (schema.cpp). @param kind of files @throws Error(bad_input)
+ExitCode schema_command(const std::string& kind);
+
 /// `furrow list` (catalogue.cpp). @param only a kind, or empty: all @throws Error
 ExitCode list_command(const std::string& only, bool json);
 

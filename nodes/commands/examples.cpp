@@ -30,6 +30,7 @@ constexpr Example kExamples[] = {
     {"ranks", "ranks first_look.json", "See which rank does what."},
     {"ranks", "ranks drawbar_pull.json --slurm --time 240 > job.sh", "Write a batch script for sbatch."},
     {"explain", "explain terrain.cohesion", "See meaning, unit, range and default."},
+    {"schema", "schema scenario", "Give an editor the keys of scenarios."},
     {"bed", "bed drawbar_pull_small.json", "Settle a bed that later runs share."},
     {"soil", "soil drawbar_pull_small.json --quick", "Get an impression within seconds."},
     {"soil", "soil drawbar_pull_small.json --only shear", "Measure cohesion and friction angle on three beds."},

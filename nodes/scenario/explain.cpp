@@ -7,6 +7,7 @@
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/key_schema.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -28,7 +29,7 @@ std::string value_help(const std::string& key, const json& node) {
     text += fmt::format("  {:<8} {}\n", name, value);
   };
   if (node.contains("unit")) line("unit", node["unit"]);
-  line("range", Schema::expectation(node));
+  line("range", expectation(node));
   if (node.contains("usual"))
     line("usual", number_text(node["usual"][0].get<double>()) + " to " + number_text(node["usual"][1].get<double>()));
   line("default", node.contains("default") ? value_text(node["default"]) : std::string("none"));
@@ -44,7 +45,7 @@ std::string value_help(const std::string& key, const json& node) {
 }  // namespace
 
 std::string explain(const std::string& key) {
-  const Schema schema = Schema::load();
+  const Schema& schema = Schema::of_scenarios();
   if (key.empty()) return key_list(schema, "");
   const json* node = schema.find(key);
   if (!node) {

@@ -137,7 +137,7 @@ json read_document(const std::string& file, const Settings& settings) {
 
 /// Returns warnings of keys that were set aside.
 std::vector<std::string> complete(json& document, const std::string& file, const Settings& settings) {
-  const Schema schema = Schema::load();
+  const Schema& schema = Schema::of_scenarios();
   fill_rig_tires(document, file);
   schema.normalize(document);
   if (const auto problems = schema.problems(document); !problems.empty()) throw all_problems(file, problems);
@@ -265,7 +265,7 @@ std::string digest_of(json completed, const Scenario& s) {
   if (completed.contains("tire")) completed["tire"].erase("file");
   if (completed.contains("tires"))
     for (json& tire : completed["tires"]) tire.erase("file");
-  Schema::load().remove_defaults(completed);
+  Schema::of_scenarios().remove_defaults(completed);
   Hash hash;
   hash.add(&kDigestVersion, sizeof kDigestVersion);
   hash.add(completed.dump());
@@ -311,7 +311,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   read_fields(document["checkpoint"], s.checkpoint);
   if (document.contains("press")) read_fields(document["press"], s.press);
   std::vector<std::string> unusual;
-  for (const Problem& problem : Schema::load().unusual(document))
+  for (const Problem& problem : Schema::of_scenarios().unusual(document))
     unusual.emplace_back(input_error(file.string(), problem.key, problem.what).what());
   s.warnings.insert(s.warnings.end(), unusual.begin(), unusual.end());
   try {
@@ -337,7 +337,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
 
 json completed_now(const std::string& completed) {
   json document = json::parse(completed);
-  const Schema schema = Schema::load();
+  const Schema& schema = Schema::of_scenarios();
   schema.fill_defaults(document);
   schema.normalize(document);
   remove_foreign_keys(document);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "rigs/drawbar_spec.hpp"
 #include "rigs/rig_spec.hpp"
 #include "terrain/terrains.hpp"
@@ -31,12 +32,24 @@ struct RunOptions {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<RunOptions> auto& s) {
-  visit(Field{"step", "s", role::key}, s.step);
-  visit(Field{"end", "s", role::key}, s.end);
-  visit(Field{"average_from", "s", role::key}, s.average_from);
-  visit(Field{"threads", "", role::key | role::harmless}, s.threads);
-  visit(Field{"seed", "", role::key}, s.seed);
-  visit(Field{"peer_timeout", "s", role::key | role::harmless}, s.peer_timeout);
+  using namespace allowed;
+  visit(key("step", "s", above(0).to(0.1).usual(1e-7, 1e-3),
+            "Communication step: the interval at which all nodes exchange motions and forces."),
+        s.step);
+  visit(key("end", "s", above(0).to(1e5),
+            "Simulated time at which the run ends. It is rounded to a whole number of run.step."),
+        s.end);
+  visit(key("average_from", "s", from(0, 1e5),
+            "Start of the window over which the summary averages; the window ends with the run."),
+        s.average_from);
+  visit(key("threads", "", role::harmless,
+            from(1, 1024).shaped(R"({"type": ["integer", "string"], "pattern": "^auto$", "default": "auto"})"),
+            "Number of threads of the terrain. auto: as many as the other ranks leave. Results do not depend on it."),
+        s.threads);
+  visit(key("seed", "", from(0, 9007199254740991), "Seed of the bed's random grain positions."), s.seed);
+  visit(key("peer_timeout", "s", role::harmless, from(1, 1e6),
+            "Time after which a rank counts as lost that gives no sign of life while another waits for it."),
+        s.peer_timeout);
 }
 
 /// `output.*`
@@ -47,8 +60,16 @@ struct OutputOptions {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<OutputOptions> auto& s) {
-  visit(Field{"series_interval", "s", role::key}, s.series_interval);
-  visit(Field{"frame_interval", "s", role::key}, s.frame_interval);
+  using namespace allowed;
+  visit(key("series_interval", "s", above(0).to(1e5),
+            "Time between lines of timeseries.csv. In a line forces are means over the interval, positions, energies "
+            "and counts are instants, impulses and works are sums since the start. It is rounded to a whole number of "
+            "run.step, at least one."),
+        s.series_interval);
+  visit(key("frame_interval", "s", from(0, 1e5),
+            "Time between frames of grains and tire surface. It is rounded to a whole number of run.step, at least "
+            "one. 0: no frames."),
+        s.frame_interval);
 }
 
 /// `checkpoint.*`
@@ -61,10 +82,20 @@ struct CheckpointOptions {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<CheckpointOptions> auto& s) {
-  visit(Field{"wall_interval", "s", role::key | role::harmless}, s.wall_interval);
-  visit(Field{"interval", "s", role::key | role::harmless}, s.interval);
-  visit(Field{"keep", "", role::key | role::harmless}, s.keep);
-  visit(Field{"at_end", "", role::key | role::harmless}, s.at_end);
+  using namespace allowed;
+  visit(
+      key("wall_interval", "s", role::harmless, from(0, 1e7),
+          "Wall time between checkpoints. The first ones come after 30, 60, 120, … s. 0: no checkpoints by wall time."),
+      s.wall_interval);
+  visit(key("interval", "s", role::harmless, from(0, 1e5),
+            "Simulated time between checkpoints. It is rounded to a whole number of run.step, at least one. 0: no "
+            "checkpoints by simulated time."),
+        s.interval);
+  visit(key("keep", "", role::harmless, from(1, 1000), "How many checkpoints are kept: the newest."), s.keep);
+  visit(key("at_end", "", role::harmless,
+            "Write a checkpoint at the end of the run too. It lets the run continue with a later run.end, and the next "
+            "pass of a study start from its terrain."),
+        s.at_end);
 }
 
 /// `press.*`, optional: what `furrow press` takes where its options do not say it.
@@ -80,14 +111,27 @@ struct PressKeys {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PressKeys> auto& s) {
-  visit(Field{"on", "", role::key | role::harmless}, s.on);
-  visit(Field{"deflection", "m", role::key | role::harmless}, s.deflection);
-  visit(Field{"points", "", role::key | role::harmless}, s.points);
-  visit(Field{"load", "N", role::key | role::harmless}, s.load);
-  visit(Field{"camber", "rad", role::key | role::harmless}, s.camber);
-  visit(Field{"cleat_height", "m", role::key | role::harmless}, s.cleat_height);
-  visit(Field{"cleat_width", "m", role::key | role::harmless}, s.cleat_width);
-  visit(Field{"cleat_position", "m", role::key | role::harmless}, s.cleat_position);
+  using namespace allowed;
+  visit(key("on", "", role::harmless, words("plate cleat"),
+            "Obstacle. plate: flat. cleat: a flat-topped bar across the direction of travel. A profile is given on the "
+            "command line: furrow press --on profile --profile FILE."),
+        s.on);
+  visit(key("deflection", "m", role::harmless, above(0).to(0.2), "Largest deflection of the load–deflection curve."),
+        s.deflection);
+  visit(key("points", "", role::harmless, from(1, 1000), "Number of points of the curve."), s.points);
+  visit(key("load", "N", role::harmless, above(0).to(1e7).usual(1, 200000).or_null(),
+            "Load at which the footprint is computed. null: the load that the scenario's first wheel carries."),
+        s.load);
+  visit(key("camber", "rad", role::harmless, from(-0.7, 0.7).usual(-0.3, 0.3),
+            "Inclination of the wheel about its forward axis. A positive one leans the top to the right of travel. "
+            "Flexible ring and planar tires are alike across their width and take 0 alone."),
+        s.camber);
+  visit(key("cleat_height", "m", role::harmless, above(0).to(0.2), "Height of the cleat."), s.cleat_height);
+  visit(key("cleat_width", "m", role::harmless, above(0).to(1),
+            "Width of the cleat's top along the direction of travel."),
+        s.cleat_width);
+  visit(key("cleat_position", "m", role::harmless, from(-1, 1), "Position of the cleat's middle, forward of the axle."),
+        s.cleat_position);
 }
 
 /// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the
@@ -104,12 +148,20 @@ struct ExpectedResult {
 
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ExpectedResult> auto& s) {
-  visit(Field{"drawbar_pull", "N", role::key | role::harmless}, s.drawbar_pull);
-  visit(Field{"drawbar_pull_spread", "N", role::key | role::harmless}, s.drawbar_pull_spread);
-  visit(Field{"sinkage", "m", role::key | role::harmless}, s.sinkage);
-  visit(Field{"sinkage_spread", "m", role::key | role::harmless}, s.sinkage_spread);
-  visit(Field{"rut_depth", "m", role::key | role::harmless}, s.rut_depth);
-  visit(Field{"rut_depth_spread", "m", role::key | role::harmless}, s.rut_depth_spread);
+  using namespace allowed;
+  visit(key("drawbar_pull", "N", role::harmless, from(-1e9, 1e9).required(), "Mean drawbar pull."), s.drawbar_pull);
+  visit(key("drawbar_pull_spread", "N", role::harmless, from(0, 1e9).required(),
+            "Spread ± of the drawbar pull on one bed: between seeds, machines and small changes. Means over n beds are "
+            "expected within it over √n."),
+        s.drawbar_pull_spread);
+  visit(key("sinkage", "m", role::harmless, from(-1e3, 1e3).optional(), "Mean sinkage."), s.sinkage);
+  visit(key("sinkage_spread", "m", role::harmless, from(0, 1e3).optional(),
+            "Spread ± of the sinkage on one bed, as of the pull. 0: not stated."),
+        s.sinkage_spread);
+  visit(key("rut_depth", "m", role::harmless, from(-1e3, 1e3).optional(), "Depth of the rut."), s.rut_depth);
+  visit(key("rut_depth_spread", "m", role::harmless, from(0, 1e3).optional(),
+            "Spread ± of the rut depth on one bed, as of the pull. 0: not stated."),
+        s.rut_depth_spread);
 }
 
 /// What a run will take, about, bytes.

@@ -13,9 +13,9 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
-#include "protocol/core/error.hpp"
-#include "protocol/files/data_files.hpp"
+#include "nodes/scenario/scenario_schema.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/key_schema.hpp"
 #include "protocol/files/nearest_words.hpp"
 
 namespace furrow::scenario {
@@ -27,22 +27,6 @@ constexpr double kMaxWhole = 9007199254740992.0;  // 2^53
 constexpr std::size_t kMaxProblems = 20;          // that are reported at once
 
 std::string joined(const std::string& path, const std::string& name) { return path.empty() ? name : path + "." + name; }
-
-bool allows(const json& node, const std::string& type) {
-  if (!node.contains("type")) return true;
-  const json& types = node["type"];
-  return types.is_array() ? std::find(types.begin(), types.end(), type) != types.end() : types == type;
-}
-
-bool has_allowed_type(const json& node, const json& value) {
-  if (value.is_null()) return allows(node, "null");
-  if (value.is_boolean()) return allows(node, "boolean");
-  if (value.is_string()) return allows(node, "string");
-  if (value.is_array()) return allows(node, "array");
-  if (value.is_object()) return allows(node, "object");
-  if (value.is_number_integer()) return allows(node, "integer") || allows(node, "number");
-  return allows(node, "number");
-}
 
 bool is_whole(double value) { return value == std::round(value) && std::abs(value) <= kMaxWhole; }
 
@@ -56,37 +40,6 @@ json within_int64(json value) {
     value = std::copysign(kMost, value.get<double>());
   }
   return value;
-}
-
-bool in_range(const json& node, const json& value) {
-  if (value.is_string()) {
-    const auto text = value.get<std::string>();
-    if (node.contains("minLength") && text.size() < node["minLength"].get<std::size_t>()) return false;
-    return !node.contains("pattern") || "^" + text + "$" == node["pattern"];
-  }
-  if (value.is_array()) {
-    return value.size() >= node.value("minItems", std::size_t{0}) &&
-           value.size() <= node.value("maxItems", value.size());
-  }
-  if (!value.is_number()) return true;
-  const double x = value.get<double>();
-  const auto bound = [&](const char* name) { return node[name].get<double>(); };
-  if (node.contains("minimum") && !(x >= bound("minimum"))) return false;
-  if (node.contains("maximum") && !(x <= bound("maximum"))) return false;
-  if (node.contains("exclusiveMinimum") && !(x > bound("exclusiveMinimum"))) return false;
-  if (node.contains("exclusiveMaximum") && !(x < bound("exclusiveMaximum"))) return false;
-  return !node.contains("multipleOf") || std::fmod(x, bound("multipleOf")) == 0.0;
-}
-
-std::string list_text(const json& node) {
-  const int least = node.value("minItems", 0), most = node.value("maxItems", 0);
-  return fmt::format("a list of {}{} {}", least == most ? "" : fmt::format("{} to ", least), most,
-                     node.value("entries", "entries"));
-}
-
-std::string with_unit(const std::string& text, const json& node) {
-  const std::string unit = node.value("unit", std::string("-"));
-  return unit == "-" ? text : text + " " + unit;
 }
 
 /// What the writer may have meant in another unit: kilo, milli, bar, mega, micro; NaN if nothing fits.
@@ -106,13 +59,9 @@ std::vector<std::string> key_parts(const std::vector<std::string>& context) {
 
 }  // namespace
 
-Schema Schema::load() {
-  const std::filesystem::path file = data_folder() / "rigs" / "scenario.schema.json";
-  try {
-    return Schema(load_json(file, "the scenario schema"));
-  } catch (const Error& error) {
-    throw Error(ExitCode::io, std::string(error.what()) + " (FURROW_HOME names the folder that holds rigs/)");
-  }
+const Schema& Schema::of_scenarios() {
+  static const Schema schema(scenario_schema());
+  return schema;
 }
 
 const json& Schema::resolved(const json& node) const {
@@ -137,56 +86,8 @@ const json* Schema::find(const std::string& key) const {
   return node;
 }
 
-std::string Schema::range(const json& node) {
-  const bool low = node.contains("minimum"), above = node.contains("exclusiveMinimum");
-  const bool high = node.contains("maximum"), below = node.contains("exclusiveMaximum");
-  const auto bound = [&](const char* name) { return number_text(node[name].get<double>()); };
-  std::string text;
-  if (low && high && node["minimum"] == node["maximum"]) return bound("minimum");
-  if (low && high)
-    text = bound("minimum") + " to " + bound("maximum");
-  else if (low)
-    text = bound("minimum") + " or more";
-  else if (above)
-    text = "above " + bound("exclusiveMinimum");
-  if (!(low && high)) {
-    const std::string separator = text.empty() ? "" : above && high ? " up to " : " and ";
-    if (high) text += separator + (above ? "" : "at most ") + bound("maximum");
-    if (below) text += separator + "below " + bound("exclusiveMaximum");
-  }
-  if (node.contains("multipleOf")) text += ", a multiple of " + bound("multipleOf");
-  return text;
-}
-
-std::string Schema::expectation(const json& node) {
-  if (node.contains("enum")) return one_of(node["enum"]);
-  std::vector<std::string> words;
-  const std::string bounds = range(node);
-  const bool whole = allows(node, "integer") && !allows(node, "number");
-  if (node.contains("minimum") && node.contains("maximum") && node["minimum"] == node["maximum"]) return bounds;
-  if (whole || allows(node, "number"))
-    words.push_back(with_unit((whole ? "a whole number" : "a number") + (bounds.empty() ? "" : ", " + bounds), node));
-  if (allows(node, "string")) {
-    const auto pattern = node.value("pattern", std::string());
-    words.push_back(pattern.size() > 2           ? "'" + pattern.substr(1, pattern.size() - 2) + "'"
-                    : node.contains("minLength") ? "a text that is not empty"
-                                                 : "a text");
-  }
-  if (allows(node, "boolean")) words.push_back("true or false");
-  if (allows(node, "object")) words.push_back("an object { }");
-  if (allows(node, "array")) words.push_back(list_text(node));
-  if (allows(node, "null")) words.push_back("null");
-  return fmt::format("{}", fmt::join(words, " or "));
-}
-
 void Schema::describe(const json& node, const json& value, const std::string& path, std::vector<Problem>& out) const {
-  const bool listed =
-      !node.contains("enum") || std::find(node["enum"].begin(), node["enum"].end(), value) != node["enum"].end();
-  if (!has_allowed_type(node, value) || !listed || !in_range(node, value)) {
-    const std::string shown = value.is_number() ? with_unit(value_text(value), node) : value_text(value);
-    out.push_back({path, "is " + shown + ", expected " + expectation(node)});
-    return;
-  }
+  if (const std::string what = mistake(node, value); !what.empty()) return out.push_back({path, what});
   if (!value.is_object()) return;
   for (const auto& [name, unused] : value.items()) {
     if (member(node, name)) continue;
@@ -247,11 +148,10 @@ void Schema::normalize(json& value, const json& node) const {
     }
     return;
   }
-  if (value.is_string() && node.contains("formerly")) value = node["formerly"].value(value.get<std::string>(), value);
   if (!value.is_number()) return;
-  if (allows(node, "number"))
+  if (allows_type(node, "number"))
     value = value.get<double>();
-  else if (value.is_number_float() && allows(node, "integer") && is_whole(value.get<double>()))
+  else if (value.is_number_float() && allows_type(node, "integer") && is_whole(value.get<double>()))
     value = std::llround(value.get<double>());
 }
 

@@ -1,7 +1,6 @@
 // The scenario schema at work: finds mistakes and says them in words, fills in defaults, explains keys.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,11 +17,11 @@ struct Problem {
 class Schema {
  public:
   explicit Schema(nlohmann::json text) : root_(std::move(text)) {}
-  /// rigs/scenario.schema.json of the data folder. @throws Error(io) when the installation lacks it
-  static Schema load();
+  /// That of scenarios (scenario_schema.hpp), made once.
+  static const Schema& of_scenarios();
 
-  /// 15.0 becomes 15 where a whole number is wanted, 450 becomes 450.0 where any number is, and the former name of
-  /// a value ("formerly" of the schema) becomes its present one: equal scenarios are equal.
+  /// 15.0 becomes 15 where a whole number is wanted, and 450 becomes 450.0 where any number is: equal scenarios are
+  /// equal.
   void normalize(nlohmann::json& document) const;
   std::vector<Problem> problems(const nlohmann::json& document) const;
   /// Values outside the magnitudes that are usual; to warn of.
@@ -37,11 +36,6 @@ class Schema {
   std::vector<std::string> keys(const std::string& section = "") const;
   /// Known keys that look like this one, best first, at most three.
   std::vector<std::string> nearest(const std::string& key) const;
-
-  /// "a number above 0 and below 1 m".
-  static std::string expectation(const nlohmann::json& node);
-  /// "0 to 10", "above 0"; empty without bounds.
-  static std::string range(const nlohmann::json& node);
 
  private:
   const nlohmann::json& resolved(const nlohmann::json& node) const;

@@ -65,7 +65,7 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
       throw input_error(name, "terrain." + key,
                         fmt::format("is not a property of soil, expected one of {}", fmt::join(of_soil, ", ")));
   json alone{{"terrain", soil["terrain"]}};
-  const Schema schema = Schema::load();
+  const Schema& schema = Schema::of_scenarios();
   schema.normalize(alone);
   for (const Problem& problem : schema.problems(alone))
     if (problem.key.starts_with("terrain")) throw input_error(name, problem.key, problem.what);

@@ -265,7 +265,7 @@ std::string section_text(const Schema& schema, const std::string& name, const Js
 }
 
 std::string text_of(const Json& document, const std::string& file) {
-  const Schema schema = Schema::load();
+  const Schema& schema = Schema::of_scenarios();
   std::string text = comment(
       "A scenario of Furrow. All values are in SI units, angles in radians. 'furrow explain' "
       "lists all keys, those with their defaults that do not stand here too.",

@@ -9,6 +9,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/files/key_schema.hpp"
 
 namespace furrow {
 
@@ -51,34 +52,14 @@ std::vector<Field> fields_of() {
   return fields;
 }
 
-/// Names of the keys of T that the object gives another value than T has by default.
-/// @pre as for read_fields
-template <HasFields T>
-std::vector<std::string> changed_fields(const nlohmann::json& object) {
-  std::vector<std::string> changed;
-  const T defaults{};
-  T values{};
-  read_fields(object, values);
-  std::vector<const void*> standards;
-  visit_fields([&](const Field&, const auto& value) { standards.push_back(&value); }, defaults);
-  std::size_t place = 0;
-  visit_fields(
-      [&](const Field& field, const auto& value) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        if (!(value == *static_cast<const Value*>(standards[place++]))) changed.emplace_back(field.name);
-      },
-      values);
-  return changed;
-}
-
 /// Whose keys a model's are: the entry of a table of models has one, made by key_list<Options>().
 struct KeyList {
-  std::vector<Field> (*fields)() = nullptr;                                      // the keys are those with role::key
-  std::vector<std::string> (*changed)(const nlohmann::json& section) = nullptr;  // changed_fields
+  std::vector<Field> (*fields)() = nullptr;  // the keys are those with role::key
+  void (*add_to)(SchemaWriter& writer, nlohmann::ordered_json& section) = nullptr;
 };
 template <HasFields T>
 constexpr KeyList key_list() {
-  return {fields_of<T>, changed_fields<T>};
+  return {fields_of<T>, [](SchemaWriter& writer, nlohmann::ordered_json& section) { writer.add_keys<T>(section); }};
 }
 
 }  // namespace furrow

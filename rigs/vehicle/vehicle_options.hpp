@@ -9,6 +9,8 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
+#include "rigs/rig_keys.hpp"
 #include "vehicle/driver/driver_spec.hpp"
 #include "vehicle/spec/vehicle_spec.hpp"
 
@@ -30,16 +32,36 @@ struct VehicleRigOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<VehicleRigOptions> auto& s) {
-  visit(Field{"vehicle", "", role::key}, s.vehicle);
-  visit(Field{"driver", "", role::key}, s.driver);
-  visit(Field{"start", "m", role::key}, s.start);
-  visit(Field{"lateral", "m", role::key}, s.lateral);
-  visit(Field{"heading", "rad", role::key}, s.heading);
-  visit(Field{"slope", "rad", role::key}, s.slope);
-  visit(Field{"start_speed", "m/s", role::key}, s.start_speed);
-  visit(Field{"lowering_speed", "m/s", role::key}, s.lowering_speed);
-  visit(Field{"touchdown_time", "s", role::key}, s.touchdown_time);
-  visit(Field{"stop_before_wall", "m", role::key}, s.stop_before_wall);
+  using namespace allowed;
+  visit(key("vehicle", "", not_empty().or_null(),
+            "Vehicle file, relative to the scenario, then to the folders rigs/ and vehicle/data/. Its wheels name "
+            "their tires; `tire` changes all of them, `tires` those of each wheel or each axle."),
+        s.vehicle);
+  visit(key("driver", "", shaped(R"({"type": ["string", "object"]})").not_empty().or_null(),
+            "Driver file in JSON or CSV, found like the vehicle's file, or the content of such a file. null: nobody "
+            "drives and the brakes hold."),
+        s.driver);
+  visit(keys::kStart, s.start);
+  visit(key("lateral", "m", from(-1e6, 1e6),
+            "Place along y of the origin of the vehicle's frame at t = 0. The bin's middle is y = 0."),
+        s.lateral);
+  visit(key("heading", "rad", from(-3.15, 3.15), "Direction of the vehicle at t = 0, about +z from the x axis."),
+        s.heading);
+  visit(key("slope", "rad", from(-1.2, 1.2).usual(-0.7, 0.7),
+            "Slope of the ground; it rises along +x if positive. Gravity is tilted and z is normal to the ground. "
+            "Grains settle on level ground and are tilted then."),
+        s.slope);
+  visit(key("start_speed", "m/s", from(0, 100),
+            "Speed of a vehicle at t = 0, along its heading. Its wheels roll and its driveline turns with them, in the "
+            "gear that the driver asks for, or else in the lowest gear that the gearbox would keep. Without a driver "
+            "its brakes are locked."),
+        s.start_speed);
+  visit(keys::kLoweringSpeed, s.lowering_speed);
+  visit(keys::kTouchdownTime, s.touchdown_time);
+  visit(key("stop_before_wall", "m", from(0, 1e6).or_null(),
+            "Distance at which a vehicle's run ends: between a tire and the end wall of the bin, or twice that between "
+            "a tire and a side wall. 0: the run does not end there. null: radius of the largest tire."),
+        s.stop_before_wall);
 }
 
 /// Everything that the rig needs.

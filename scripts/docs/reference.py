@@ -145,10 +145,11 @@ def file_page(title, lead, schema):
             refers = "".join(f" [{ref.rsplit('/', 1)[1]}](#{ref.rsplit('/', 1)[1]})" for ref in refs
                              if schema.content["definitions"][ref.rsplit("/", 1)[1]].get("properties"))
             child = schema.resolved(child)
-            rows.append([code(key), "yes" if key in required else "", code(shown(child["default"]))
-                         if "default" in child else "", bounds(child) + refers, sentence(child)])
-        text += f"\n## {name}\n\n{sentence(entry)}\n\n" + table(["key", "required", "default", "allowed", "meaning"],
-                                                                rows)
+            rows.append([code(key), "yes" if key in required else "",
+                         code(shown(child["default"])) if "default" in child else "", cell(child.get("unit", "")),
+                         bounds(child) + refers, sentence(child)])
+        text += f"\n## {name}\n\n{sentence(entry)}\n\n" + table(
+            ["key", "required", "default", "unit", "allowed", "meaning"], rows)
     return text
 
 

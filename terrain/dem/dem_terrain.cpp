@@ -12,6 +12,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/key_schema.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
 #include "terrain/dem/beds/bed_height.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
@@ -35,28 +36,11 @@ constexpr char kRefinement[] = "refinement";   // in the saved state
 constexpr double kBytesPerSavedGrain = 300.0;  // in a checkpoint: state, pair list, contact history
 
 void check(const DemOptions& o) {
-  const auto require = [&](bool ok, const char* key, double value, const char* expected) {
-    if (!ok)
-      throw input_error(o.scenario, std::string("terrain.") + key,
-                        fmt::format("{} is out of range, expected {}", value, expected));
-  };
-  dem::law_from(o.law);
-  dem::precision_from(o.precision);
-  require(o.radius > 0.0 && o.radius < 1.0, "radius", o.radius, "0 < radius < 1 m");
-  require(o.density > 0.0 && std::isfinite(o.density), "density", o.density, "a positive number, kg/m³");
-  require(o.layers >= 1 && o.layers < 10000, "layers", o.layers, "1 to 9999");
-  require(o.length >= 4.0 * o.radius && std::isfinite(o.length), "length", o.length, "at least two grains, m");
-  require(o.width >= 4.0 * o.radius && std::isfinite(o.width), "width", o.width, "at least two grains, m");
-  require(o.young_modulus > 0.0, "young_modulus", o.young_modulus, "a positive number, Pa");
-  require(o.poisson_ratio > -1.0 && o.poisson_ratio <= 0.5, "poisson_ratio", o.poisson_ratio, "-1 < ν ≤ 0.5");
-  require(o.restitution >= 0.0 && o.restitution <= 1.0, "restitution", o.restitution, "0 to 1");
-  require(o.friction >= 0.0, "friction", o.friction, "0 or more");
-  require(o.rolling_friction >= 0.0, "rolling_friction", o.rolling_friction, "0 or more");
-  require(o.cohesion >= 0.0, "cohesion", o.cohesion, "0 or more, Pa");
-  require(o.normal_stiffness > 0.0, "normal_stiffness", o.normal_stiffness, "a positive number, N/m^1.5");
-  require(o.normal_damping >= 0.0, "normal_damping", o.normal_damping, "0 or more, N s/m^1.5");
-  require(o.friction_velocity_scale > 0.0, "friction_velocity_scale", o.friction_velocity_scale,
-          "a positive number, s/m");
+  check_values(o, o.scenario, "terrain");
+  for (const auto& [key, size] : {std::pair{"terrain.length", o.length}, {"terrain.width", o.width}})
+    if (size < 4.0 * o.radius)
+      throw input_error(o.scenario, key,
+                        fmt::format("is {:g} m, expected at least {:g} m, two grains", size, 4.0 * o.radius));
   dem::check_sizes(o);
   dem::check_bed_options(o);
   if (!(o.step > 0.0))

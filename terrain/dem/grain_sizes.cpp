@@ -45,12 +45,6 @@ class Draw {
 }  // namespace
 
 void check_sizes(const DemOptions& o) {
-  if (o.size_distribution != "uniform" && o.size_distribution != "normal")
-    throw input_error(o.scenario, "terrain.size_distribution",
-                      "'" + o.size_distribution + "' is unknown, expected uniform or normal");
-  if (!(o.size_spread >= 0.0 && o.size_spread <= kWidestSpread))
-    throw input_error(o.scenario, "terrain.size_spread",
-                      fmt::format("{} is out of range, expected 0 to {}", o.size_spread, kWidestSpread));
   if (o.size_spread > 0.0 && !has_sizes(law_from(o.law))) {
     std::string expected;
     for_each_law([&](auto law) { expected += law.kSizes ? fmt::format("law '{}' or ", law.kName) : ""; });

@@ -8,9 +8,6 @@
 
 namespace furrow::terrain::dem {
 
-/// Largest `size_spread`: the largest grains are four times the smallest.
-inline constexpr double kWidestSpread = 0.6;
-
 /// @throws Error(bad_input) naming the key.
 void check_sizes(const DemOptions& options);
 

@@ -23,7 +23,7 @@ void visit_fields(Visit&& visit, FieldsOf<LiggghtsOptions> auto& s) {
   using Base =
       std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(s)>>, const dem::DemOptions, dem::DemOptions>;
   visit_fields(
-      [&](const Field& field, auto& value) {
+      [&](const auto& field, auto& value) {
         if (!is_key_of_dem_only(field.name)) visit(field, value);
       },
       static_cast<Base&>(s));

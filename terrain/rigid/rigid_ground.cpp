@@ -7,6 +7,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/files/key_schema.hpp"
 #include "terrain/rigid/ground_accounts.hpp"
 #include "terrain/rigid/ground_friction.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
@@ -57,21 +58,11 @@ Vec3 flat_normal(const std::array<Vec3, 3>& x) {
   return size > 0.0 ? Vec3(normal.x() / size, 0.0, normal.z() / size) : Vec3::Zero();
 }
 
-void require(const std::string& file, const char* key, double value) {
-  if (!(value >= 0.0) || !std::isfinite(value))
-    throw input_error(file, std::string("terrain.") + key,
-                      std::to_string(value) + ", expected a finite number of at least 0");
-}
-
 class RigidGround final : public Terrain {
  public:
   explicit RigidGround(const GroundOptions& options)
       : Terrain(true), options_(options), profile_(options.profile), plane_(options.profile.empty()) {
-    require(options.scenario, "ground_stiffness", options.ground_stiffness);
-    require(options.scenario, "ground_damping", options.ground_damping);
-    require(options.scenario, "ground_shear_stiffness", options.ground_shear_stiffness);
-    require(options.scenario, "friction", options.friction);
-    require(options.scenario, "friction_velocity_scale", options.friction_velocity_scale);
+    check_values(options, options.scenario, "terrain");
   }
 
   double gather_top_height(double from, double to, double, double) const override { return profile_.highest(from, to); }

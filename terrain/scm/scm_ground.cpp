@@ -10,6 +10,7 @@
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/key_schema.hpp"
 #include "terrain/scm/scm_contact.hpp"
 #include "terrain/surface/surface_forces.hpp"
 
@@ -272,13 +273,6 @@ void ScmGround::do_restore(const Archive& archive) {
   }
 }
 
-/// @throws Error(bad_input) unless wanted
-void require(const ScmOptions& options, const char* key, double value, bool wanted, const char* expected) {
-  if (!wanted || !std::isfinite(value))
-    throw input_error(options.scenario, std::string("terrain.") + key,
-                      fmt::format("is {:g}, expected {}", value, expected));
-}
-
 }  // namespace
 
 void check_scm_width(const ScmOptions& o, double width) {
@@ -297,30 +291,11 @@ void check_scm_width(const ScmOptions& o, double width) {
 }
 
 void check_scm_options(const ScmOptions& o) {
-  const auto positive = [&](const char* key, double value) {
-    require(o, key, value, value > 0.0, "a finite number above 0");
-  };
-  const auto not_negative = [&](const char* key, double value) {
-    require(o, key, value, value >= 0.0, "a finite number of at least 0");
-  };
-  positive("length", o.length);
-  positive("width", o.width);
-  positive("grid_spacing", o.grid_spacing);
-  positive("bekker_k_phi", o.bekker_k_phi);
-  positive("bekker_n", o.bekker_n);
-  positive("janosi_k", o.janosi_k);
-  not_negative("mohr_cohesion", o.mohr_cohesion);
-  not_negative("unloading_stiffness", o.unloading_stiffness);
-  not_negative("unloading_stiffness_rate", o.unloading_stiffness_rate);
-  not_negative("rebound_damping", o.rebound_damping);
-  require(o, "bekker_k_c", o.bekker_k_c, true, "a finite number");
-  require(o, "mohr_friction_angle", o.mohr_friction_angle,
-          o.mohr_friction_angle >= 0.0 && o.mohr_friction_angle <= 80.0, "an angle from 0 to 80 degrees");
-  if (o.patch_width >= 0.0) {
-    positive("patch_width", o.patch_width);
-    const double modulus = o.bekker_k_c / o.patch_width + o.bekker_k_phi;
-    require(o, "bekker_k_c", o.bekker_k_c, modulus > 0.0, "k_c/b + k_phi above 0 with b = terrain.patch_width");
-  }
+  check_values(o, o.scenario, "terrain");
+  if (o.patch_width >= 0.0 && !(o.bekker_k_c / o.patch_width + o.bekker_k_phi > 0.0))
+    throw input_error(
+        o.scenario, "terrain.bekker_k_c",
+        fmt::format("is {:g}, expected k_c/b + k_phi above 0 with b = terrain.patch_width", o.bekker_k_c));
   const double nodes = std::ceil(o.length / o.grid_spacing) * std::ceil(o.width / o.grid_spacing);
   if (!(nodes <= kMostNodes))
     throw input_error(o.scenario, "terrain.grid_spacing",

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
+#include "terrain/terrain_keys.hpp"
 #include "terrain/terrain_spec.hpp"
 
 namespace furrow::terrain::scm {
@@ -31,21 +33,49 @@ struct ScmOptions : TerrainContext {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ScmOptions> auto& s) {
+  using namespace allowed;
   constexpr unsigned kSoil = role::key | role::soil;
-  visit(Field{"material", "", role::key}, s.material);
-  visit(Field{"length", "m", role::key}, s.length);
-  visit(Field{"width", "m", role::key}, s.width);
-  visit(Field{"grid_spacing", "m", role::key}, s.grid_spacing);
-  visit(Field{"patch_width", "m", role::key}, s.patch_width);
-  visit(Field{"bekker_k_c", "N/m^(n+1)", kSoil}, s.bekker_k_c);
-  visit(Field{"bekker_k_phi", "N/m^(n+2)", kSoil}, s.bekker_k_phi);
-  visit(Field{"bekker_n", "-", kSoil}, s.bekker_n);
-  visit(Field{"mohr_cohesion", "Pa", kSoil}, s.mohr_cohesion);
-  visit(Field{"mohr_friction_angle", "deg", kSoil}, s.mohr_friction_angle);
-  visit(Field{"janosi_k", "m", kSoil}, s.janosi_k);
-  visit(Field{"unloading_stiffness", "N/m³", kSoil}, s.unloading_stiffness);
-  visit(Field{"unloading_stiffness_rate", "N/m⁴", kSoil}, s.unloading_stiffness_rate);
-  visit(Field{"rebound_damping", "N s/m³", kSoil}, s.rebound_damping);
+  visit(keys::kMaterial, s.material);
+  visit(keys::kLength, s.length);
+  visit(keys::kWidth, s.width);
+  visit(key("grid_spacing", "m", above(0).to(10).usual(0.001, 0.1),
+            "Distance between the nodes of the soil, engine scm. A contact patch should have ten nodes across."),
+        s.grid_spacing);
+  visit(key("patch_width", "m", above(0).to(1e4).usual(0.01, 2).or_null(),
+            "Width b in (k_c/b + k_φ) zⁿ, engine scm. null: 2 × area/perimeter of each contact patch, which is the "
+            "smaller side of a long patch and the radius of a round one."),
+        s.patch_width);
+  visit(key("bekker_k_c", "N/m^(n+1)", kSoil, from(-1e12, 1e12).usual(-1e6, 1e6),
+            "Bekker's k_c in p = (k_c/b + k_φ) zⁿ, the pressure under a plate of width b at sinkage z, engine scm. It "
+            "may be below 0."),
+        s.bekker_k_c);
+  visit(key("bekker_k_phi", "N/m^(n+2)", kSoil, above(0).to(1e13).usual(1e4, 1e8),
+            "Bekker's k_φ in p = (k_c/b + k_φ) zⁿ, engine scm."),
+        s.bekker_k_phi);
+  visit(key("bekker_n", "-", kSoil, above(0).to(5).usual(0.1, 2),
+            "Bekker's exponent n in p = (k_c/b + k_φ) zⁿ, engine scm."),
+        s.bekker_n);
+  visit(key("mohr_cohesion", "Pa", kSoil, from(0, 1e9).usual(0, 1e5),
+            "Cohesion c of soil mechanics in τ_max = c + p tan φ, engine scm. It is not the contact value `cohesion` "
+            "of grains."),
+        s.mohr_cohesion);
+  visit(key("mohr_friction_angle", "deg", kSoil, from(0, 80).usual(5, 50),
+            "Friction angle φ in τ_max = c + p tan φ, engine scm. The tire's friction bounds τ_max too."),
+        s.mohr_friction_angle);
+  visit(key("janosi_k", "m", kSoil, above(0).to(10).usual(0.001, 0.1),
+            "Janosi's K in τ = τ_max (1 − exp(−j/K)), j the shear displacement, engine scm."),
+        s.janosi_k);
+  visit(key("unloading_stiffness", "N/m³", kSoil, from(0, 1e15),
+            "Stiffness k_0 in k_u = k_0 + A_u z, the pressure per rebound after unloading from sinkage z, engine scm."),
+        s.unloading_stiffness);
+  visit(key("unloading_stiffness_rate", "N/m⁴", kSoil, from(0, 1e15),
+            "Rate A_u in k_u = k_0 + A_u z, engine scm. k_u is never so small that the soil would rebound by more than "
+            "it was pressed."),
+        s.unloading_stiffness_rate);
+  visit(
+      key("rebound_damping", "N s/m³", kSoil, from(0, 1e12),
+          "Pressure per rate of sinkage while soil is unloaded and loaded again, engine scm. First loading has none."),
+      s.rebound_damping);
 }
 
 }  // namespace furrow::terrain::scm

@@ -8,6 +8,7 @@
 
 #include "protocol/core/column.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/files/read_context.hpp"
 #include "rigs/rig_spec.hpp"
 
@@ -21,9 +22,9 @@ struct HeldHubOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<HeldHubOptions> auto& s) {
-  visit(Field{"depth", "m", role::key}, s.depth);
-  visit(Field{"lowering", "m/s", role::key}, s.lowering);
-  visit(Field{"spin", "rad/s", role::key}, s.spin);
+  visit(key("depth", "m", allowed::from(0), "Depth by which the hub is lowered in all."), s.depth);
+  visit(key("lowering", "m/s", allowed::above(0), "Speed at which it is lowered."), s.lowering);
+  visit(key("spin", "rad/s", "Spin about the hub's y axis."), s.spin);
 }
 
 /// What the rig adds to the table of its wheel.

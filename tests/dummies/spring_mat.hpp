@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/files/read_context.hpp"
 #include "terrain/terrain_spec.hpp"
 
@@ -23,8 +24,8 @@ struct SpringMatOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SpringMatOptions> auto& s) {
-  visit(Field{"mat_stiffness", "N/m³", role::key}, s.mat_stiffness);
-  visit(Field{"mat_damping", "N s/m³", role::key}, s.mat_damping);
+  visit(key("mat_stiffness", "N/m³", allowed::above(0), "Stiffness of the mat per area."), s.mat_stiffness);
+  visit(key("mat_damping", "N s/m³", allowed::from(0), "Damping of the mat per area."), s.mat_damping);
 }
 
 /// @pre the section was checked against the schema

@@ -224,17 +224,8 @@ std::unique_ptr<TireSpec> read_spring_wheel(const nlohmann::json& file, const Ti
   SpringWheelOptions wheel;
   JsonReader reader(file, options.file.string());
   take_common_keys(reader);
-  read_required(reader, wheel);
+  read_keys(reader, wheel);
   reader.finish();
-  const auto require = [&](const char* key, double value, double least) {
-    if (!(value >= least)) reader.fail(key, fmt::format("is {:g}, expected {:g} or more", value, least));
-  };
-  require("radius", wheel.radius, 0.01);
-  require("width", wheel.width, 0.01);
-  require("spokes", wheel.spokes, 3);
-  require("stiffness", wheel.stiffness, 1.0);
-  require("damping", wheel.damping, 0.0);
-  require("mass", wheel.mass, 0.01);
   return std::make_unique<SpringWheelSpec>(wheel, options);
 }
 

@@ -13,12 +13,14 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "tire/tire_spec.hpp"
 
 namespace furrow::tire {
 
 /// The keys of a tire file with "model": "spring_wheel", besides those that all models share.
 struct SpringWheelOptions {
+  static constexpr SchemaName kSchema{"spring_wheel", "A wheel of independent springs around a rigid rim."};
   double radius = 0.4;     // undeformed, m
   double width = 0.2;      // m
   int spokes = 36;         // pairs of vertices around the circumference
@@ -28,12 +30,13 @@ struct SpringWheelOptions {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SpringWheelOptions> auto& s) {
-  visit(Field{"radius", "m", role::key}, s.radius);
-  visit(Field{"width", "m", role::key}, s.width);
-  visit(Field{"spokes", "-", role::key}, s.spokes);
-  visit(Field{"stiffness", "N/m", role::key}, s.stiffness);
-  visit(Field{"damping", "N s/m", role::key}, s.damping);
-  visit(Field{"mass", "kg", role::key}, s.mass);
+  using namespace allowed;
+  visit(needed("radius", "m", from(0.01), "Undeformed radius."), s.radius);
+  visit(needed("width", "m", from(0.01), "Width."), s.width);
+  visit(needed("spokes", "", from(3), "Pairs of vertices around the circumference."), s.spokes);
+  visit(needed("stiffness", "N/m", from(1), "Stiffness of one vertex."), s.stiffness);
+  visit(needed("damping", "N s/m", from(0), "Damping of one vertex."), s.damping);
+  visit(needed("mass", "kg", from(0.01), "Mass, a solid cylinder's."), s.mass);
 }
 
 /// @throws Error(bad_input) naming file and key

@@ -21,7 +21,7 @@ using nlohmann::json;
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 const scenario::Schema& schema() {
-  static const scenario::Schema loaded = scenario::Schema::load();
+  static const scenario::Schema& loaded = scenario::Schema::of_scenarios();
   return loaded;
 }
 

@@ -7,7 +7,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace furrow;
-  static const scenario::Schema schema = scenario::Schema::load();
+  static const scenario::Schema& schema = scenario::Schema::of_scenarios();
   try {
     const auto file = fuzz::input_file("scenario.json", data, size);
     nlohmann::json document = load_json(file, "a scenario");

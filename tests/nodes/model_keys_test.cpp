@@ -1,9 +1,7 @@
-// The sections `terrain` and `rig`: their keys in the schema and in the models' lists of fields, and whose key is
-// whose.
+// The sections `terrain` and `rig`: whose key is whose.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,7 +13,6 @@
 #include "rigs/rigs.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/terrains.hpp"
-#include "tests/nodes/key_lists.hpp"
 #include "tests/nodes/scenario_fixture.hpp"
 
 namespace furrow {
@@ -29,12 +26,6 @@ ScenarioFile with_terrain(const std::string& section) {
   return ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": )" + section + "}");
 }
 
-TEST(TerrainKeys, schema_and_fields_have_the_same_keys_defaults_and_units) {
-  std::vector<KeyList> lists{key_list<terrain::CommonOptions>()};
-  for (const terrain::TerrainEntry& entry : terrain::terrains()) lists.push_back(entry.keys);
-  testing::expect_keys_of_schema("terrain", lists);
-}
-
 /// "'dem' or 'rigid'".
 std::string all_engines() {
   std::vector<std::string> names;
@@ -42,13 +33,9 @@ std::string all_engines() {
   return one_of(names);
 }
 
-TEST(TerrainKeys, schema_and_table_name_the_same_engines) {
-  std::set<std::string> names;
-  for (const terrain::TerrainEntry& entry : terrain::terrains()) {
-    names.insert(entry.name);
+TEST(TerrainKeys, every_engine_describes_itself_by_its_name) {
+  for (const terrain::TerrainEntry& entry : terrain::terrains())
     EXPECT_EQ(entry.read(json::object(), {})->describe().engine, entry.name);
-  }
-  EXPECT_EQ(scenario::Schema::load().find("terrain.engine")->at("enum").get<std::set<std::string>>(), names);
 }
 
 TEST(TerrainKeys, an_unknown_engine_is_refused_with_those_that_there_are) {
@@ -140,7 +127,7 @@ std::vector<std::string> two_kinds(const std::string& key) {
 
 TEST(RigKeys, a_key_of_another_type_is_refused_or_set_aside_as_those_of_engines_are) {
   const scenario::ModelSection rig{"rig", "type", "drawbar", two_kinds};
-  const scenario::Schema schema = scenario::Schema::load();
+  const scenario::Schema& schema = scenario::Schema::of_scenarios();
   const auto set_aside = [&](json& document, const std::vector<std::pair<std::string, std::string>>& settings) {
     return scenario::set_aside_keys(document, schema, "mine.json", settings, {&rig, 1});
   };

@@ -405,7 +405,7 @@ TEST(Scenario, of_very_many_mistakes_the_first_are_told) {
 }
 
 TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
-  const scenario::Schema schema = scenario::Schema::load();
+  const scenario::Schema& schema = scenario::Schema::of_scenarios();
   std::set<std::string> unique;
   for (const std::string& key : schema.keys()) {
     EXPECT_NE(schema.find(key), nullptr) << key;
@@ -419,7 +419,7 @@ TEST(Schema, every_key_of_the_defaults_is_found_and_no_other) {
 
 TEST(Schema, defaults_obey_the_schema) {
   nlohmann::json document = nlohmann::json::parse(testing::kSmallest);
-  const scenario::Schema schema = scenario::Schema::load();
+  const scenario::Schema& schema = scenario::Schema::of_scenarios();
   schema.fill_defaults(document);
   schema.normalize(document);
   EXPECT_TRUE(schema.problems(document).empty());

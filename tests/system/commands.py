@@ -12,6 +12,9 @@ CALIBRATIONS = sorted(path.name for path in (ROOT / "rigs").glob("calibrate_*.js
 SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json")
                  if path.name not in ("scenario.schema.json", *STUDIES, *CALIBRATIONS))
 
+SCHEMAS = {"scenario": "rigs/scenario.schema.json", "tire": "tire/data/tire.schema.json",
+           "vehicle": "vehicle/data/vehicle.schema.json", "driver": "vehicle/driver/driver.schema.json"}
+
 
 class Commands(SystemTest):
     def output(self, *arguments):
@@ -149,7 +152,7 @@ class Commands(SystemTest):
                 self.assertLess(report["grains"], 300_000)
                 self.assertGreater(report["wheels"][0]["contact_length_in_grains"], 2)
         self.assertAlmostEqual(reports["lab"]["wheels"][0]["load_N"], 24.5)
-        self.assertIn("// Kind of rig. drawbar: pulls", (self.folder / "truck.json").read_text())
+        self.assertIn("// Kind of rig. cleat_stand: rolls", (self.folder / "truck.json").read_text())
         self.assertIn("// Grain radius", (self.folder / "truck.json").read_text())
 
     def test_new_scenarios_have_the_ground_that_tire_and_soil_ask_for(self):
@@ -265,6 +268,13 @@ class Commands(SystemTest):
             if "default" not in node:
                 self.assertIn(key.split(".")[0],
                               ("$schema", "completed_by", "description", "expected", "tire", "tires"), key)
+
+    def test_committed_schemas_are_what_the_program_prints(self):
+        for kind, file in SCHEMAS.items():
+            self.assertEqual(self.output("schema", kind), (ROOT / file).read_text(), f"furrow schema {kind} > {file}")
+        done = furrow("schema", "bridge", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'bridge': is unknown, expected 'scenario', 'tire', 'vehicle' or 'driver'", done.stderr)
 
     def test_skeleton_of_the_contract_is_accepted(self):
         scenario = {

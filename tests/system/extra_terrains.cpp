@@ -1,5 +1,5 @@
 // furrow_faults has one terrain more than furrow: the mat of several ranks. It takes the place of
-// terrain/extra_terrains.cpp. A scenario that names it needs a schema that knows it (terrain_ranks.py makes one).
+// terrain/extra_terrains.cpp.
 #include "terrain/extra_terrains.hpp"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace furrow::terrain {
 
 std::span<const TerrainEntry> extra_terrains() {
   static constexpr std::array kExtra{
-      TerrainEntry{"strip_mat", key_list<StripMatOptions>(), read_strip_mat},
+      TerrainEntry{"strip_mat", "a mat of springs on several ranks", key_list<StripMatOptions>(), read_strip_mat},
   };
   return kExtra;
 }

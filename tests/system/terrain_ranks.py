@@ -1,13 +1,10 @@
 #!/usr/bin/python3
 """A terrain of three ranks, the strip mat of tests/dummies: results that do not depend on how many there are, each rank
 killed and stopped, and what is refused."""
-import os
-import pathlib
 import shutil
-import tempfile
 
 from checkpoint_runs import INTERVAL, CheckpointTest, steps, summary, table
-from program import ROOT, changed, main, read_json, write_json, write_scenario
+from program import changed, main, write_scenario
 
 MAT = changed(rig={"touchdown_damping": 0}, terrain={"ground_stiffness": 4e7},
               run={"step": 2e-4, "end": 0.1, "average_from": 0.04, "peer_timeout": 20},
@@ -16,29 +13,8 @@ MAT["terrain"] = {"engine": "strip_mat", "ranks": 3, "length": 1.4, "width": 0.4
 RANKS = {"terrain 0": 2, "terrain 1": 3, "terrain 2": 4}
 
 
-def home(folder):
-    """The data folders with a schema that knows the mat."""
-    folder = pathlib.Path(folder) / "home"
-    (folder / "rigs").mkdir(parents=True)
-    for name in ("tire", "terrain", "vehicle", "scripts"):
-        (folder / name).symlink_to(ROOT / name)
-    schema = read_json(ROOT / "rigs" / "scenario.schema.json")
-    schema["properties"]["terrain"]["properties"]["engine"]["enum"].append("strip_mat")
-    write_json(folder / "rigs" / "scenario.schema.json", schema)
-    return folder
-
-
 class TerrainRanks(CheckpointTest):
     SCENARIO = MAT
-
-    @classmethod
-    def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="furrow home ")
-        cls.addClassCleanup(holder.cleanup)
-        before = os.environ.get("FURROW_HOME")
-        cls.addClassCleanup(os.environ.update, {"FURROW_HOME": before or str(ROOT)})
-        os.environ["FURROW_HOME"] = str(home(holder.name))
-        super().setUpClass()
 
     def killed(self, point, count, step):
         for name, rank in RANKS.items():

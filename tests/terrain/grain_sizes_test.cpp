@@ -359,7 +359,8 @@ TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
     }
     return "not refused";
   };
-  EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.7; }).find("size_spread': 0.7 is out of range"), std::string::npos);
+  EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.7; }).find("size_spread': is 0.7, expected a number, 0 to 0.6"),
+            std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.size_spread = 0.3, o.law = "hertz_tanh"; }).find("expected law 'mindlin'"),
             std::string::npos);
   EXPECT_NE(refusal([](auto& o) { o.size_distribution = "gamma"; }).find("expected uniform or normal"),

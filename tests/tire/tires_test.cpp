@@ -51,19 +51,6 @@ class TiresTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(TiresTest, the_schema_of_tire_files_lists_the_models_that_there_are) {
-  json names = json::array(), listed = json::array();
-  for (const TireModel& model : tire_models()) names.push_back(std::string(model.name));
-  const json schema = file_text("tire.schema.json");
-  for (const json& one : schema["oneOf"]) {
-    const json& model = schema.at(json::json_pointer(one["$ref"].get<std::string>().substr(1)));
-    listed.push_back(model["properties"]["model"]["const"]);
-    EXPECT_EQ(model["additionalProperties"], false) << listed.back();
-  }
-  EXPECT_EQ(listed, names);
-  EXPECT_EQ(schema["definitions"][names.front()]["properties"]["model"]["default"], names.front());
-}
-
 TEST_F(TiresTest, a_file_without_a_model_is_a_shell) {
   json file = file_text("hmmwv_layered.json");
   EXPECT_EQ(read_tire(written(file))->describe().kind, "ancf");

@@ -65,7 +65,7 @@ class SchemaCheck {
     return "";
   }
   std::string check_object(const json& node, const json& value, const std::string& path) const {
-    for (const json& key : node["required"])
+    for (const json& key : node.value("required", json::array()))
       if (!value.contains(key.get<std::string>())) return path + ": lacks " + key.get<std::string>();
     for (const auto& [key, member] : value.items()) {
       if (!node["properties"].contains(key)) return path + ": has " + key;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/handling/handling_press.hpp"
 #include "tire/handling/handling_tire.hpp"
@@ -125,13 +126,13 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
   take_common_keys(reader);
   HandlingFile f;
   f.path = path;
-  const std::filesystem::path named = reader.text("tir");
-  f.tir = named.is_absolute() ? named : std::filesystem::path(path).parent_path() / named;
+  read_keys(reader, f);
+  if (!f.tir.is_absolute()) f.tir = std::filesystem::path(path).parent_path() / f.tir;
   if (is_tir(path)) f.tir = path;
   f.formula = handling::read_tir(f.tir);
   const handling::TireInertia& said = f.formula.inertia;
-  const auto take = [&](const char* key, double in_tir, const char* name) {
-    const double value = reader.has(key) ? reader.positive(key) : in_tir;
+  const auto fill = [&](double& value, const char* key, double in_tir, const char* name) {
+    if (value == 0.0) value = in_tir;
     if (!(value > 0.0))
       throw input_error(path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
                         is_tir(path)
@@ -139,11 +140,10 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
                               "model handling that names this file and says them"
                             : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}", name,
                                           f.tir.string()));
-    return value;
   };
-  f.mass = take("mass", said.mass, "MASS");
-  f.spin_inertia = take("spin_inertia", said.iyy, "IYY");
-  f.diametral_inertia = take("diametral_inertia", said.ixx, "IXX");
+  fill(f.mass, "mass", said.mass, "MASS");
+  fill(f.spin_inertia, "spin_inertia", said.iyy, "IYY");
+  fill(f.diametral_inertia, "diametral_inertia", said.ixx, "IXX");
   reader.finish();
   return f;
 }

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "tire/handling/coefficients.hpp"
 #include "tire/tire_spec.hpp"
 
@@ -14,6 +16,10 @@ namespace furrow::tire {
 
 /// The keys of a tire file of this model.
 struct HandlingFile {
+  static constexpr SchemaName kSchema{"handling",
+                                      "A tire on hard level ground by the Magic Formula: names a tire property file "
+                                      "(.tir) of MF-Tyre 5.2, which may be "
+                                      "the tire's file itself where it has a section [INERTIA]. SI units."};
   std::string path;
   std::filesystem::path tir;  // resolved: beside the tire file, or as it stands
   handling::MagicFormula formula;
@@ -21,6 +27,18 @@ struct HandlingFile {
   double spin_inertia = 0.0;       // about the axle, kg m²
   double diametral_inertia = 0.0;  // kg m²
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<HandlingFile> auto& s) {
+  constexpr Allowed kPositive = allowed::above(0).optional();
+  visit(needed("tir", "", "Tire property file, relative to this file."), s.tir);
+  visit(key("mass", "kg", kPositive, "Mass of the tire; without it MASS of [INERTIA]."), s.mass);
+  visit(key("spin_inertia", "kg m²", kPositive,
+            "Moment of inertia of the tire about its axle; without it IYY of [INERTIA]."),
+        s.spin_inertia);
+  visit(key("diametral_inertia", "kg m²", kPositive,
+            "Moment of inertia of the tire about a diameter; without it IXX of [INERTIA]."),
+        s.diametral_inertia);
+}
 
 /// Mass and inertia are those of [INERTIA] where the tire file does not say them. @throws Error(bad_input)
 HandlingFile read_handling_file(const nlohmann::json& document, const std::string& path);

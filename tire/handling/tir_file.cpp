@@ -32,11 +32,22 @@ std::string upper(std::string_view text) {
 }
 
 std::optional<double> number_of(std::string_view text) {
+  if (text.starts_with("+-")) return std::nullopt;
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+/// What stands before a `$` or `!` outside of quotes.
+std::string_view without_comment(std::string_view line) {
+  bool quoted = false;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    if (line[at] == '\'') quoted = !quoted;
+    if (!quoted && (line[at] == '$' || line[at] == '!')) return line.substr(0, at);
+  }
+  return line;
 }
 
 using Section = std::map<std::string, std::string>;  // NAME to VALUE, without quotes
@@ -66,7 +77,7 @@ class Sections {
 
  private:
   void take(std::string_view line, int number) {
-    line = trimmed(line.substr(0, line.find_first_of("$!")));
+    line = trimmed(without_comment(line));
     if (line.empty()) return;
     const auto wrong_line = [&](const char* expected) {
       return input_error(file_, "",

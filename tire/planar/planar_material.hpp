@@ -11,6 +11,8 @@
 #pragma once
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 
 namespace furrow::tire {
 
@@ -18,11 +20,21 @@ namespace furrow::tire {
 enum class PlanarLaw { printed, consistent };
 
 struct PlanarMaterial {
+  static constexpr SchemaName kSchema{"planar_material", "An elastic and viscous material in plane strain."};
   double density = 0.0;        // kg/m³
   double young_modulus = 0.0;  // Pa
   double poisson_ratio = 0.0;
   double viscosity = 0.0;  // ξ, Pa s
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<PlanarMaterial> auto& s) {
+  using namespace allowed;
+  visit(needed("density", "kg/m³", above(0), "Density."), s.density);
+  visit(needed("young_modulus", "Pa", above(0), "Young's modulus."), s.young_modulus);
+  // Beyond, the step limit vanishes.
+  visit(needed("poisson_ratio", "-", from(0, 0.499), "Poisson's ratio."), s.poisson_ratio);
+  visit(needed("viscosity", "Pa s", from(0), "Viscosity xi: stress / rate of deformation."), s.viscosity);
+}
 
 struct PlanarModuli {
   double mu = 0.0, kappa = 0.0;  // Pa

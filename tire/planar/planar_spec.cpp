@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/planar/planar_carcass.hpp"
 #include "tire/planar/planar_modes.hpp"
@@ -21,26 +22,8 @@
 namespace furrow::tire {
 namespace {
 
-constexpr int kLeastAround = 12, kMostAround = 2000, kMostRings = 200;
 constexpr double kBytesPerElement = 3000.0;  // of the static test's factor
 constexpr double kSavedBytes = 32.0;         // of a node
-constexpr double kLargestPoisson = 0.499;    // beyond, the step limit vanishes
-constexpr std::array<std::string_view, 2> kLaw{"printed", "consistent"}, kVolume{"averaged", "element"},
-    kIntegrator{"runge_kutta_4", "semi_implicit_euler"};
-enum class Volume { averaged, element };
-enum class Integrator { runge_kutta_4, semi_implicit_euler };
-
-PlanarMaterial read_material(JsonReader reader) {
-  PlanarMaterial m;
-  m.density = reader.positive("density");
-  m.young_modulus = reader.positive("young_modulus");
-  m.poisson_ratio = reader.not_negative("poisson_ratio");
-  m.viscosity = reader.not_negative("viscosity");
-  if (m.poisson_ratio > kLargestPoisson)
-    reader.fail("poisson_ratio", fmt::format("is {:g}, expected 0 to {:g}", m.poisson_ratio, kLargestPoisson));
-  reader.finish();
-  return m;
-}
 
 void check(const PlanarFile& f) {
   const PlanarWheelSize& s = f.params.size;
@@ -52,10 +35,6 @@ void check(const PlanarFile& f) {
     throw input_error(
         f.path, "elements_radial",
         fmt::format("is {}, expected 1 to {} for {} elements around: more cut each other", s.rings, most, s.around));
-  if (f.params.step_share > 1.0)
-    throw input_error(f.path, "step_share",
-                      fmt::format("is {:g}, expected above 0 up to 1: explicit integration is not stable beyond",
-                                  f.params.step_share));
 }
 
 class PlanarTest final : public StaticTest {
@@ -152,21 +131,8 @@ PlanarFile read_planar_file(const nlohmann::json& document, const std::string& p
   PlanarFile f;
   f.path = path;
   PlanarParams& p = f.params;
-  p.size.radius = length_of(reader, "radius");
-  p.size.rim_radius = length_of(reader, "rim_radius");
-  p.options.width = length_of(reader, "width");
-  p.size.around = reader.count("elements_circumference", kLeastAround, kMostAround);
-  p.size.rings = reader.count("elements_radial", 1, kMostRings);
-  p.disc = read_material(reader.child("disc"));
-  p.tire = read_material(reader.child("tire"));
-  p.options.law = choice_of<PlanarLaw>(reader, "law", kLaw);
-  p.options.averaged = choice_of<Volume>(reader, "volume", kVolume) == Volume::averaged;
-  p.integrator = choice_of<Integrator>(reader, "integrator", kIntegrator) == Integrator::runge_kutta_4
-                     ? PlanarIntegrator::runge_kutta_4
-                     : PlanarIntegrator::semi_implicit_euler;
-  p.contact_stiffness = reader.positive("contact_stiffness");
-  p.step_share = reader.positive("step_share");
-  f.contact = read_contact(reader.child("contact"));
+  read_keys(reader, f);
+  p.options.averaged = f.volume == PlanarVolume::averaged;
   p.friction = f.contact.friction;
   reader.finish();
   check(f);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/extruded/extruded_tire.hpp"
 #include "tire/pressure_text.hpp"
@@ -23,9 +24,7 @@ namespace {
 constexpr double kMostDraw = 0.5;  // of the radius: beyond, a sidewall is too soft for its pressure
 constexpr double kBytesPerSegment = 1200.0;
 constexpr double kSavedBytes = 32.0;  // of a segment
-constexpr double kDamping = 5e-3;     // τ where the file says none, s
 constexpr double kStepShare = 0.04;   // of τ: contact forces come one step late
-constexpr std::array<std::string_view, 2> kGas{"linearised", "exact"}, kKinematics{"radial", "exact"};
 
 void check(const RingFile& f) {
   const RingParams& p = f.params;
@@ -40,10 +39,6 @@ void check(const RingFile& f) {
         fmt::format("is {:g} kg m², expected between {:.4g} and {:.4g} kg m²: the whole mass at the rim's "
                     "radius, and at the belt's",
                     m.spin_inertia, least, most));
-  if (p.air_share > 1.0)
-    throw input_error(f.path, "air_share", fmt::format("is {:g}, expected above 0 up to 1", p.air_share));
-  if (p.tension_share > 1.0)
-    throw input_error(f.path, "tension_share", fmt::format("is {:g}, expected 0 to 1", p.tension_share));
   if (p.sidewall_2 * p.sidewall_2 > 3.0 * p.sidewall_1 * p.sidewall_3)
     throw input_error(f.path, "sidewall",
                       fmt::format("is {:g}, {:g}, {:g}: the force falls somewhere, expected k2² at most 3 k1 k3",
@@ -157,28 +152,12 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
   RingFile f;
   f.path = path;
   RingParams& p = f.params;
-  p.segments = reader.count("segments", kMinSegments, kMaxSegments);
-  p.radius = length_of(reader, "radius");
-  p.width = length_of(reader, "width");
-  f.motion.rim_radius = length_of(reader, "rim_radius");
-  p.pressure = reader.not_negative("pressure");
-  p.air_share = reader.positive("air_share");
-  p.bending = reader.positive("bending");
-  p.shear = reader.positive("shear");
-  p.tangential = reader.positive("tangential");
-  p.tension_share = reader.not_negative_or("tension_share", 0.0);
-  const std::vector<double> k = reader.numbers("sidewall", 3);
+  read_keys(reader, f);
+  const auto& k = f.sidewall;
   if (!(k[0] > 0.0 && k[1] >= 0.0 && k[2] >= 0.0))
     reader.fail("sidewall",
                 fmt::format("is {:g}, {:g}, {:g}, expected k1 above 0, k2 and k3 of 0 or more", k[0], k[1], k[2]));
   p.sidewall_1 = k[0], p.sidewall_2 = k[1], p.sidewall_3 = k[2];
-  p.gas = choice_of<RingGas>(reader, "gas", kGas);
-  p.kinematics = choice_of<RingKinematics>(reader, "kinematics", kKinematics);
-  f.motion.mass = reader.positive("mass");
-  f.motion.spin_inertia = reader.positive("spin_inertia");
-  f.diametral_inertia = reader.positive("diametral_inertia");
-  f.motion.damping = reader.has("structural_damping") ? reader.not_negative("structural_damping") : kDamping;
-  f.contact = read_contact(reader.child("contact"));
   reader.finish();
   check(f);
   check_pressure(f, p.pressure, "pressure");

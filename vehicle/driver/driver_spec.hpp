@@ -1,4 +1,4 @@
-// What a driver file says (driver.schema.json describes it for people and editors).
+// What a driver file says (`furrow schema driver` describes it for editors).
 #pragma once
 
 #include <optional>
@@ -8,12 +8,18 @@
 #include <vector>
 
 #include "protocol/core/fields.hpp"
-#include "vehicle/spec/spec_roles.hpp"
+#include "protocol/core/key.hpp"
+#include "vehicle/spec/part_keys.hpp"
 
 namespace furrow::vehicle {
 
 /// Points of the plane (m, m), or of a function of time (s, value), which stays what it is at its ends beyond them.
 using DriverPoints = std::vector<std::pair<double, double>>;
+
+namespace keys {
+inline constexpr double kMostLength = 1e6;  // of paths, m
+inline constexpr Allowed kSeries = allowed::shaped(R"({"allOf": [{"$ref": "#/definitions/series"}]})");
+}  // namespace keys
 
 /// Functions of time; one that is empty was not given. Between points pedals and steering are straight lines, and the
 /// gear stays.
@@ -24,10 +30,11 @@ struct InputSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<InputSpec> auto& s) {
-  visit(Field{"throttle", "-", role::key | kReadApart}, s.throttle);
-  visit(Field{"brake", "-", role::key | kReadApart}, s.brake);
-  visit(Field{"steering", "-", role::key | kReadApart}, s.steering);
-  visit(Field{"gear", "-", role::key | kReadApart}, s.gear);
+  using namespace allowed;
+  visit(key("throttle", "-", role::by_hand, keys::kSeries, "0 to 1"), s.throttle);
+  visit(key("brake", "-", role::by_hand, keys::kSeries, "0 to 1"), s.brake);
+  visit(key("steering", "-", role::by_hand, keys::kSeries, "-1 to 1, positive to the left"), s.steering);
+  visit(key("gear", "-", role::by_hand, shaped(R"({"$ref": "#/definitions/gear"})"), ""), s.gear);
 }
 
 /// speed_control.hpp
@@ -40,11 +47,22 @@ struct SpeedSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<SpeedSpec> auto& s) {
-  visit(Field{"target", "m/s", role::key | kReadApart}, s.target);
-  visit(Field{"proportional", "s/m", role::key | kMayMiss}, s.proportional);
-  visit(Field{"integral", "1/m", role::key | kMayMiss}, s.integral);
-  visit(Field{"hysteresis", "-", role::key | kMayMiss}, s.hysteresis);
-  visit(Field{"stop_speed", "m/s", role::key | kMayMiss}, s.stop_speed);
+  using namespace allowed;
+  visit(key("target", "m/s", role::by_hand, keys::kSeries.required(),
+            "0 to 100; a CSV file has the columns time_s and speed_m_s"),
+        s.target);
+  visit(key("proportional", "s/m", from(0).optional(),
+            "Throttle per m/s of error. Without it mass / largest drive force * 1 rad/s."),
+        s.proportional);
+  visit(key("integral", "1/m", from(0).optional(),
+            "Throttle per m of integrated error. Without it mass / largest drive force * 0.25 (rad/s)^2."),
+        s.integral);
+  visit(key("hysteresis", "-", from(0, 1),
+            "Of throttle, by which the demand must change its sign before the foot changes the pedal."),
+        s.hysteresis);
+  visit(key("stop_speed", "m/s", from(0, 10),
+            "Below this speed and with target 0 the brakes hold the vehicle. 0: never."),
+        s.stop_speed);
 }
 
 // Shapes of paths (path_shapes.hpp), each from its own origin along its own x axis.
@@ -55,7 +73,8 @@ struct StraightPath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<StraightPath> auto& s) {
-  visit(Field{"length", "m", role::key}, s.length);
+  using namespace allowed;
+  visit(needed("length", "m", above(0).to(keys::kMostLength), "Length of the path."), s.length);
 }
 
 struct CirclePath {
@@ -67,10 +86,11 @@ struct CirclePath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<CirclePath> auto& s) {
-  visit(Field{"lead_in", "m", role::key | kMayMiss}, s.lead_in);
-  visit(Field{"radius", "m", role::key}, s.radius);
-  visit(Field{"angle_deg", "deg", role::key | kMayMiss}, s.angle_deg);
-  visit(Field{"turn", "", role::key | kMayMiss}, s.turn);
+  using namespace allowed;
+  visit(key("lead_in", "m", from(0, keys::kMostLength), "Straight before the circle."), s.lead_in);
+  visit(needed("radius", "m", above(0).to(keys::kMostLength), "Radius of the circle."), s.radius);
+  visit(key("angle_deg", "deg", above(0).to(36000), "Of the whole turn; more than 360 for several laps."), s.angle_deg);
+  visit(key("turn", "", words("left right"), "Side to which the path turns."), s.turn);
 }
 
 struct LaneChangePath {
@@ -80,9 +100,12 @@ struct LaneChangePath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<LaneChangePath> auto& s) {
-  visit(Field{"track", "", role::key | kMayMiss}, s.track);
-  visit(Field{"lead_in", "m", role::key | kMayMiss}, s.lead_in);
-  visit(Field{"lead_out", "m", role::key | kMayMiss}, s.lead_out);
+  using namespace allowed;
+  visit(key("track", "", words("iso_3888_1 iso_3888_2"),
+            "ISO 3888-1 (125 m) or ISO 3888-2 (61 m), centre lines of the lanes for the vehicle's width."),
+        s.track);
+  visit(key("lead_in", "m", from(0, keys::kMostLength), "Straight before the track."), s.lead_in);
+  visit(key("lead_out", "m", from(0, keys::kMostLength), "Straight after the track."), s.lead_out);
 }
 
 struct WaypointPath {
@@ -91,7 +114,16 @@ struct WaypointPath {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<WaypointPath> auto& s) {
-  visit(Field{"points", "m", role::key | kReadApart}, s.points);
+  using namespace allowed;
+  visit(key("points", "m", role::by_hand,
+            shaped(R"({"anyOf": [{"type": "string"},
+                                 {"type": "array", "minItems": 2,
+                                  "items": {"type": "array", "items": {"type": "number"},
+                                            "minItems": 2, "maxItems": 2}}]})")
+                .required(),
+            "[x, y], or the name of a CSV file with the columns x_m and y_m. The curve goes through all of them and "
+            "turns by at most 120 degrees at each."),
+        s.points);
 }
 
 // Laws that steer (path_follower.hpp).
@@ -103,8 +135,12 @@ struct PurePursuit {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PurePursuit> auto& s) {
-  visit(Field{"lookahead_time", "s", role::key | kMayMiss}, s.lookahead_time);
-  visit(Field{"lookahead_distance", "m", role::key | kMayMiss}, s.lookahead_distance);
+  using namespace allowed;
+  visit(key("lookahead_time", "s", from(0, 100), "Times the speed it is the distance to look ahead."),
+        s.lookahead_time);
+  visit(key("lookahead_distance", "m", above(0).to(keys::kMostLength).optional(),
+            "At least. Without it one and a half wheelbases."),
+        s.lookahead_distance);
 }
 
 struct Stanley {
@@ -114,8 +150,9 @@ struct Stanley {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<Stanley> auto& s) {
-  visit(Field{"gain", "1/s", role::key | kMayMiss}, s.gain);
-  visit(Field{"soft_speed", "m/s", role::key | kMayMiss}, s.soft_speed);
+  using namespace allowed;
+  visit(key("gain", "1/s", above(0).to(1e3), "Gain of the cross-track error."), s.gain);
+  visit(key("soft_speed", "m/s", above(0).to(100), "Added to the speed."), s.soft_speed);
 }
 
 struct Preview {
@@ -129,23 +166,41 @@ struct Preview {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<Preview> auto& s) {
-  visit(Field{"preview_time", "s", role::key | kMayMiss}, s.preview_time);
-  visit(Field{"response_time", "s", role::key | kMayMiss}, s.response_time);
-  visit(Field{"response_distance", "m", role::key | kMayMiss}, s.response_distance);
-  visit(Field{"understeer", "rad s²/m", role::key | kMayMiss}, s.understeer);
-  visit(Field{"side_slip", "rad s²/m", role::key | kMayMiss}, s.side_slip);
-  visit(Field{"yaw_damping", "s", role::key | kMayMiss}, s.yaw_damping);
+  using namespace allowed;
+  visit(
+      key("preview_time", "s", from(0, 100), "Times the speed it is how far ahead the path's curvature is looked at."),
+      s.preview_time);
+  visit(
+      key("response_time", "s", from(0, 100), "Times the speed it is the distance in which errors of the path decay."),
+      s.response_time);
+  visit(key("response_distance", "m", above(0).to(keys::kMostLength).optional(),
+            "That distance at least. Without it one and a half wheelbases."),
+        s.response_distance);
+  visit(key("understeer", "rad s²/m", from(-1, 1),
+            "Understeer gradient: how much more the wheels must turn per m/s^2 of lateral acceleration."),
+        s.understeer);
+  visit(key("side_slip", "rad s²/m", from(0, 1),
+            "Slip angle of the rear axle per m/s^2 of lateral acceleration: 1/(g C) for tires whose side force grows "
+            "by C times their load per rad; without it C = 7."),
+        s.side_slip);
+  visit(key("yaw_damping", "s", from(0, 10), "Wheel angle against the yaw rate that the path does not ask for."),
+        s.yaw_damping);
 }
 
 using SteeringLaw = std::variant<PurePursuit, Stanley, Preview>;
 
 struct PathSteeringSpec {
+  static constexpr SchemaName kSchema{
+      "steering", "The law that steers along the path, and the rate at which the steering wheel can turn."};
   SteeringLaw law;
   double rate = 1.0;  // largest, of steering, 1/s
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PathSteeringSpec> auto& s) {
-  visit(Field{"rate", "1/s", role::key | kMayMiss}, s.rate);
+  using namespace allowed;
+  visit(key("rate", "1/s", above(0).to(1e6),
+            "Largest change of steering: at 1 the wheel turns from the middle to its stop in 1 s."),
+        s.rate);
 }
 
 using PathShape = std::variant<StraightPath, CirclePath, LaneChangePath, WaypointPath>;
@@ -158,10 +213,11 @@ struct PathSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<PathSpec> auto& s) {
-  visit(Field{"x", "m", role::key | kMayMiss}, s.x);
-  visit(Field{"y", "m", role::key | kMayMiss}, s.y);
-  visit(Field{"heading_deg", "deg", role::key | kMayMiss}, s.heading_deg);
-  visit(Field{"steering", "", role::key | kReadApart}, s.steering);
+  using namespace allowed;
+  visit(key("x", "m", from(-keys::kMostLength, keys::kMostLength), "x of the path's origin."), s.x);
+  visit(key("y", "m", from(-keys::kMostLength, keys::kMostLength), "y of the path's origin."), s.y);
+  visit(key("heading_deg", "deg", from(-360, 360), "Of the path's x axis, about z."), s.heading_deg);
+  visit(key("steering", "", role::by_hand, ""), s.steering);
 }
 
 struct DriverSpec {

@@ -8,20 +8,22 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/key.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/key_schema.hpp"
 #include "vehicle/driver/driver.hpp"
-#include "vehicle/driver/lane_change.hpp"
 #include "vehicle/driver/read_points.hpp"
 #include "vehicle/spec/spec_reader.hpp"
 #include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
+
+void check_spec(const PathSteeringSpec&, const JsonReader&) {}
+
 namespace {
 
 constexpr int kFormatVersion = 1;
-constexpr double kMostLength = 1e6;      // of paths, m
-constexpr double kMostAngle = 36000.0;   // of a circle, degrees
 constexpr double kLeastSpacing = 1e-3;   // of waypoints, m
 constexpr double kSharpestTurn = 120.0;  // at a waypoint, degrees
 
@@ -37,24 +39,28 @@ constexpr PointRule kGear{"time_s",
                           gear_request::automatic,
                           true};
 constexpr PointRule kSpeed{"time_s", "speed_m_s", 0.0, 100.0, "a speed from 0 to 100"};
-constexpr PointRule kWaypoint{"x_m", "y_m", -kMostLength, kMostLength, "at most 1e6"};
+constexpr PointRule kWaypoint{"x_m", "y_m", -keys::kMostLength, keys::kMostLength, "at most 1e6"};
 
-// Keys of each section: what they may be, and what is read apart.
+constexpr const char* kSeriesSchema =
+    R"({"description": "A number for all times; or points [time in s, value] whose times rise, straight lines between )"
+    R"(them; or the name of a CSV file.",
+  "anyOf": [{"type": "number"}, {"type": "string"},
+            {"type": "array", "minItems": 1,
+             "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}]})";
+constexpr const char* kGearSchema =
+    R"({"description": "'auto', -1 (reverse), 0 (neutral) or a gear from 1 to 20; or points [time in s, gear], each )"
+    R"(of which holds until the next; or the name of a CSV file.",
+  "anyOf": [{"type": "integer", "minimum": -1, "maximum": 20}, {"type": "string"},
+            {"type": "array", "minItems": 1,
+             "items": {"type": "array", "minItems": 2, "maxItems": 2,
+                       "items": [{"type": "number"},
+                                 {"anyOf": [{"const": "auto"},
+                                            {"type": "integer", "minimum": -1, "maximum": 20}]}]}}]})";
 
-void finish(StraightPath& shape, JsonReader& reader) { check_positive(reader, "length", shape.length, kMostLength); }
+// What is read apart of each choice.
 
-void finish(CirclePath& shape, JsonReader& reader) {
-  check_positive(reader, "radius", shape.radius, kMostLength);
-  check_positive(reader, "angle_deg", shape.angle_deg, kMostAngle);
-  check_within(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
-  check_known(reader, "turn", shape.turn, {"left", "right"});
-}
-
-void finish(LaneChangePath& shape, JsonReader& reader) {
-  check_known(reader, "track", shape.track, lane_change_names());
-  check_within(reader, "lead_in", shape.lead_in, 0.0, kMostLength);
-  check_within(reader, "lead_out", shape.lead_out, 0.0, kMostLength);
-}
+template <class Choice>
+void finish(Choice&, JsonReader&) {}
 
 void finish(WaypointPath& shape, JsonReader& reader) {
   const DriverPoints points = read_points(reader, "points", kWaypoint);
@@ -77,27 +83,6 @@ void finish(WaypointPath& shape, JsonReader& reader) {
   shape.points = points;
 }
 
-void finish(PurePursuit& law, JsonReader& reader) {
-  check_within(reader, "lookahead_time", law.lookahead_time, 0.0, 100.0);
-  if (reader.given("lookahead_distance"))
-    check_positive(reader, "lookahead_distance", law.lookahead_distance, kMostLength);
-}
-
-void finish(Stanley& law, JsonReader& reader) {
-  check_positive(reader, "gain", law.gain, 1e3);
-  check_positive(reader, "soft_speed", law.soft_speed, 100.0);
-}
-
-void finish(Preview& law, JsonReader& reader) {
-  check_within(reader, "preview_time", law.preview_time, 0.0, 100.0);
-  check_within(reader, "response_time", law.response_time, 0.0, 100.0);
-  if (reader.given("response_distance"))
-    check_positive(reader, "response_distance", law.response_distance, kMostLength);
-  check_within(reader, "understeer", law.understeer, -1.0, 1.0);
-  check_within(reader, "side_slip", law.side_slip, 0.0, 1.0);
-  check_within(reader, "yaw_damping", law.yaw_damping, 0.0, 10.0);
-}
-
 /// One of several structs: the one whose kName is the text under `key`, the first of them when there is none and it may
 /// be missing.
 template <class... Choices>
@@ -118,16 +103,9 @@ std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key,
   return chosen;
 }
 
-}  // namespace
-
-void check_spec(const PathSteeringSpec& s, const JsonReader& reader) { check_positive(reader, "rate", s.rate, 1e6); }
-
-namespace {
-
 PathSteeringSpec read_steering(JsonReader reader) {
   PathSteeringSpec spec;
   take_fields(reader, spec);
-  check_spec(spec, reader);
   spec.law = read_choice(reader, "law", false, std::type_identity<SteeringLaw>());
   reader.finish();
   return spec;
@@ -136,9 +114,6 @@ PathSteeringSpec read_steering(JsonReader reader) {
 PathSpec read_path(JsonReader reader) {
   PathSpec spec;
   take_fields(reader, spec);
-  check_within(reader, "x", spec.x, -kMostLength, kMostLength);
-  check_within(reader, "y", spec.y, -kMostLength, kMostLength);
-  check_within(reader, "heading_deg", spec.heading_deg, -360.0, 360.0);
   spec.shape = read_choice(reader, "kind", true, std::type_identity<PathShape>());
   if (reader.given("steering")) spec.steering = read_steering(reader.child("steering"));
   reader.finish();
@@ -148,11 +123,6 @@ PathSpec read_path(JsonReader reader) {
 SpeedSpec read_speed(JsonReader reader) {
   SpeedSpec spec;
   take_fields(reader, spec);
-  // Below zero they come from the vehicle; a file cannot say that but by leaving them out.
-  if (reader.given("proportional")) check_not_negative(reader, "proportional", spec.proportional);
-  if (reader.given("integral")) check_not_negative(reader, "integral", spec.integral);
-  check_within(reader, "hysteresis", spec.hysteresis, 0.0, 1.0);
-  check_within(reader, "stop_speed", spec.stop_speed, 0.0, 10.0);
   spec.target = read_points(reader, "target", kSpeed);
   reader.finish();
   return spec;
@@ -223,6 +193,55 @@ DriverSpec read_driver(const nlohmann::json& document, const std::string& file, 
   if (reader.given("path")) spec.path = read_path(reader.child("path"));
   check_parts(spec, reader);
   return spec;
+}
+
+nlohmann::ordered_json driver_schema() {
+  using Json = nlohmann::ordered_json;
+  SchemaWriter writer;
+  // One of several structs, each with the keys that all share.
+  const auto choice = [&]<class Shared, class... Choices>(const Shared&, const std::variant<Choices...>&,
+                                                          const Key& which) {
+    Json options = Json::array();
+    const auto add = [&]<class T>(const T&) {
+      Json option = object_schema(T::kName);
+      Key own = which;
+      if (!options.empty()) own.missing = Missing::mistake;
+      add_key(option, own, {{"const", T::kName}});
+      writer.add_keys<T>(option);
+      writer.add_keys<Shared>(option);
+      options.push_back(option);
+    };
+    (add(Choices{}), ...);
+    return options;
+  };
+  Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Furrow driver"}};
+  root.update(
+      object_schema("What a driver does, against time or in closed loops. SI units. A CSV file with the column time_s "
+                    "and any of throttle, brake, steering and gear is a driver file too."));
+  root["anyOf"] = {{{"required", {"inputs"}}}, {{"required", {"speed"}}}, {{"required", {"path"}}}};
+  add_key(root, key("$schema"), {{"type", "string"}});
+  add_key(root, needed("format_version"), {{"const", 1}});
+  add_key(root, key("name"), {{"type", "string"}});
+  add_key(root, key("inputs"),
+          {{"anyOf", {{{"type", "string"}}, {{"$ref", "#/definitions/inputs"}}}},
+           {"description",
+            "Functions of time; a text names a CSV file of them. Throttle and brake are not given beside 'speed', nor "
+            "steering beside 'path'."}});
+  add_key(root, key("speed"), {{"$ref", "#/definitions/speed"}});
+  add_key(root, key("path"), {{"$ref", "#/definitions/path"}});
+  Json& parts = writer.definitions;
+  parts["series"] = Json::parse(kSeriesSchema);
+  parts["gear"] = Json::parse(kGearSchema);
+  parts["inputs"] = writer.object<InputSpec>("Functions of time.");
+  parts["speed"] = writer.object<SpeedSpec>("Holds a speed by a PI law that presses throttle or brake.");
+  parts["steering"] = {{"oneOf", choice(PathSteeringSpec{}, SteeringLaw{}, key("law"))},
+                       {"description", PathSteeringSpec::kSchema.description}};
+  parts["path"] = {{"oneOf", choice(PathSpec{}, PathShape{}, needed("kind"))},
+                   {"description",
+                    "Follows a path, which begins at (x, y) and goes along its own x axis there, and continues "
+                    "straight at its end."}};
+  root["definitions"] = parts;
+  return root;
 }
 
 }  // namespace furrow::vehicle

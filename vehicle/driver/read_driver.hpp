@@ -16,4 +16,7 @@ DriverSpec read_driver(const std::filesystem::path& file);
 /// @param file for messages, and for what it names @param key under which the document is in it, for messages
 DriverSpec read_driver(const nlohmann::json& document, const std::string& file, const std::string& key = "");
 
+/// The JSON schema of driver files.
+nlohmann::ordered_json driver_schema();
+
 }  // namespace furrow::vehicle

@@ -9,21 +9,17 @@
 
 #include "protocol/files/json_text.hpp"
 #include "vehicle/spec/spec_rules.hpp"
-#include "vehicle/spec/value_limits.hpp"
 #include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
 void check_spec(const ShaftSpec& s, const JsonReader& reader) {
-  check_positive(reader, "inertia", s.inertia, most::kShaftInertia);
   if (!(s.axis.norm() > 0.0)) reader.fail("axis", "has no length, expected a direction");
 }
 
 void check_spec(const EngineSpec& s, const JsonReader& reader) {
-  check_not_negative(reader, "idle_rpm", s.idle_rpm, most::kRpm);
   if (const double last = s.torque.back().first; s.idle_rpm > last)
     reader.fail("idle_rpm", fmt::format("is {}, expected at most {}, the last speed of torque", number_text(s.idle_rpm),
                                         number_text(last)));
-  check_positive(reader, "idle_band_rpm", s.idle_band_rpm, most::kRpm);
   for (std::size_t i = 0; i < s.losses.size(); ++i)
     if (s.losses[i].first * s.losses[i].second > 0.0)
       reader.fail(fmt::format("losses[{}]", i),
@@ -45,7 +41,6 @@ void check_spec(const ConverterSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const ClutchSpec& s, const JsonReader& reader) {
-  check_positive(reader, "torque", s.torque, most::kTorque);
   if (!(s.closed_rpm > s.open_rpm))
     reader.fail("closed_rpm", fmt::format("is {}, expected more than open_rpm, {}", number_text(s.closed_rpm),
                                           number_text(s.open_rpm)));
@@ -54,14 +49,9 @@ void check_spec(const ClutchSpec& s, const JsonReader& reader) {
 void check_spec(const GearboxSpec& s, const JsonReader& reader) {
   if (s.ratios.empty()) reader.fail("ratios", "is empty, expected the ratio of at least one gear");
   for (std::size_t i = 0; i < s.ratios.size(); ++i) check_positive(reader, fmt::format("ratios[{}]", i), s.ratios[i]);
-  if (s.reverse && !(*s.reverse < 0.0))
-    reader.fail("reverse", "is " + number_text(*s.reverse) + ", expected a number below zero");
-  check_not_negative(reader, "shift_time", s.shift_time);
-  check_positive(reader, "down_rpm", s.down_rpm, most::kRpm);
   if (!(s.up_rpm > s.down_rpm))
     reader.fail("up_rpm",
                 fmt::format("is {}, expected more than down_rpm, {}", number_text(s.up_rpm), number_text(s.down_rpm)));
-  check_positive(reader, "latency", s.latency);
 }
 
 void check_spec(const GearSpec& s, const JsonReader& reader) {
@@ -73,20 +63,13 @@ void check_spec(const DifferentialSpec& s, const JsonReader& reader) {
   if (s.outputs.size() != 2) reader.fail("outputs", fmt::format("has {} shafts, expected two", s.outputs.size()));
   if (s.outputs[0] == s.outputs[1] || s.outputs[0] == s.box || s.outputs[1] == s.box)
     reader.fail("outputs", "names a shaft twice, expected two shafts besides the box");
-  if (!(s.share > 0.0 && s.share < 1.0))
-    reader.fail("share", "is " + number_text(s.share) + ", expected a number between 0 and 1");
-  if (s.lock_torque) check_positive(reader, "lock_torque", *s.lock_torque, most::kTorque);
 }
 
 void check_spec(const MotorSpec& s, const JsonReader& reader) {
-  check_positive(reader, "inertia", s.inertia, most::kShaftInertia);
   if (s.gear_ratio == 0.0) reader.fail("gear_ratio", "is 0, expected another number: motor over wheel");
-  check_positive(reader, "stall_torque", s.stall_torque, most::kTorque);
-  check_positive(reader, "no_load_rpm", s.no_load_rpm, most::kRpm);
 }
 
 void check_spec(const DrivelineSpec& s, const JsonReader& reader) {
-  check_within(reader, "skid_steer", s.skid_steer, 0.0, 1.0);
   if (s.skid_steer != 0.0 && s.motors.empty())
     reader.fail("skid_steer", "is given without motors, expected a motor at each wheel");
   for (const bool gearbox : {false, true})

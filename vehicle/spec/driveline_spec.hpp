@@ -10,6 +10,7 @@
 namespace furrow::vehicle {
 
 struct ShaftSpec {
+  static constexpr SchemaName kSchema{"shaft", "A rotor about an axis."};
   std::string name;
   double inertia = 0.0;             // kg m²
   Vec3 axis = Vec3::UnitX();        // a direction in the vehicle's frame
@@ -17,13 +18,15 @@ struct ShaftSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ShaftSpec> auto& s) {
-  visit(Field{"name", "", role::key}, s.name);
-  visit(Field{"inertia", "kg m²", role::key}, s.inertia);
-  visit(Field{"axis", "-", role::key}, s.axis);
-  visit(Field{"carrier", "", role::key | kMayMiss}, s.carrier);
+  using namespace allowed;
+  visit(needed("name", "", not_empty(), "Name of the shaft, by which other parts refer to it."), s.name);
+  visit(needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia."), s.inertia);
+  visit(needed("axis", "-", keys::kPoint, "Direction in the vehicle's frame."), s.axis);
+  visit(key("carrier", "", "Body in whose bearings the shaft turns: chassis, or the name of a rigid axle."), s.carrier);
 }
 
 struct EngineSpec {
+  static constexpr SchemaName kSchema{"engine", "An engine from its torque map."};
   std::string shaft;
   Points torque;                 // at full throttle, N m against rpm
   Points losses;                 // N m against rpm
@@ -32,42 +35,53 @@ struct EngineSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<EngineSpec> auto& s) {
-  visit(Field{"shaft", "", role::key}, s.shaft);
-  visit(Field{"torque", "N m", role::key}, s.torque);
-  visit(Field{"losses", "N m", role::key}, s.losses);
-  visit(Field{"idle_rpm", "rpm", role::key}, s.idle_rpm);
-  visit(Field{"idle_band_rpm", "rpm", role::key | kMayMiss}, s.idle_band_rpm);
+  using namespace allowed;
+  visit(needed("shaft", "", not_empty(), "Shaft that is the engine's crankshaft."), s.shaft);
+  visit(needed("torque", "N m", keys::kTable, "Torque at full throttle: pairs of rpm and N m."), s.torque);
+  visit(needed("losses", "N m", keys::kTable, "Pairs of rpm and N m, against the speed."), s.losses);
+  visit(needed("idle_rpm", "rpm", from(0, 1e6),
+               "Speed below which the governor opens the throttle; at most the last speed of torque."),
+        s.idle_rpm);
+  visit(key("idle_band_rpm", "rpm", above(0).to(1e6),
+            "Drop of the speed below idle_rpm over which the governor opens the throttle fully."),
+        s.idle_band_rpm);
 }
 
 struct ConverterSpec {
+  static constexpr SchemaName kSchema{"converter", "A hydrodynamic torque converter."};
   std::string in, out;  // shafts
   Points capacity;      // (rad/s)/√(N m) against the speed ratio, 0 to 1
   Points torque_ratio;  // against the speed ratio
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ConverterSpec> auto& s) {
-  visit(Field{"in", "", role::key}, s.in);
-  visit(Field{"out", "", role::key}, s.out);
-  visit(Field{"capacity", "", role::key}, s.capacity);
-  visit(Field{"torque_ratio", "-", role::key}, s.torque_ratio);
+  using namespace allowed;
+  visit(needed("in", "", not_empty(), "Shaft of the impeller."), s.in);
+  visit(needed("out", "", not_empty(), "Shaft of the turbine."), s.out);
+  visit(needed("capacity", "", keys::kTable, "Pairs of speed ratio, 0 to 1, and capacity, (rad/s)/√(N m)."),
+        s.capacity);
+  visit(needed("torque_ratio", "-", keys::kTable, "Pairs of speed ratio, 0 to 1, and torque ratio."), s.torque_ratio);
 }
 
 /// A friction clutch that closes with the speed of its input, as a centrifugal one does.
 struct ClutchSpec {
+  static constexpr SchemaName kSchema{"clutch", "A friction clutch that closes with the speed of its input."};
   std::string in, out;                      // shafts
   double torque = 0.0;                      // closed, N m
   double open_rpm = 0.0, closed_rpm = 0.0;  // of the input
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<ClutchSpec> auto& s) {
-  visit(Field{"in", "", role::key}, s.in);
-  visit(Field{"out", "", role::key}, s.out);
-  visit(Field{"torque", "N m", role::key}, s.torque);
-  visit(Field{"open_rpm", "rpm", role::key}, s.open_rpm);
-  visit(Field{"closed_rpm", "rpm", role::key}, s.closed_rpm);
+  using namespace allowed;
+  visit(keys::kIn, s.in);
+  visit(keys::kOut, s.out);
+  visit(needed("torque", "N m", above(0).to(1e8), "Torque that the closed clutch can carry."), s.torque);
+  visit(needed("open_rpm", "rpm", "Speed at which the clutch begins to close."), s.open_rpm);
+  visit(needed("closed_rpm", "rpm", "Speed at which the clutch is closed."), s.closed_rpm);
 }
 
 struct GearboxSpec {
+  static constexpr SchemaName kSchema{"gearbox", "An automatic gearbox."};
   std::string in, out;                  // shafts
   std::vector<double> ratios;           // output over input, forward gears from the lowest
   std::optional<double> reverse;        // output over input, negative
@@ -77,31 +91,40 @@ struct GearboxSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<GearboxSpec> auto& s) {
-  visit(Field{"in", "", role::key}, s.in);
-  visit(Field{"out", "", role::key}, s.out);
-  visit(Field{"ratios", "-", role::key}, s.ratios);
-  visit(Field{"reverse", "-", role::key}, s.reverse);
-  visit(Field{"shift_time", "s", role::key}, s.shift_time);
-  visit(Field{"up_rpm", "rpm", role::key}, s.up_rpm);
-  visit(Field{"down_rpm", "rpm", role::key}, s.down_rpm);
-  visit(Field{"latency", "s", role::key | kMayMiss}, s.latency);
+  using namespace allowed;
+  visit(keys::kIn, s.in);
+  visit(keys::kOut, s.out);
+  visit(needed("ratios", "-",
+               shaped(R"({"type": "array", "minItems": 1, "items": {"type": "number", "exclusiveMinimum": 0}})"),
+               "Ratio of each gear from the lowest, output over input."),
+        s.ratios);
+  visit(key("reverse", "-", below(0), "Ratio of the reverse gear, output over input; negative."), s.reverse);
+  visit(needed("shift_time", "s", from(0), "Time of a change of gear; 0: the speeds meet in an impact."), s.shift_time);
+  visit(needed("up_rpm", "rpm", above(0), "Speed of the input above which the gearbox shifts up."), s.up_rpm);
+  visit(needed("down_rpm", "rpm", above(0).to(1e6), "Speed of the input below which the gearbox shifts down."),
+        s.down_rpm);
+  visit(key("latency", "s", above(0), "Least time between the starts of two shifts."), s.latency);
 }
 
 /// Between two shafts of one carrier: a gear. Between two carriers: a shaft with joints, whose ratio is 1.
 struct GearSpec {
+  static constexpr SchemaName kSchema{
+      "gear", "A gear between two shafts of one carrier, or a shaft with joints between shafts of two carriers."};
   std::string name;
   std::string in, out;  // shafts
   double ratio = 1.0;   // output over input
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<GearSpec> auto& s) {
-  visit(Field{"name", "", role::key}, s.name);
-  visit(Field{"in", "", role::key}, s.in);
-  visit(Field{"out", "", role::key}, s.out);
-  visit(Field{"ratio", "-", role::key}, s.ratio);
+  using namespace allowed;
+  visit(needed("name", "", not_empty(), "Name of the joint in messages."), s.name);
+  visit(keys::kIn, s.in);
+  visit(keys::kOut, s.out);
+  visit(needed("ratio", "-", "Ratio, output over input, not 0; 1 between two carriers."), s.ratio);
 }
 
 struct DifferentialSpec {
+  static constexpr SchemaName kSchema{"differential", "An open differential, perhaps with a lock."};
   std::string name;
   std::string box;                    // shaft
   std::vector<std::string> outputs;   // two shafts
@@ -110,27 +133,37 @@ struct DifferentialSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<DifferentialSpec> auto& s) {
-  visit(Field{"name", "", role::key}, s.name);
-  visit(Field{"box", "", role::key}, s.box);
-  visit(Field{"outputs", "", role::key}, s.outputs);
-  visit(Field{"share", "-", role::key | kMayMiss}, s.share);
-  visit(Field{"lock_torque", "N m", role::key}, s.lock_torque);
+  using namespace allowed;
+  visit(needed("name", "", not_empty(), "Name of the differential in messages."), s.name);
+  visit(needed("box", "", not_empty(), "Shaft that drives the differential's housing."), s.box);
+  visit(needed("outputs", "", shaped(R"({"type": "array", "minItems": 2, "maxItems": 2, "items": {"type": "string"}})"),
+               "The two output shafts."),
+        s.outputs);
+  visit(key("share", "-", above(0).below(1), "Share of the torque that goes to the first output."), s.share);
+  visit(key("lock_torque", "N m", above(0).to(1e8),
+            "Torque of the clutch between the outputs when the driver locks it. Without this key there is no lock."),
+        s.lock_torque);
 }
 
 /// A shaft that turns with a wheel.
 struct WheelShaftSpec {
+  static constexpr SchemaName kSchema{"wheel_shaft", "A shaft that turns with a wheel."};
   std::string shaft;
   std::string axle, side;  // side: left or right
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<WheelShaftSpec> auto& s) {
-  visit(Field{"shaft", "", role::key}, s.shaft);
-  visit(Field{"axle", "", role::key}, s.axle);
-  visit(Field{"side", "", role::key}, s.side);
+  using namespace allowed;
+  visit(needed("shaft", "", not_empty(), "Shaft that turns with the wheel."), s.shaft);
+  visit(needed("axle", "", not_empty(), "Name of the wheel's axle."), s.axle);
+  visit(needed("side", "", words("left right"), "Side of the axle."), s.side);
 }
 
 /// An electric motor at each wheel of an axle: torque = stall_torque (command − speed/no_load_speed).
 struct MotorSpec {
+  static constexpr SchemaName kSchema{
+      "motor",
+      "An electric motor at each wheel of an axle: torque = stall torque × (command − speed / speed without load)."};
   std::string axle;
   double inertia = 0.0;       // of the rotor, kg m²
   double gear_ratio = 1.0;    // motor over wheel
@@ -139,14 +172,16 @@ struct MotorSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<MotorSpec> auto& s) {
-  visit(Field{"axle", "", role::key}, s.axle);
-  visit(Field{"inertia", "kg m²", role::key}, s.inertia);
-  visit(Field{"gear_ratio", "-", role::key}, s.gear_ratio);
-  visit(Field{"stall_torque", "N m", role::key}, s.stall_torque);
-  visit(Field{"no_load_rpm", "rpm", role::key}, s.no_load_rpm);
+  using namespace allowed;
+  visit(needed("axle", "", not_empty(), "Name of the axle."), s.axle);
+  visit(needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia of the rotor."), s.inertia);
+  visit(needed("gear_ratio", "-", "Speed of the motor over that of the wheel, not 0."), s.gear_ratio);
+  visit(needed("stall_torque", "N m", above(0).to(1e8), "Torque of the motor at rest."), s.stall_torque);
+  visit(needed("no_load_rpm", "rpm", above(0).to(1e6), "Speed of the motor without load."), s.no_load_rpm);
 }
 
 struct DrivelineSpec {
+  static constexpr SchemaName kSchema{"driveline", "Shafts by name, and what joins and drives them."};
   std::vector<ShaftSpec> shafts;
   std::optional<EngineSpec> engine;
   std::optional<ConverterSpec> converter;
@@ -167,16 +202,19 @@ struct DrivelineSpec {
 };
 template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<DrivelineSpec> auto& s) {
-  visit(Field{"shafts", "", role::key | kMayMiss}, s.shafts);
-  visit(Field{"engine", "", role::key}, s.engine);
-  visit(Field{"converter", "", role::key}, s.converter);
-  visit(Field{"clutch", "", role::key}, s.clutch);
-  visit(Field{"gearbox", "", role::key}, s.gearbox);
-  visit(Field{"gears", "", role::key | kMayMiss}, s.gears);
-  visit(Field{"differentials", "", role::key | kMayMiss}, s.differentials);
-  visit(Field{"wheels", "", role::key | kMayMiss}, s.wheels);
-  visit(Field{"motors", "", role::key | kMayMiss}, s.motors);
-  visit(Field{"skid_steer", "-", role::key | kMayMiss}, s.skid_steer);
+  using namespace allowed;
+  visit(key("shafts", "", "All shafts, but the rotors of motors."), s.shafts);
+  visit(key("engine"), s.engine);
+  visit(key("converter"), s.converter);
+  visit(key("clutch"), s.clutch);
+  visit(key("gearbox"), s.gearbox);
+  visit(key("gears", "", "Gears, and shafts with joints."), s.gears);
+  visit(key("differentials", "", "Open differentials."), s.differentials);
+  visit(key("wheels", "", "Shafts that turn with wheels."), s.wheels);
+  visit(key("motors", "", "Motors at wheels."), s.motors);
+  visit(key("skid_steer", "-", from(0, 1),
+            "Share of the motors' command that full steering takes from the inner side and gives to the outer one."),
+        s.skid_steer);
 }
 
 }  // namespace furrow::vehicle

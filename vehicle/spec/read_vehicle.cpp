@@ -3,9 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <variant>
 
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 #include "protocol/files/file_kind.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/key_schema.hpp"
+#include "vehicle/spec/part_keys.hpp"
 #include "vehicle/spec/spec_reader.hpp"
 #include "vehicle/spec/spec_rules.hpp"
 
@@ -15,22 +22,47 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kMostAxles = 16;
 
-/// The alternative of a variant that the key `type` names.
-template <class Variant, std::size_t k = 0>
-Variant read_type(JsonReader reader) {
-  if constexpr (k < std::variant_size_v<Variant>) {
-    using Option = std::variant_alternative_t<k, Variant>;
-    if (reader.text("type") != Option::kType) return read_type<Variant, k + 1>(reader);
-    return read_spec<Option>(reader);
-  } else {
-    std::vector<std::string> types;
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-      (types.emplace_back(std::variant_alternative_t<i, Variant>::kType), ...);
-    }
-    (std::make_index_sequence<std::variant_size_v<Variant>>{});
-    reader.fail("type", "is '" + reader.text("type") + "', expected " + one_of(types));
-  }
+/// What an axle's right side has otherwise than the left.
+struct RightKeys {
+  static constexpr SchemaName kSchema{"right",
+                                      "Parts of the right side that are not the mirror image of the left side."};
+  std::optional<SuspensionSpec> suspension;
+  std::optional<WheelSpec> wheel;
+  std::optional<BrakeSpec> brake;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<RightKeys> auto& s) {
+  visit(key("suspension", "", "Suspension of the right side."), s.suspension);
+  visit(key("wheel"), s.wheel);
+  visit(key("brake"), s.brake);
 }
+
+struct AxleKeys {
+  static constexpr SchemaName kSchema{"axle",
+                                      "Two wheels. The left side is given; the right side is its mirror image."};
+  std::string name;
+  Vec3 origin = Vec3::Zero();  // m
+  SuspensionSpec suspension;
+  WheelSpec wheel;
+  std::optional<BrakeSpec> brake;
+  std::optional<SteeringSpec> steering;
+  std::optional<RightKeys> right;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<AxleKeys> auto& s) {
+  visit(needed("name", "", allowed::not_empty(), "Name of the axle, in messages and for the driveline."), s.name);
+  visit(
+      needed("origin", "m", keys::kPoint, "Origin from which the axle's points are measured, in the vehicle's frame."),
+      s.origin);
+  visit(needed("suspension", "", "Suspension of the left side."), s.suspension);
+  visit(needed("wheel"), s.wheel);
+  visit(key("brake"), s.brake);
+  visit(key("steering", "", "Steering of the axle. Without this key it is not steered."), s.steering);
+  visit(key("right"), s.right);
+}
+
+void check_spec(const RightKeys&, const JsonReader&) {}
+void check_spec(const AxleKeys&, const JsonReader&) {}
 
 template <class Variant>
 Variant moved(const Variant& part, const Vec3& by) {
@@ -44,58 +76,42 @@ void check_side(const JsonReader& reader, const SuspensionSpec& suspension, int 
                 fmt::format("lies at y = {}, expected a point on the {}", number_text(y), kSideNames[side]));
 }
 
-CornerSpec read_left(JsonReader& reader, const Vec3& origin) {
+/// The right side, as the left but for what `right` says. @param reader of the axle
+CornerSpec right_corner(const AxleKeys& axle, JsonReader reader) {
   CornerSpec corner;
-  const auto suspension = read_type<SuspensionSpec>(reader.child("suspension"));
-  check_side(reader, suspension, kLeft);
-  corner.suspension = moved(suspension, origin);
-  corner.wheel = read_spec<WheelSpec>(reader.child("wheel"));
-  reader.skip("brake");
-  if (reader.given("brake")) corner.brake = read_spec<BrakeSpec>(reader.child("brake"));
+  corner.suspension =
+      std::visit([](const auto& s) -> SuspensionSpec { return mirrored(s); }, moved(axle.suspension, axle.origin));
+  corner.wheel = mirrored(axle.wheel);
+  corner.brake = axle.brake;
+  if (!axle.right) return corner;
+  const JsonReader right = reader.child("right");
+  if (axle.right->suspension) {
+    const bool rigid = std::holds_alternative<RigidAxleSpec>(axle.suspension);
+    if (rigid || axle.right->suspension->index() != axle.suspension.index())
+      right.fail("suspension.type", rigid ? "is given for a rigid axle, expected that of the whole axle alone"
+                                          : "is not the left side's, expected the same");
+    check_side(right, *axle.right->suspension, kRight);
+    corner.suspension = moved(*axle.right->suspension, axle.origin);
+  }
+  if (axle.right->wheel) corner.wheel = *axle.right->wheel;
+  if (right.has("brake")) corner.brake = axle.right->brake;  // null: none
   return corner;
 }
 
-CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& origin) {
-  CornerSpec corner = left;
-  corner.suspension = std::visit([](const auto& s) -> SuspensionSpec { return mirrored(s); }, left.suspension);
-  corner.wheel = mirrored(left.wheel);
-  reader.skip("right");
-  if (!reader.given("right")) return corner;
-  JsonReader right = reader.child("right");
-  for (const char* key : {"suspension", "wheel", "brake"}) right.skip(key);
-  if (right.has("suspension")) {
-    const auto suspension = read_type<SuspensionSpec>(right.child("suspension"));
-    if (std::holds_alternative<RigidAxleSpec>(left.suspension) || suspension.index() != left.suspension.index())
-      right.fail("suspension.type", std::holds_alternative<RigidAxleSpec>(left.suspension)
-                                        ? "is given for a rigid axle, expected that of the whole axle alone"
-                                        : "is not the left side's, expected the same");
-    check_side(right, suspension, kRight);
-    corner.suspension = moved(suspension, origin);
-  }
-  if (right.has("wheel")) corner.wheel = read_spec<WheelSpec>(right.child("wheel"));
-  if (right.has("brake")) {
-    corner.brake.reset();
-    if (right.given("brake")) corner.brake = read_spec<BrakeSpec>(right.child("brake"));
-  }
-  right.finish();
-  return corner;
-}
-
-AxleSpec read_axle(JsonReader reader) {
+AxleSpec read_axle(const JsonReader& reader) {
+  const auto keys = read_spec<AxleKeys>(reader);
+  check_side(reader, keys.suspension, kLeft);
   AxleSpec axle;
-  detail::take(reader, "name", axle.name);
-  detail::take(reader, "origin", axle.origin);
-  axle.corners[kLeft] = read_left(reader, axle.origin);
-  axle.corners[kRight] = read_right(reader, axle.corners[kLeft], axle.origin);
-  reader.skip("steering");
-  if (reader.given("steering")) {
-    auto steering = read_type<SteeringSpec>(reader.child("steering"));
-    // A Pitman arm's points are in axes of its own, its origin is in the vehicle's.
-    axle.steering = std::holds_alternative<RackSpec>(steering) ? moved(steering, axle.origin) : steering;
-    if (!std::holds_alternative<DoubleWishboneSpec>(axle.corners[kLeft].suspension))
-      reader.fail("steering", "is given for a suspension without tie rods, expected the type double_wishbone");
-  }
-  reader.finish();
+  axle.name = keys.name;
+  axle.origin = keys.origin;
+  axle.corners[kLeft] = {moved(keys.suspension, keys.origin), keys.wheel, keys.brake};
+  axle.corners[kRight] = right_corner(keys, reader);
+  if (!keys.steering) return axle;
+  // A Pitman arm's points are in axes of its own, its origin is in the vehicle's.
+  axle.steering =
+      std::holds_alternative<RackSpec>(*keys.steering) ? moved(*keys.steering, keys.origin) : *keys.steering;
+  if (!std::holds_alternative<DoubleWishboneSpec>(keys.suspension))
+    reader.fail("steering", "is given for a suspension without tie rods, expected the type double_wishbone");
   return axle;
 }
 
@@ -138,7 +154,7 @@ VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file
   for (const char* key : {"source", "$schema"}) reader.skip(key);
   VehicleSpec vehicle;
   vehicle.file = file;
-  detail::take(reader, "name", vehicle.name);
+  detail::take(reader, needed("name"), vehicle.name);
   vehicle.chassis = read_spec<BodySpec>(reader.child("chassis"));
   const nlohmann::json& axles = reader.array("axles");
   if (axles.empty() || axles.size() > kMostAxles)
@@ -156,6 +172,32 @@ VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file
   }
   reader.finish();
   return vehicle;
+}
+
+nlohmann::ordered_json vehicle_schema() {
+  using Json = nlohmann::ordered_json;
+  SchemaWriter writer;
+  Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Furrow vehicle file"}};
+  root.update(
+      object_schema("A vehicle. SI units, angles in degrees, engine speeds in rpm. Frame: x forward, y left, z up."));
+  const auto add = [&](const Key& key, const char* type) { add_key(root, key, key_schema(key, type, nullptr)); };
+  add(key("$schema", "", allowed::optional(), "Path of this schema, for editors."), "string");
+  add(needed("format_version", "", allowed::shaped(R"({"const": 1})"), "Version of this layout."), "");
+  add(needed("name", "", allowed::not_empty(), "Name for reports."), "string");
+  add(key("source", "", allowed::optional(), "Where the numbers come from; [estimate] marks those without a source."),
+      "string");
+  add_key(root, needed("chassis"), writer.reference<BodySpec>());
+  const Key axles = needed("axles", "", allowed::shaped(R"({"type": "array", "minItems": 1, "maxItems": 16})"),
+                           "The axles from front to rear.");
+  Json list = key_schema(axles, "", nullptr);
+  list["items"] = writer.reference<AxleKeys>();
+  add_key(root, axles, list);
+  add_key(root, key("driveline"), writer.reference<DrivelineSpec>());
+  // null takes the brake of the left side away.
+  Json& brake = writer.definitions["right"]["properties"]["brake"];
+  brake = {{"oneOf", {brake, {{"type", "null"}}}}, {"description", "Brake of the right wheel. null: none."}};
+  root["definitions"] = writer.definitions;
+  return root;
 }
 
 }  // namespace furrow::vehicle

@@ -16,4 +16,7 @@ VehicleSpec read_vehicle(const std::filesystem::path& file);
 /// @param file for messages
 VehicleSpec read_vehicle(const nlohmann::json& document, const std::string& file);
 
+/// The JSON schema of vehicle files.
+nlohmann::ordered_json vehicle_schema();
+
 }  // namespace furrow::vehicle

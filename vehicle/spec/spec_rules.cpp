@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "protocol/files/json_text.hpp"
-#include "vehicle/spec/value_limits.hpp"
 #include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kSamePoint = 1e-6;  // m
+constexpr double kSamePoint = 1e-6;      // m
+constexpr double kMostGyration = 100.0;  // radius of gyration of a body, m: that of points from their origin
 
 void apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key, const Vec3& other) {
   if (!((point - other).norm() > kSamePoint))
@@ -29,14 +29,13 @@ void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
     reader.fail("inertia", fmt::format("has the principal moments {:.6g}, {:.6g}, {:.6g}, expected none "
                                        "larger than the sum of the other two",
                                        J.x(), J.y(), J.z()));
-  if (const double gyration = std::sqrt(0.5 * J.sum() / mass); gyration > most::kGyration)
+  if (const double gyration = std::sqrt(0.5 * J.sum() / mass); gyration > kMostGyration)
     reader.fail("inertia", fmt::format("gives a body of {} kg a radius of gyration of {:.3g} m, expected at "
                                        "most {:g} m",
-                                       number_text(mass), gyration, most::kGyration));
+                                       number_text(mass), gyration, kMostGyration));
 }
 
 void check_length(const JsonReader& reader, double shortest, double longest) {
-  check_positive(reader, "shortest", shortest);
   if (!(longest > shortest))
     reader.fail("longest",
                 fmt::format("is {}, expected more than shortest, {}", number_text(longest), number_text(shortest)));
@@ -67,29 +66,13 @@ void check_struts(const T& s, const JsonReader& reader, const std::vector<std::s
 
 }  // namespace
 
-void check_spec(const BodySpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass, most::kMass);
-  check_inertia(reader, s.inertia, s.mass);
-}
+void check_spec(const BodySpec& s, const JsonReader& reader) { check_inertia(reader, s.inertia, s.mass); }
 
-void check_spec(const SpindleSpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass, most::kMass);
-  check_inertia(reader, s.inertia, s.mass);
-  for (const auto& [key, angle] : {std::pair{"camber_deg", s.camber_deg}, std::pair{"toe_deg", s.toe_deg}})
-    check_within(reader, key, angle, -most::kWheelAngle, most::kWheelAngle);
-}
+void check_spec(const SpindleSpec& s, const JsonReader& reader) { check_inertia(reader, s.inertia, s.mass); }
 
-void check_spec(const WheelSpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass, most::kMass);
-  check_inertia(reader, s.inertia, s.mass);
-}
-
-void check_spec(const BrakeSpec& s, const JsonReader& reader) {
-  check_positive(reader, "torque", s.torque, most::kTorque);
-}
+void check_spec(const WheelSpec& s, const JsonReader& reader) { check_inertia(reader, s.inertia, s.mass); }
 
 void check_spec(const ArmSpec& s, const JsonReader& reader) {
-  check_positive(reader, "mass", s.mass, most::kMass);
   check_inertia(reader, s.inertia, s.mass);
   apart(reader, "chassis_back", s.chassis_back, "chassis_front", s.chassis_front);
   const Vec3 hinge = (s.chassis_front - s.chassis_back).normalized();
@@ -109,10 +92,8 @@ void check_spec(const StopSpec& s, const JsonReader& reader) {
 
 void check_spec(const SpringSpec& s, const JsonReader& reader) {
   apart(reader, "end", s.end, "chassis", s.chassis);
-  check_positive(reader, "free_length", s.free_length);
   if (s.rate && !s.force.empty()) reader.fail("force", "is given beside rate, expected one of the two");
   if (!s.rate && s.force.empty()) reader.fail("force", "is missing, expected a table of forces, or the key rate");
-  if (s.rate) check_positive(reader, "rate", *s.rate, most::kRate);
   if (s.force.empty()) return;
   if (s.force.front() != std::pair{0.0, 0.0})
     reader.fail("force[0]", "is not [0, 0], expected the deflection and the force of the free spring");
@@ -121,19 +102,12 @@ void check_spec(const SpringSpec& s, const JsonReader& reader) {
 
 void check_spec(const OuterShockSpec& s, const JsonReader& reader) {
   check_length(reader, s.shortest, s.longest);
-  check_positive(reader, "blend_length", s.blend_length);
   if (s.blend_length > s.longest - s.shortest)
     reader.fail("blend_length", fmt::format("is {}, expected at most longest - shortest, {:.6g}",
                                             number_text(s.blend_length), s.longest - s.shortest));
-  check_not_negative(reader, "compression", s.compression, most::kDamping);
-  check_not_negative(reader, "rebound", s.rebound, most::kDamping);
 }
 
-void check_spec(const ShockSpec& s, const JsonReader& reader) {
-  apart(reader, "end", s.end, "chassis", s.chassis);
-  check_not_negative(reader, "compression", s.compression, most::kDamping);
-  check_not_negative(reader, "rebound", s.rebound, most::kDamping);
-}
+void check_spec(const ShockSpec& s, const JsonReader& reader) { apart(reader, "end", s.end, "chassis", s.chassis); }
 
 void check_spec(const DoubleWishboneSpec& s, const JsonReader& reader) {
   check_struts(s, reader, {"lower_arm", "upper_arm", "upright"});
@@ -160,20 +134,16 @@ void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
-  check_within(reader, "pitch_deg", s.pitch_deg, -90.0, 90.0);
   apart(reader, "arm_end", s.arm_end, "pivot", s.pivot);
   apart(reader, "idler_end", s.idler_end, "idler", s.idler);
   apart(reader, "idler_end", s.idler_end, "arm_end", s.arm_end);
   if (!(std::abs(s.left_angle_deg) > 0.0 && std::abs(s.left_angle_deg) < 90.0))
     reader.fail("left_angle_deg", "is " + number_text(s.left_angle_deg) +
                                       ", expected -90 to 90, not 0: the arm at full lock to the left");
-  check_positive(reader, "response_time", s.response_time, most::kResponseTime);
 }
 
 void check_spec(const RackSpec& s, const JsonReader& reader) {
   if (s.left_travel == 0.0) reader.fail("left_travel", "is 0, expected the travel at full lock to the left in m");
-  check_within(reader, "left_travel", s.left_travel, -most::kTravel, most::kTravel);
-  check_positive(reader, "response_time", s.response_time, most::kResponseTime);
 }
 
 }  // namespace furrow::vehicle

@@ -7,6 +7,7 @@
 
 namespace furrow::vehicle {
 
+inline void check_spec(const BrakeSpec&, const JsonReader&) {}
 inline void check_spec(const FixedSpec&, const JsonReader&) {}
 inline void check_spec(const WheelShaftSpec&, const JsonReader&) {}
 
@@ -24,7 +25,6 @@ void check_spec(const TrailingArmSpec&, const JsonReader&);
 void check_spec(const LinkSpec&, const JsonReader&);
 void check_spec(const RigidAxleSpec&, const JsonReader&);
 void check_spec(const WheelSpec&, const JsonReader&);
-void check_spec(const BrakeSpec&, const JsonReader&);
 void check_spec(const PitmanArmSpec&, const JsonReader&);
 void check_spec(const RackSpec&, const JsonReader&);
 void check_spec(const ShaftSpec&, const JsonReader&);

@@ -163,9 +163,6 @@ void restore_bed(GrainSolver& solver, const PreparedBed& prepared) {
 
 void check_bed_options(const DemOptions& o) {
   check_tiling(o);
-  if (!(o.compaction_pressure >= 0.0) || !(o.compaction_pressure <= 1e9))
-    throw input_error(o.scenario, "terrain.compaction_pressure",
-                      fmt::format("{} is out of range, expected 0 to 1e9 Pa", o.compaction_pressure));
   if (o.compaction_pressure > 0.0 && !bed_is_settled_anew(o))
     throw input_error(o.scenario, "terrain.compaction_pressure",
                       fmt::format("is {:g} Pa but the bed '{}' is a settled one and taken as it is, expected 0",

@@ -195,8 +195,6 @@ double expected_tiled_grains(const DemOptions& o, double piece) {
 }
 
 void check_tiling(const DemOptions& o) {
-  if (!(o.tile >= 0.0) || !std::isfinite(o.tile))
-    throw input_error(o.scenario, "terrain.tile", fmt::format("{} is out of range, expected 0 or more, m", o.tile));
   if (!is_tiled(o)) return;
   const Tiling tiling = tiling_of(o);
   const double least = kLeastPiece * largest_radius(o);

@@ -217,16 +217,16 @@ TEST(ScmGround, says_what_is_wrong_with_its_options) {
     return std::string();
   };
   EXPECT_EQ(told([](ScmOptions& o) { o.bekker_k_phi = 0.0; }),
-            "mine.json: key 'terrain.bekker_k_phi': is 0, expected a finite number above 0");
+            "mine.json: key 'terrain.bekker_k_phi': is 0 N/m^(n+2), expected a number, above 0 up to 1e13 N/m^(n+2)");
   EXPECT_EQ(told([](ScmOptions& o) { o.janosi_k = -1.0; }),
-            "mine.json: key 'terrain.janosi_k': is -1, expected a finite number above 0");
+            "mine.json: key 'terrain.janosi_k': is -1 m, expected a number, above 0 up to 10 m");
   EXPECT_EQ(told([](ScmOptions& o) { o.patch_width = 0.01, o.bekker_k_c = -1e6; }),
             "mine.json: key 'terrain.bekker_k_c': is -1e+06, expected k_c/b + k_phi above 0 with b = "
             "terrain.patch_width");
   EXPECT_EQ(told([](ScmOptions& o) { o.grid_spacing = 1e-5; }),
             "mine.json: key 'terrain.grid_spacing': is 1e-05: 1 m x 0.4 m have 4e+09 nodes, expected at most "
             "1e+08");
-  EXPECT_NE(told([](ScmOptions& o) { o.mohr_friction_angle = 90.0; }).find("from 0 to 80 degrees"), std::string::npos);
+  EXPECT_NE(told([](ScmOptions& o) { o.mohr_friction_angle = 90.0; }).find("a number, 0 to 80 deg"), std::string::npos);
   EXPECT_NE(told([](ScmOptions& o) { o.rebound_damping = NAN; }).find("rebound_damping"), std::string::npos);
 }
 

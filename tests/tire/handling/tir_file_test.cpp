@@ -75,6 +75,8 @@ TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
       {without("LONG_SLIP_RANGE"), "key '[LONG_SLIP_RANGE]': is missing"},
       {replaced("PDX1               = 1.1", "PDX1 = nan"),
        "key '[LONGITUDINAL_COEFFICIENTS] PDX1': is 'nan', expected a finite number"},
+      {replaced("PKY2               = 1.9", "PKY2 = +-5"), "key '[LATERAL_COEFFICIENTS] PKY2': is '+-5'"},
+      {replaced("TYRESIDE = 'LEFT'", "TYRESIDE = 'L$!T' $ a comment"), "key '[MODEL] TYRESIDE': is 'L$!T'"},
       {replaced("PKY2               = 1.9", "PKY2 = inf"), "key '[LATERAL_COEFFICIENTS] PKY2': is 'inf'"},
       {replaced("QBZ1               = 9", "QBZ1 = 9.0e"), "key '[ALIGNING_COEFFICIENTS] QBZ1': is '9.0e'"},
       {replaced("PCY1               = 1.35", "PCY1 = 0"), "key '[LATERAL_COEFFICIENTS] PCY1': is 0"},

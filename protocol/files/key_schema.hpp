@@ -1,0 +1,151 @@
+// JSON schemas of the files that people write, made from lists of keys (protocol/core/key.hpp), and what a schema says
+// of a value, in words.
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
+
+namespace furrow {
+
+/// The schema of a key. @param type of its member in JSON, "" where the key's shape says it
+/// @param standard the member's default; discarded where there is none
+nlohmann::ordered_json key_schema(const Key& key, const char* type, const nlohmann::ordered_json& standard);
+
+/// The words of a key that stand for the values of an enumeration, in its order.
+std::string word_of(const Key& key, int value);
+int word_number(const Key& key, const std::string& word);
+
+/// Adds a key to `properties` and `required` of the schema of an object.
+/// @pre a key of the same name that is there already is declared alike
+void add_key(nlohmann::ordered_json& object, const Key& key, const nlohmann::ordered_json& node);
+
+/// {"type": "object", …}, without keys yet.
+nlohmann::ordered_json object_schema(const char* description);
+
+/// A schema as text that people can read: each key on a line of its own.
+std::string schema_text(const nlohmann::ordered_json& schema);
+
+/// Schemas of structs by their lists of keys; those of structs within them become definitions.
+class SchemaWriter {
+ public:
+  nlohmann::ordered_json definitions = nlohmann::ordered_json::object();
+
+  template <HasFields T>
+  void add_keys(nlohmann::ordered_json& object) {
+    const T defaults{};
+    visit_fields(
+        [&]<class F>(const F& field, const auto& value) {
+          if constexpr (std::derived_from<F, Key>)
+            if (field.is(role::key)) add_key(object, field, node_of(field, value));
+        },
+        defaults);
+  }
+
+  /// The schema of an object, with the key `type` where its struct has a kType.
+  template <HasFields T>
+  nlohmann::ordered_json object(const char* description) {
+    nlohmann::ordered_json object = object_schema(description);
+    if constexpr (requires { T::kType; })
+      add_key(object, needed("type"), {{"const", T::kType}, {"description", "Kind of this part."}});
+    add_keys<T>(object);
+    return object;
+  }
+
+  /// {"$ref": …} to the definition of a struct with a kSchema.
+  template <HasFields T>
+  nlohmann::ordered_json reference() {
+    if (!definitions.contains(T::kSchema.name)) definitions[T::kSchema.name] = object<T>(T::kSchema.description);
+    return {{"$ref", std::string("#/definitions/") + T::kSchema.name}};
+  }
+
+ private:
+  template <class Value>
+  nlohmann::ordered_json node_of(const Key& key, const Value& value) {
+    if constexpr (std::is_same_v<Value, bool>)
+      return key_schema(key, "boolean", value);
+    else if constexpr (std::is_integral_v<Value>)
+      return key_schema(key, "integer", value);
+    else if constexpr (std::is_floating_point_v<Value>)
+      return key_schema(key, "number", value);
+    else if constexpr (std::is_same_v<Value, nlohmann::json>)
+      return key_schema(key, "", value);
+    else if constexpr (std::is_enum_v<Value>)
+      return key_schema(key, "string", word_of(key, static_cast<int>(value)));
+    else if constexpr (std::is_constructible_v<std::string, Value>)
+      return key_schema(key, "string", std::string(value));
+    else
+      return node_of_part(key, value);
+  }
+  template <HasFields T>
+  nlohmann::ordered_json node_of_part(const Key&, const T&) {
+    return reference<T>();
+  }
+  template <class T>
+  nlohmann::ordered_json node_of_part(const Key& key, const std::optional<T>&) {
+    Key without_default = key;
+    without_default.missing = Missing::nothing;
+    return node_of(without_default, T{});
+  }
+  template <HasFields T>
+  nlohmann::ordered_json node_of_part(const Key& key, const std::vector<T>&) {
+    nlohmann::ordered_json node = key_schema(key, "array", discarded());
+    node["items"] = reference<T>();
+    return node;
+  }
+  template <class... T>
+  nlohmann::ordered_json node_of_part(const Key& key, const std::variant<T...>&) {
+    nlohmann::ordered_json node = key_schema(key, "", discarded());
+    node["oneOf"] = nlohmann::ordered_json::array({reference<T>()...});
+    return node;
+  }
+  template <class T>
+  nlohmann::ordered_json node_of_part(const Key& key, const T&) {
+    return key_schema(key, "", discarded());
+  }
+  static nlohmann::ordered_json discarded() { return nlohmann::ordered_json::value_t::discarded; }
+};
+
+/// "a number, above 0 up to 1 m": what the schema of a value expects.
+std::string expectation(const nlohmann::json& node);
+/// "0 to 10", "above 0"; empty without bounds.
+std::string range_text(const nlohmann::json& node);
+/// With the unit of the schema, if it has one.
+std::string with_unit(const std::string& text, const nlohmann::json& node);
+/// Whether the schema takes values of this type: "null", "integer".
+bool allows_type(const nlohmann::json& node, const std::string& type);
+/// "is 2 m, expected a number, above 0 up to 1 m"; empty where the value is as its schema says. What is within lists
+/// and objects is not looked at.
+std::string mistake(const nlohmann::json& node, const nlohmann::json& value);
+
+/// The same of a number or a text and its key, but for the key's shape.
+std::string mistake(const Key& key, const nlohmann::json& value);
+
+/// A number or a text against its key. @throws Error(bad_input) naming file, key and what is expected
+void check_value(const Key& key, const nlohmann::json& value, const std::string& file, const std::string& section);
+
+/// Numbers and texts of a struct against its list of keys. Where a key takes null, a negative number means that.
+/// @throws Error(bad_input) likewise
+template <HasFields T>
+void check_values(const T& values, const std::string& file, const std::string& section) {
+  visit_fields(
+      [&]<class F, class Value>(const F& field, const Value& value) {
+        if constexpr (std::derived_from<F, Key>) {
+          if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>)
+            if (!field.takes_null || !(value < Value{})) check_value(field, value, file, section);
+          if constexpr (std::is_same_v<Value, std::string>)
+            if (*field.texts && !(field.takes_null && value.empty())) check_value(field, value, file, section);
+        }
+      },
+      values);
+}
+
+}  // namespace furrow

@@ -1,0 +1,26 @@
+// Keys of the section `terrain` that several engines take.
+#pragma once
+
+#include "protocol/core/key.hpp"
+
+namespace furrow::terrain::keys {
+
+inline constexpr Key kMaterial =
+    key("material", "", allowed::not_empty().or_null(),
+        "Soil file with values for this section: loose_sand.json, dense_sand.json, cohesive_sand.json (measured with "
+        "furrow soil, engines dem and scm), grains_lete_sand.json, grains_sandy_loam.json (fitted, engines of grains), "
+        "lete_sand.json, upland_sandy_loam.json, dry_sand.json (published, engine scm) or your own, relative to the "
+        "scenario, then in terrain/data. Keys of the scenario's own section override it; with --set it overrides them. "
+        "null: none.");
+inline constexpr Key kFriction = key(
+    "friction", "-", allowed::from(0, 10),
+    "Coulomb coefficient between grains. Between grain or ground and tire the smaller of this and the tire's holds.");
+inline constexpr Key kLength = key("length", "m", allowed::above(0).to(1e4).usual(0.2, 200),
+                                   "Length of the bin or of the grid of engine scm, x from 0 to length.");
+inline constexpr Key kWidth = key("width", "m", allowed::above(0).to(1e4).usual(0.05, 50),
+                                  "Width of the bin or of the grid of engine scm, y from −width/2 to width/2.");
+inline constexpr Key kFrictionVelocityScale =
+    key("friction_velocity_scale", "s/m", allowed::above(0).to(1e6),
+        "Constant c in F_t = μ F_e tanh(c |v_t|), law hertz_tanh and engine rigid.");
+
+}  // namespace furrow::terrain::keys

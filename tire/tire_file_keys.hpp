@@ -1,0 +1,33 @@
+// Keys that the files of several tire models share.
+#pragma once
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
+#include "protocol/core/surface.hpp"
+
+namespace furrow::tire {
+
+namespace keys {
+/// A size of the tire, m: beyond, arithmetic on its mesh overflows or vanishes.
+inline constexpr Allowed kSize = allowed::from(1e-4, 100);
+inline constexpr Key kPressure = needed("pressure", "Pa", allowed::from(0), "Inflation, gauge pressure.");
+inline constexpr Key kContact = needed("contact");
+}  // namespace keys
+
+/// The block `contact`: what grains and ground feel of the tread.
+struct ContactBlock : ContactMaterial {
+  static constexpr SchemaName kSchema{"contact", "What grains and ground feel of the tread."};
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ContactBlock> auto& s) {
+  using namespace allowed;
+  visit(needed("young_modulus", "Pa", above(0), "Young's modulus of the tread surface, law mindlin."), s.young_modulus);
+  visit(needed("poisson_ratio", "-", from(0).below(0.5), "Poisson's ratio of the tread surface, law mindlin."),
+        s.poisson_ratio);
+  visit(needed("friction", "-", from(0), "Coulomb coefficient."), s.friction);
+  visit(needed("restitution", "-", from(0, 1), "Coefficient of restitution, law mindlin."), s.restitution);
+  visit(needed("normal_stiffness", "N/m^1.5", above(0), "Normal stiffness, law hertz_tanh."), s.normal_stiffness);
+  visit(needed("normal_damping", "N s/m^1.5", from(0), "Normal damping, law hertz_tanh."), s.normal_damping);
+}
+
+}  // namespace furrow::tire

@@ -236,7 +236,8 @@ class PressModel final : public CalibrationModel {
         reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
                                             number_text(kMostPressure)));
       target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
-      for (const scenario::Problem& odd : scenario::Schema::of_scenarios().unusual({{"tire", {{"pressure", *press.pressure}}}}))
+      for (const scenario::Problem& odd :
+           scenario::Schema::of_scenarios().unusual({{"tire", {{"pressure", *press.pressure}}}}))
         notes_.emplace_back(input_error(study.string(), reader.full("pressure"), odd.what).what());
     }
     reader.finish();

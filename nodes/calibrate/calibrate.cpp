@@ -54,7 +54,7 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
                                  }};
   CalibrationResults results;
   results.optimum = calibration.kind->optimize(objective, options);
-  const std::vector<double>& place = results.optimum.place;
+  const Eigen::VectorXd& place = results.optimum.place;
   results.confidence = confidence(calibration.parameters, place, results.optimum.residuals, results.optimum.jacobian,
                                   results.optimum.known_errors);
   results.values = objective.values(place);

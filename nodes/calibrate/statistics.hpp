@@ -51,7 +51,7 @@ struct Confidence {
 /// @param place on the scales @param jacobian ∂r/∂share
 /// @param known_errors the residuals are over their whole standard errors: σ̂ is 1, and the intervals are those of the
 /// normal distribution @pre more points than parameters, or known errors
-Confidence confidence(std::span<const Parameter> parameters, std::span<const double> place,
+Confidence confidence(std::span<const Parameter> parameters, const Eigen::VectorXd& place,
                       const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian, bool known_errors = false);
 
 /// "0.71 bending − 0.70 shear": what is above a fiftieth, largest first.

@@ -15,11 +15,18 @@ FILES = {"calibration.json", "evaluations.csv", "fit.csv", "soft_ring_fitted.jso
 class Calibrate(SystemTest):
     """Curves of a ring whose first sidewall coefficient is 1e6 N/m, made by `furrow press`."""
 
+    def done(self, code, *words):
+        """Runs furrow, which must end with this exit code and, unless it is 0, print no result."""
+        done = furrow(*words, cwd=self.folder)
+        self.assertEqual(done.returncode, code, done.stderr)
+        if code:
+            self.assertEqual(done.stdout, "")
+        return done
+
     def press(self, tire, name, *words):
-        done = furrow("press", ROOT / "rigs" / "cleat_press.json", "--set",
-                      f"tire.file={tire}", "--set", "tire.elements_circumference=null", "--set",
-                      "tire.elements_width=null", "--points", "8", "--out", name, "--quiet", *words, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.done(0, "press", ROOT / "rigs" / "cleat_press.json", "--set",
+                  f"tire.file={tire}", "--set", "tire.elements_circumference=null", "--set",
+                  "tire.elements_width=null", "--points", "8", "--out", name, "--quiet", *words)
 
     def curve(self, name, *words):
         ring = {**json.loads((ROOT / "tire" / "data" / "hmmwv_ring.json").read_text()), "segments": 120}
@@ -45,7 +52,7 @@ class Calibrate(SystemTest):
         return {name: (self.folder / folder / name).read_bytes() for name in FILES}
 
     def test_earlier_results_come_back_where_nothing_is_evaluated(self):
-        self.assertEqual(furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.done(0, "calibrate", self.study(), "--out", "out", "--no-plots")
         before = self.text("out")
         (self.folder / "grains.json").write_text(json.dumps(calibrate_grains.CalibrateGrains.STUDY))
         for number in (signal.SIGTERM, signal.SIGKILL):
@@ -60,8 +67,7 @@ class Calibrate(SystemTest):
                 self.assertEqual(process.returncode, 75, err)
                 self.assertIn("out holds the earlier results again", err)
                 self.assertEqual(self.text("out"), before)
-        done = furrow("calibrate", "grains.json", "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
+        self.done(2, "calibrate", "grains.json", "--out", "out")
         self.assertEqual(self.text("out"), before)
 
     def test_the_result_is_a_tire_with_the_errors_of_its_parameters(self):
@@ -92,8 +98,7 @@ class Calibrate(SystemTest):
             pressed = [float(row["force_N"]) for row in csv.DictReader(file) if row["unloading"] == "0"][1:]
         for force, row in zip(pressed, [row for row in rows if row["target"] == "plate"], strict=True):
             self.assertAlmostEqual(force / float(row["model"]), 1, delta=1e-9)
-        done = furrow("report", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.done(0, "report", "out")
 
     def test_a_table_is_told_in_one_line_for_each_quantity(self):
         study = {"calibrate": "handling", "start": "handling_start.tir",
@@ -101,8 +106,7 @@ class Calibrate(SystemTest):
                  "targets": [{"data": "sweep_lumped.csv", "of": of} for of in ("fx", "mz", "fy", "mx", "my")],
                  "starts": 1}
         (self.folder / "handling.json").write_text(json.dumps(study))
-        done = furrow("calibrate", "handling.json", "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.done(0, "calibrate", "handling.json", "--out", "out")
         told = [line for line in done.stderr.splitlines() if line.startswith("furrow: fitted ")]
         self.assertEqual(len(told), 5, done.stderr)
         self.assertRegex(told[0],
@@ -116,7 +120,7 @@ class Calibrate(SystemTest):
 
     def test_it_continues_to_the_same_bits_after_signals_and_damage(self):
         study = self.study()
-        self.assertEqual(furrow("calibrate", study, "--out", "once", "--no-plots", cwd=self.folder).returncode, 0)
+        self.done(0, "calibrate", study, "--out", "once", "--no-plots")
         expected = self.text("once")
         table = expected["evaluations.csv"]
         stops = 0
@@ -133,41 +137,34 @@ class Calibrate(SystemTest):
             self.assertIn("run the same command to continue", err)
             stops += 1
         self.assertGreater(stops, 0)
-        done = furrow("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.done(0, "calibrate", study, "--out", "often", "--no-plots")
         self.assertEqual(self.text("often"), expected)
         # Cut in the middle of a line, as a full disk or kill −9 leaves it.
         (self.folder / "often" / "evaluations.csv").write_bytes(table[: len(table) // 2])
         (self.folder / "often" / "calibration.json").unlink()
-        self.assertEqual(furrow("calibrate", study, "--out", "often", "--no-plots", cwd=self.folder).returncode, 0)
+        self.done(0, "calibrate", study, "--out", "often", "--no-plots")
         self.assertEqual(self.text("often"), expected)
 
     def test_another_calibration_needs_another_folder(self):
-        self.assertEqual(furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.done(0, "calibrate", self.study(), "--out", "out", "--no-plots")
         before = self.text("out")
         other = self.study("other.json", parameters={"bending": {}})
-        done = furrow("calibrate", other, "--out", "out", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
+        done = self.done(2, "calibrate", other, "--out", "out")
         self.assertIn("holds the evaluations of another calibration", done.stderr)
         self.assertEqual(self.text("out"), before)
-        done = furrow("calibrate", other, "--out", "out", "--overwrite", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.done(0, "calibrate", other, "--out", "out", "--overwrite", "--no-plots")
         self.assertNotEqual(self.text("out"), before)
         (self.folder / "mine").mkdir()
         (self.folder / "mine" / "notes.txt").write_text("mine")
         for words in ((), ("--overwrite",)):
-            done = furrow("calibrate", other, "--out", "mine", *words, cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
+            self.done(2, "calibrate", other, "--out", "mine", *words)
         self.assertEqual([path.name for path in (self.folder / "mine").iterdir()], ["notes.txt"])
 
     def test_earlier_results_stay_where_the_new_ones_have_no_place(self):
-        done = furrow("calibrate", self.study(), "--out", "out", "--no-plots", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.done(0, "calibrate", self.study(), "--out", "out", "--no-plots")
         (self.folder / "out" / "notes.json").write_text("mine")
         before = self.text("out")
-        done = furrow("calibrate", self.study("other.json", result="notes.json"),
-                      "--out", "out", "--overwrite", cwd=self.folder)
-        self.assertEqual(done.returncode, 2, done.stderr)
+        done = self.done(2, "calibrate", self.study("other.json", result="notes.json"), "--out", "out", "--overwrite")
         self.assertIn("notes.json: stands where a result is to be written", done.stderr)
         self.assertEqual(self.text("out"), before)
         self.assertEqual((self.folder / "out" / "notes.json").read_text(), "mine")
@@ -180,8 +177,7 @@ class Calibrate(SystemTest):
                                  ({"starts": 0}, "key 'starts'")):
             document = {**json.loads((self.folder / "study.json").read_text()), **change}
             (self.folder / "wrong.json").write_text(json.dumps(document))
-            done = furrow("calibrate", "wrong.json", cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            done = self.done(2, "calibrate", "wrong.json")
             self.assertIn(expected, done.stderr)
             self.assertEqual(set(self.names()), before | {"wrong.json"}, expected)
         done = furrow("calibrate", ROOT / "rigs" / "study_slip.json", cwd=self.folder)
@@ -192,15 +188,13 @@ class Calibrate(SystemTest):
         document = {**json.loads((self.folder / "study.json").read_text()), "starts": 2}
         document["targets"][0]["pressure"] = 5e7
         (self.folder / "stiff.json").write_text(json.dumps(document))
-        done = furrow("calibrate", "stiff.json", "--out", "stiff", cwd=self.folder)
-        self.assertEqual(done.returncode, 3, done.stderr)
+        done = self.done(3, "calibrate", "stiff.json", "--out", "stiff")
         self.assertIn("the model has no answer at any of the 2 starts", done.stderr)
 
     def test_commands_for_runs_say_what_a_calibration_is_and_what_continues_it(self):
         study = self.study()
-        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
-        done = furrow("resume", "out", cwd=self.folder)
-        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.done(0, "calibrate", study, "--out", "out", "--no-plots")
+        done = self.done(2, "resume", "out")
         self.assertEqual(done.stderr,
                          "furrow: error: out: holds a calibration, expected a run; the command that began it, 'furrow "
                          "calibrate' "
@@ -208,13 +202,12 @@ class Calibrate(SystemTest):
         (self.folder / "out" / "calibration.json").unlink()  # as after a signal or kill −9
         before = set(self.names())
         for command in (("report",), ("resume",), ("events",), ("report", "--vtk", "vtk")):
-            done = furrow(command[0], "out", *command[1:], cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            done = self.done(2, command[0], "out", *command[1:])
             self.assertEqual(done.stderr,
                              "furrow: error: out: holds a calibration that has not ended; the command that began it, "
                                           "'furrow calibrate' with the same study, continues it\n")
         self.assertEqual(set(self.names()), before)
-        self.assertEqual(furrow("calibrate", study, "--out", "out", "--no-plots", cwd=self.folder).returncode, 0)
+        self.done(0, "calibrate", study, "--out", "out", "--no-plots")
 
     def test_validate_checks_a_study_and_says_what_is_fitted(self):
         study = self.study()
@@ -244,25 +237,21 @@ class Calibrate(SystemTest):
         self.assertNotIn("results", self.names())
 
     def test_validate_sums_up_a_target_of_many_values(self):
-        done = furrow("validate", "calibrate_handling.json", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.done(0, "validate", "calibrate_handling.json")
         self.assertRegex(done.stdout,
                          r"\ntarget       sweep_lumped_fx \(fx of 41 rows\): 41 values, -4011\.897 to 5587\.121, each "
                          r"± 40\n")
 
     def test_commands_for_scenarios_point_to_calibrate(self):
         for command in ("run", "ranks", "press", "bed", "soil"):
-            done = furrow(command, "calibrate_ring.json", cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            done = self.done(2, command, "calibrate_ring.json")
             self.assertRegex(done.stderr,
                              r"^furrow: error: .+calibrate_ring.json: is a calibration, expected a scenario "
                                           r"\('furrow calibrate' takes calibrations\)\n$")
 
     def test_explain_knows_the_keys_of_calibrations(self):
         def told(key):
-            done = furrow("explain", key, cwd=self.folder)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            return done.stdout
+            return self.done(0, "explain", key).stdout
         for key in ("calibrate.targets", "calibrate.evaluations", "calibrate.grains"):
             self.assertIn(key, told("calibrate"))
         self.assertIn("a list of objects, each with data", told("calibrate.targets"))
@@ -271,19 +260,16 @@ class Calibrate(SystemTest):
         for key, what in (("calibrate.ring.bendin", "expected 'bending'?"), ("calibrate.target", "expected 'targets'?"),
                           ("calibrate_ring.json",
                            "is the name of a file, expected a key; 'furrow validate' checks a file")):
-            done = furrow("explain", key, cwd=self.folder)
-            self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertIn(what, done.stderr)
+            self.assertIn(what, self.done(2, "explain", key).stderr)
 
     def test_shipped_calibrations_are_valid(self):
         for path in sorted((ROOT / "rigs").glob("calibrate_*.json")):
-            done = furrow("calibrate", path, "--out", "/proc/furrow", cwd=self.folder)
-            self.assertEqual(done.returncode, 2, done.stderr)
+            done = self.done(2, "calibrate", path, "--out", "/proc/furrow")
             self.assertIn("key '--out': cannot be made", done.stderr)
             # By its name alone, from any folder.
             self.assertEqual(furrow("calibrate", path.name, "--out", "/proc/furrow", cwd=self.folder).stderr,
                              done.stderr)
-            self.assertEqual(furrow("validate", path.name, cwd=self.folder).returncode, 0)
+            self.done(0, "validate", path.name)
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ Json targets_json(const std::vector<Target>& targets, const Prediction& predicti
     } else {
       const Goodness g = goodness(target, rest.first(target.y.size()));
       rest = rest.subspan(target.y.size());
-      json["r_squared"] = json_number(g.r_squared);
+      json["r_squared"] = json_number(g.r_squared());
       json["largest_error"] = g.largest_error;
       json["largest_error_of_peak"] = json_number(g.largest_error / g.peak);
       json["root_mean_square_error"] = g.root_mean_square;

@@ -21,31 +21,6 @@ constexpr double kNormal = 1.959964;  // 97.5 % point of the normal distribution
 constexpr double kNoValue = 1.0;      // of the scale: an interval as wide says nothing
 constexpr double kNamed = 0.02;       // of a direction
 
-struct Sums {
-  double off = 0.0, total = 0.0;
-};
-
-Sums sums_of(const Target& target, std::span<const double> model) {
-  FURROW_ASSERT(model.size() == target.y.size(), model.size(), target.y.size());
-  double weight = 0.0, mean = 0.0;
-  for (std::size_t k = 0; k < target.y.size(); ++k) {
-    const double w = 1.0 / (target.sigma[k] * target.sigma[k]);
-    weight += w, mean += w * target.y[k];
-  }
-  mean /= weight;
-  Sums sums;
-  for (std::size_t k = 0; k < target.y.size(); ++k) {
-    const double w = 1.0 / (target.sigma[k] * target.sigma[k]);
-    sums.off += w * (model[k] - target.y[k]) * (model[k] - target.y[k]);
-    sums.total += w * (target.y[k] - mean) * (target.y[k] - mean);
-  }
-  return sums;
-}
-
-double r_squared(const Sums& sums) {
-  return sums.total > 0.0 ? 1.0 - sums.off / sums.total : std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 Confidence confidence(std::span<const Parameter> parameters, const Eigen::VectorXd& place,
@@ -112,28 +87,29 @@ std::string combination_text(std::span<const Parameter> parameters, std::span<co
   return text;
 }
 
+double Goodness::r_squared() const {
+  return total > 0.0 ? 1.0 - off / total : std::numeric_limits<double>::quiet_NaN();
+}
+
 Goodness goodness(const Target& target, std::span<const double> model) {
-  Goodness g;
-  g.r_squared = r_squared(sums_of(target, model));
-  double squares = 0.0;
-  for (std::size_t k = 0; k < target.y.size(); ++k) {
-    const double error = std::abs(model[k] - target.y[k]);
-    g.largest_error = std::max(g.largest_error, error);
-    g.peak = std::max(g.peak, std::abs(target.y[k]));
-    squares += error * error;
-  }
-  g.root_mean_square = std::sqrt(squares / static_cast<double>(target.y.size()));
-  return g;
+  FURROW_ASSERT(model.size() == target.y.size(), model.size(), target.y.size());
+  const auto points = static_cast<Eigen::Index>(model.size());
+  const Eigen::Map<const Eigen::ArrayXd> y(target.y.data(), points), sigma(target.sigma.data(), points);
+  const Eigen::ArrayXd weight = sigma.square().inverse(),
+                       error = (Eigen::Map<const Eigen::ArrayXd>(model.data(), points) - y).abs();
+  const double mean = (weight * y).sum() / weight.sum();
+  return {(weight * error.square()).sum(), (weight * (y - mean).square()).sum(), error.maxCoeff(), y.abs().maxCoeff(),
+          std::sqrt(error.square().mean())};
 }
 
 double joint_r_squared(const std::vector<Target>& targets, std::span<const double> model) {
-  Sums all;
+  Goodness all;
   for (const Target& target : targets) {
-    const Sums sums = sums_of(target, model.first(target.y.size()));
-    all.off += sums.off, all.total += sums.total;
+    const Goodness g = goodness(target, model.first(target.y.size()));
+    all.off += g.off, all.total += g.total;
     model = model.subspan(target.y.size());
   }
-  return r_squared(all);
+  return all.r_squared();
 }
 
 }  // namespace furrow::calibrate

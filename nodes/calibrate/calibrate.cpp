@@ -25,11 +25,11 @@ std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, con
   for (const Target& target : targets) {
     const Goodness g = goodness(target, rest.first(target.y.size()));
     rest = rest.subspan(target.y.size());
-    if (target.y.size() == 1 || !(g.r_squared < kLeastRSquared) || g.largest_error < kLittleError * g.peak) continue;
+    if (target.y.size() == 1 || !(g.r_squared() < kLeastRSquared) || g.largest_error < kLittleError * g.peak) continue;
     warnings.push_back(
         fmt::format("the fitted model does not describe {} (R² {:.2g}): check the units of {}, and whether its other "
                     "keys are those of the test",
-                    target.name, g.r_squared, target.data.filename().string()));
+                    target.name, g.r_squared(), target.data.filename().string()));
   }
   return warnings;
 }
@@ -54,7 +54,7 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
                                  }};
   CalibrationResults results;
   results.optimum = calibration.kind->optimize(objective, options);
-  const std::vector<double>& place = results.optimum.place;
+  const Eigen::VectorXd& place = results.optimum.place;
   results.confidence = confidence(calibration.parameters, place, results.optimum.residuals, results.optimum.jacobian,
                                   results.optimum.known_errors);
   results.values = objective.values(place);

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <random>
 #include <utility>
 
-#include <ceres/ceres.h>
 #include <fmt/format.h>
-#include <glog/logging.h>
+#include <Eigen/LU>
 
+#include "nodes/calibrate/least_squares.hpp"
 #include "nodes/calibrate/surrogate.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -18,7 +16,6 @@
 namespace furrow::calibrate {
 namespace {
 
-constexpr int kDesigns = 300;   // Latin hypercubes that the best is chosen from
 constexpr int kRounds = 3;      // of the weights, which depend on the place
 constexpr int kLooks = 400;     // places among which the least certain one is looked for
 constexpr double kSame = 0.01;  // of a scale: two places that tell the same
@@ -27,63 +24,33 @@ constexpr double kNear = 0.15;  // of a scale: around the least
 
 using Places = std::vector<Eigen::VectorXd>;
 
-/// Numbers from 0 to 1 with the same bits everywhere.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : bits_(seed) {}
-  double operator()() { return static_cast<double>(bits_() >> 11) * 0x1p-53; }
-  Eigen::VectorXd place(Eigen::Index size) {
-    Eigen::VectorXd s(size);
-    for (double& share : s) share = (*this)();
-    return s;
+/// Place n of a sequence that fills the scales evenly, from a place that is drawn: sᵢ = sᵢ₀ + n g⁻ⁱ modulo 1, with
+/// gᵖ⁺¹ = g + 1 for p parameters [Roberts 2018].
+Eigen::VectorXd even_place(const Eigen::VectorXd& first, int n) {
+  double g = 2.0;
+  for (int k = 0; k < 60; ++k) g = std::pow(1.0 + g, 1.0 / (static_cast<double>(first.size()) + 1.0));
+  Eigen::VectorXd place = first;
+  for (Eigen::Index i = 0; i < place.size(); ++i) {
+    const double share = first[i] + n * std::pow(g, -static_cast<double>(i + 1));
+    place[i] = share - std::floor(share);
   }
-  /// 0 … count − 1 in any order.
-  std::vector<int> order(int count) {
-    std::vector<int> list(static_cast<std::size_t>(count));
-    std::iota(list.begin(), list.end(), 0);
-    for (int k = count - 1; k > 0; --k)
-      std::swap(list[static_cast<std::size_t>(k)], list[static_cast<std::size_t>((*this)() * (k + 1))]);
-    return list;
-  }
-
- private:
-  std::mt19937_64 bits_;
-};
-
-double least_distance(const Places& places) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) least = std::min(least, (places[i] - places[j]).norm());
-  return least;
-}
-
-/// The start and `count` places that fill the scales.
-Places design(const Eigen::VectorXd& start, int count, Draw& draw) {
-  Places best;
-  double farthest = -1.0;
-  for (int n = 0; n < kDesigns; ++n) {
-    Places places(static_cast<std::size_t>(count), Eigen::VectorXd(start.size()));
-    for (Eigen::Index k = 0; k < start.size(); ++k) {
-      const std::vector<int> order = draw.order(count);
-      for (std::size_t i = 0; i < places.size(); ++i) places[i][k] = (order[i] + 0.5) / count;
-    }
-    places.insert(places.begin(), start);
-    if (const double least = least_distance(places); least > farthest) farthest = least, best = std::move(places);
-  }
-  return best;
+  return place;
 }
 
 /// The surrogates of all figures beside the data.
 class Misfit {
  public:
   Misfit(const Calibration& calibration, const Places& places, const std::vector<Prediction>& found) {
+    std::vector<double> data, sigma;
     for (const Target& target : calibration.model->targets(TargetSet::fitted)) {
-      data_.insert(data_.end(), target.y.begin(), target.y.end());
-      sigma_.insert(sigma_.end(), target.sigma.begin(), target.sigma.end());
+      data.insert(data.end(), target.y.begin(), target.y.end());
+      sigma.insert(sigma.end(), target.sigma.begin(), target.sigma.end());
     }
+    data_ = Eigen::Map<const Eigen::VectorXd>(data.data(), static_cast<Eigen::Index>(data.size()));
+    sigma_ = Eigen::Map<const Eigen::VectorXd>(sigma.data(), data_.size());
     Eigen::MatrixXd at(places.front().size(), static_cast<Eigen::Index>(places.size()));
     for (std::size_t i = 0; i < places.size(); ++i) at.col(static_cast<Eigen::Index>(i)) = places[i];
-    for (std::size_t q = 0; q < data_.size(); ++q) {
+    for (std::size_t q = 0; q < data.size(); ++q) {
       Eigen::VectorXd values(at.cols());
       std::vector<double> errors;
       for (std::size_t i = 0; i < places.size(); ++i) {
@@ -95,139 +62,76 @@ class Misfit {
     weigh(places.front());
   }
 
-  std::size_t points() const { return data_.size(); }
-  const Surrogate& surrogate(std::size_t q) const { return surrogates_[q]; }
-  double data(std::size_t q) const { return data_[q]; }
-  /// √(σ² + σ̂²) of a figure, where the weights were last taken.
-  double scale(std::size_t q) const { return scale_[q]; }
+  const std::vector<Surrogate>& surrogates() const { return surrogates_; }
+  /// √(σ² + σ̂²) of each figure, where the weights were last taken.
+  const Eigen::VectorXd& scale() const { return scale_; }
 
-  void weigh(const Eigen::VectorXd& place) {
-    scale_.resize(points());
-    for (std::size_t q = 0; q < points(); ++q)
-      scale_[q] = std::sqrt(sigma_[q] * sigma_[q] + surrogates_[q].at(place).variance);
-  }
-  void residuals(const Eigen::VectorXd& place, Eigen::VectorXd& r, Eigen::MatrixXd& J) const {
-    r.resize(static_cast<Eigen::Index>(points())), J.resize(r.size(), place.size());
-    for (std::size_t q = 0; q < points(); ++q) {
-      const Surrogate::Answer answer = surrogates_[q].at(place);
-      r[static_cast<Eigen::Index>(q)] = (answer.value - data_[q]) / scale_[q];
-      J.row(static_cast<Eigen::Index>(q)) = answer.gradient.transpose() / scale_[q];
+  void weigh(const Eigen::VectorXd& place) { scale_ = sigma_.array() * (1.0 + doubts(place).array()).sqrt(); }
+  bool residuals(const Eigen::VectorXd& place, Eigen::VectorXd& r, Eigen::MatrixXd* J) const {
+    r.resize(data_.size());
+    if (J) J->resize(r.size(), place.size());
+    for (Eigen::Index q = 0; q < r.size(); ++q) {
+      const Surrogate::Answer answer = surrogates_[static_cast<std::size_t>(q)].at(place);
+      r[q] = (answer.value - data_[q]) / scale_[q];
+      if (J) J->row(q) = answer.gradient.transpose() / scale_[q];
     }
+    return true;
   }
   double squares(const Eigen::VectorXd& place) const {
-    double sum = 0.0;
-    for (std::size_t q = 0; q < points(); ++q) {
-      const double r = (surrogates_[q].at(place).value - data_[q]) / scale_[q];
-      sum += r * r;
-    }
-    return sum;
+    Eigen::VectorXd r;
+    residuals(place, r, nullptr);
+    return r.squaredNorm();
   }
-  /// Whether no surrogate errs by more than its target there.
-  bool known(const Eigen::VectorXd& place) const {
-    for (std::size_t q = 0; q < points(); ++q)
-      if (surrogates_[q].at(place).variance > sigma_[q] * sigma_[q]) return false;
-    return true;
-  }
-  /// How little is known at a place: the surrogates' variances over those of the targets.
-  double doubt(const Eigen::VectorXd& place) const {
-    double sum = 0.0;
-    for (std::size_t q = 0; q < points(); ++q) sum += surrogates_[q].at(place).variance / (sigma_[q] * sigma_[q]);
-    return sum;
+  /// How little is known of each figure at a place: the surrogate's variance over that of the target.
+  Eigen::VectorXd doubts(const Eigen::VectorXd& place) const {
+    Eigen::VectorXd doubts(data_.size());
+    for (Eigen::Index q = 0; q < doubts.size(); ++q)
+      doubts[q] = surrogates_[static_cast<std::size_t>(q)].at(place).variance / (sigma_[q] * sigma_[q]);
+    return doubts;
   }
 
  private:
-  std::vector<double> data_, sigma_, scale_;
+  Eigen::VectorXd data_, sigma_, scale_;
   std::vector<Surrogate> surrogates_;
 };
-
-/// For Ceres; the places are one block.
-class Cost final : public ceres::CostFunction {
- public:
-  Cost(const Misfit& misfit, Eigen::Index size) : misfit_(misfit), size_(size) {
-    set_num_residuals(static_cast<int>(misfit.points()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(size));
-  }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    Eigen::VectorXd r;
-    Eigen::MatrixXd J;
-    misfit_.residuals(Eigen::Map<const Eigen::VectorXd>(blocks[0], size_), r, J);
-    std::copy(r.begin(), r.end(), residuals);
-    if (!jacobians || !jacobians[0]) return true;
-    for (Eigen::Index q = 0; q < J.rows(); ++q)
-      for (Eigen::Index k = 0; k < size_; ++k) jacobians[0][q * size_ + k] = J(q, k);
-    return true;
-  }
-
- private:
-  const Misfit& misfit_;
-  Eigen::Index size_;
-};
-
-struct Least {
-  Eigen::VectorXd place;
-  double squares = std::numeric_limits<double>::infinity();
-  int iterations = 0;
-};
-
-Least least_from(const Misfit& misfit, Eigen::VectorXd place) {
-  ceres::Problem problem;
-  problem.AddResidualBlock(new Cost(misfit, place.size()), nullptr, place.data());
-  for (int k = 0; k < static_cast<int>(place.size()); ++k) {
-    problem.SetParameterLowerBound(place.data(), k, 0.0);
-    problem.SetParameterUpperBound(place.data(), k, 1.0);
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 200;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return {place, misfit.squares(place), static_cast<int>(summary.iterations.size())};
-}
 
 class Noisy {
  public:
   Noisy(Objective& objective, const OptimizerOptions& options)
-      : objective_(objective),
-        options_(options),
-        draw_(options.seed),
-        size_(static_cast<Eigen::Index>(objective.parameters())) {}
+      : objective_(objective), options_(options), draw_(options.seed) {}
 
   Optimum run() {
-    const std::vector<double> start = objective_.start();
-    const int count = std::min(3 * static_cast<int>(size_), options_.evaluations - 3);
-    for (const Eigen::VectorXd& place : design(Eigen::Map<const Eigen::VectorXd>(start.data(), size_), count, draw_))
-      evaluate(place);
+    const int count = std::min(3 * static_cast<int>(objective_.parameters()), options_.evaluations - 3);
+    const Eigen::VectorXd first = draw_.place(objective_.parameters());
+    evaluate(objective_.start());
+    for (int n = 0; n < count; ++n) evaluate(even_place(first, n));
     require_answers();
     Eigen::VectorXd before;  // the least before this one
-    std::string ended;
     for (;;) {
-      Misfit misfit = fit();
-      Least least = minimise(misfit, before);
-      if (options_.progress) options_.progress(share());
-      if (before.size() > 0 && stays(misfit, before, least.place) && misfit.known(least.place))
-        ended = "converged";
-      else if (asked_ >= options_.evaluations)
-        ended = "all evaluations are used";
-      if (!ended.empty()) return result(misfit, ended);
+      Misfit misfit(objective_.calibration(), places_, found_);
+      const Eigen::VectorXd least = minimise(misfit, before);
+      if (before.size() > 0 && stays(misfit, before, least) && misfit.doubts(least).maxCoeff() <= 1.0)
+        return result(misfit, "converged");
+      if (asked() >= options_.evaluations) return result(misfit, "all evaluations are used");
       // Where the least is known already, what is around it tells more.
-      const bool known = distance(least.place) < kSame;
-      const bool answered = evaluate(known ? least_certain(misfit, least.place) : least.place);
-      before = known || answered ? least.place : Eigen::VectorXd();
+      const bool known = distance(least) < kSame;
+      const bool answered = evaluate(known ? least_certain(misfit, least) : least);
+      before = known || answered ? least : Eigen::VectorXd();
     }
   }
 
  private:
-  double share() const { return static_cast<double>(asked_) / options_.evaluations; }
-  static std::vector<double> list(const Eigen::VectorXd& place) { return {place.begin(), place.end()}; }
+  int asked() const { return static_cast<int>(all_.size()); }
 
   /// @returns whether the model has an answer
   bool evaluate(const Eigen::VectorXd& place) {
-    if (options_.progress) options_.progress(share());
-    const Prediction& found = objective_.predict(list(place));
-    ++asked_;
+    const auto tell = [&] {
+      if (options_.progress) options_.progress(static_cast<double>(asked()) / options_.evaluations);
+    };
+    tell();
+    const Prediction& found = objective_.predict(place);
     all_.push_back(place);
+    tell();
     if (!found.problem.empty()) {
       problem_ = found.problem;
       return false;
@@ -237,15 +141,13 @@ class Noisy {
   }
 
   void require_answers() const {
-    const std::size_t least = static_cast<std::size_t>(size_) + 2;
+    const std::size_t least = objective_.parameters() + 2;
     if (places_.size() < least)
       throw physics_error(
           fmt::format("{}: the model answers at {} of the {} places of the design, expected {} or more; "
                       "where it does not: {}",
                       objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
   }
-
-  Misfit fit() const { return Misfit(objective_.calibration(), places_, found_); }
 
   /// Of all that was asked for.
   double distance(const Eigen::VectorXd& place) const {
@@ -256,29 +158,26 @@ class Noisy {
 
   /// The evaluation where the surrogates' misfit is least.
   const Eigen::VectorXd& best_of(const Misfit& misfit) const {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < places_.size(); ++i)
-      if (misfit.squares(places_[i]) < misfit.squares(places_[best])) best = i;
-    return places_[best];
+    return *std::min_element(places_.begin(), places_.end(), [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+      return misfit.squares(a) < misfit.squares(b);
+    });
   }
 
-  Least minimise(Misfit& misfit, const Eigen::VectorXd& before) {
-    Least least;
-    starts_.clear();
-    Eigen::VectorXd weighed = before.size() > 0 ? before : best_of(misfit);
+  Eigen::VectorXd minimise(Misfit& misfit, const Eigen::VectorXd& before) {
+    Eigen::VectorXd least = before.size() > 0 ? before : best_of(misfit);
     Draw draw(options_.seed);  // the same starts each time
-    std::vector<Eigen::VectorXd> begins{weighed};
-    while (static_cast<int>(begins.size()) < options_.starts) begins.push_back(draw.place(size_));
+    Places begins{least};
+    while (static_cast<int>(begins.size()) < options_.starts) begins.push_back(draw.place(objective_.parameters()));
+    const Residuals residuals = [&](const auto& place, auto& r, auto* J) { return misfit.residuals(place, r, J); };
     for (int round = 0; round < kRounds; ++round) {
-      misfit.weigh(weighed);
-      least = {};
+      misfit.weigh(least);
+      double squares = std::numeric_limits<double>::infinity();
       starts_.clear();
       for (const Eigen::VectorXd& begin : begins) {
-        Least one = least_from(misfit, begin);
-        starts_.push_back({list(begin), list(one.place), one.squares, one.iterations, "on the surrogates"});
-        if (one.squares < least.squares) least = std::move(one);
+        const Least one = least_squares(residuals, objective_.points(), begin);
+        starts_.push_back({begin, one.place, misfit.squares(one.place), one.iterations, "on the surrogates"});
+        if (*starts_.back().squares < squares) squares = *starts_.back().squares, least = one.place;
       }
-      weighed = least.place;
     }
     return least;
   }
@@ -287,46 +186,43 @@ class Noisy {
   static bool stays(const Misfit& misfit, const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
     Eigen::VectorXd r;
     Eigen::MatrixXd J;
-    misfit.residuals(now, r, J);
+    misfit.residuals(now, r, &J);
     // Directions that nothing determines end at the scale's own length.
     const Eigen::MatrixXd JtJ = J.transpose() * J + Eigen::MatrixXd::Identity(now.size(), now.size());
-    const Eigen::MatrixXd covariance = JtJ.inverse();
-    for (Eigen::Index k = 0; k < now.size(); ++k)
-      if (std::abs(now[k] - before[k]) > std::max(kSame, kStays * std::sqrt(covariance(k, k)))) return false;
-    return true;
+    const Eigen::ArrayXd errors = JtJ.inverse().diagonal().array().sqrt();
+    return ((now - before).array().abs() <= (kStays * errors).max(kSame)).all();
   }
 
   /// Near the least, where the surrogates know least.
   Eigen::VectorXd least_certain(const Misfit& misfit, const Eigen::VectorXd& around) {
-    Eigen::VectorXd best = draw_.place(size_);
+    Eigen::VectorXd best = draw_.place(objective_.parameters());
     double most = -1.0;
     for (int n = 0; n < kLooks; ++n) {
-      Eigen::VectorXd place = around + kNear * (2.0 * draw_.place(size_).array() - 1.0).matrix();
+      Eigen::VectorXd place = around + kNear * (2.0 * draw_.place(objective_.parameters()).array() - 1.0).matrix();
       place = place.cwiseMax(0.0).cwiseMin(1.0);
       if (distance(place) < kSame) continue;
-      if (const double doubt = misfit.doubt(place); doubt > most) most = doubt, best = place;
+      if (const double doubt = misfit.doubts(place).sum(); doubt > most) most = doubt, best = place;
     }
     return best;
   }
 
   Optimum result(Misfit& misfit, const std::string& ended) {
-    const Eigen::VectorXd place = best_of(misfit);
-    misfit.weigh(place);
     Optimum optimum;
     optimum.starts = starts_;
-    optimum.place = list(place);
-    misfit.residuals(place, optimum.residuals, optimum.jacobian);
+    optimum.place = best_of(misfit);
+    misfit.weigh(optimum.place);
+    misfit.residuals(optimum.place, optimum.residuals, &optimum.jacobian);
     optimum.squares = optimum.residuals.squaredNorm();
     optimum.known_errors = true;
-    optimum.evaluations = asked_;
+    optimum.evaluations = asked();
     optimum.ended = ended;
-    for (std::size_t q = 0; q < misfit.points(); ++q) {
-      const Surrogate::Answer answer = misfit.surrogate(q).at(place);
-      Reach reach{answer.value,    std::sqrt(answer.variance), std::sqrt(misfit.surrogate(q).noise()),
-                  misfit.scale(q), found_.front().values[q],   found_.front().values[q]};
-      for (const Prediction& found : found_)
-        reach.low = std::min(reach.low, found.values[q]), reach.high = std::max(reach.high, found.values[q]);
-      optimum.reach.push_back(reach);
+    for (std::size_t q = 0; q < objective_.points(); ++q) {
+      const Surrogate& surrogate = misfit.surrogates()[q];
+      const Surrogate::Answer answer = surrogate.at(optimum.place);
+      const auto [low, high] = std::minmax_element(
+          found_.begin(), found_.end(), [q](const auto& a, const auto& b) { return a.values[q] < b.values[q]; });
+      optimum.reach.push_back({answer.value, std::sqrt(answer.variance), std::sqrt(surrogate.noise()),
+                               misfit.scale()[static_cast<Eigen::Index>(q)], low->values[q], high->values[q]});
     }
     return optimum;
   }
@@ -334,8 +230,6 @@ class Noisy {
   Objective& objective_;
   const OptimizerOptions& options_;
   Draw draw_;
-  Eigen::Index size_;
-  int asked_ = 0;
   Places all_, places_;            // asked for; with an answer
   std::vector<Prediction> found_;  // at places_
   std::string problem_;
@@ -346,7 +240,6 @@ class Noisy {
 
 Optimum optimize_noisy(Objective& objective, const OptimizerOptions& options) {
   FURROW_ASSERT(options.evaluations >= least_evaluations(objective.parameters()), options.evaluations);
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports by its summary; its log is not for users
   return Noisy(objective, options).run();
 }
 

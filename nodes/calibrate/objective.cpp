@@ -28,28 +28,32 @@ Objective::Objective(const Calibration& calibration, EvaluationTable& table, Pro
       table_(table),
       progress_(std::move(progress)),
       held_out_state_(state_of(calibration.model->targets(TargetSet::held_out))) {
-  for (const Target& target : calibration.model->targets(TargetSet::fitted)) {
-    FURROW_ASSERT(target.sigma.size() == target.y.size(), target.sigma.size(), target.y.size());
-    data_.insert(data_.end(), target.y.begin(), target.y.end());
-    sigma_.insert(sigma_.end(), target.sigma.begin(), target.sigma.end());
-  }
+  const auto joined = [&](auto member) {
+    std::vector<double> all;
+    for (const Target& target : calibration.model->targets(TargetSet::fitted))
+      all.insert(all.end(), (target.*member).begin(), (target.*member).end());
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size())));
+  };
+  data_ = joined(&Target::y), sigma_ = joined(&Target::sigma);
+  FURROW_ASSERT(data_.size() == sigma_.size(), data_.size(), sigma_.size());
 }
 
-std::vector<double> Objective::values(std::span<const double> shares) const {
-  FURROW_ASSERT(shares.size() == parameters(), shares.size(), parameters());
+std::vector<double> Objective::values(const Eigen::VectorXd& place) const {
   std::vector<double> values;
-  for (std::size_t k = 0; k < shares.size(); ++k) values.push_back(calibration_.parameters[k].off_scale(shares[k]));
+  for (std::size_t k = 0; k < parameters(); ++k)
+    values.push_back(calibration_.parameters[k].off_scale(place[static_cast<Eigen::Index>(k)]));
   return values;
 }
 
-std::vector<double> Objective::start() const {
-  std::vector<double> shares;
-  for (const Parameter& p : calibration_.parameters) shares.push_back(p.on_scale(p.start));
-  return shares;
+Eigen::VectorXd Objective::start() const {
+  return Eigen::VectorXd::NullaryExpr(static_cast<Eigen::Index>(parameters()), [this](Eigen::Index k) {
+    const Parameter& p = calibration_.parameters[static_cast<std::size_t>(k)];
+    return p.on_scale(p.start);
+  });
 }
 
-const Prediction& Objective::predict(std::span<const double> shares, TargetSet set) {
-  const std::vector<double> at = values(shares);
+const Prediction& Objective::predict(const Eigen::VectorXd& place, TargetSet set) {
+  const std::vector<double> at = values(place);
   const std::string state = set == TargetSet::fitted ? std::string(kSetNames.fitted) : held_out_state_;
   ++asked_;
   if (const Prediction* known = table_.find(state, at)) return *known;
@@ -60,38 +64,33 @@ const Prediction& Objective::predict(std::span<const double> shares, TargetSet s
   return table_.add(state, at, std::move(found));
 }
 
-std::optional<Eigen::VectorXd> Objective::residuals(std::span<const double> shares) {
-  const Prediction& found = predict(shares);
+std::optional<Eigen::VectorXd> Objective::residuals(const Eigen::VectorXd& place) {
+  const Prediction& found = predict(place);
   if (!found.problem.empty()) return std::nullopt;
-  Eigen::VectorXd r(points());
-  for (std::size_t k = 0; k < points(); ++k) r[k] = (found.values[k] - data_[k]) / sigma_[k];
-  if (!r.allFinite()) return std::nullopt;
-  return r;
+  const Eigen::VectorXd r =
+      (Eigen::Map<const Eigen::VectorXd>(found.values.data(), data_.size()) - data_).cwiseQuotient(sigma_);
+  return r.allFinite() ? std::optional(r) : std::nullopt;
 }
 
 // Central: (r₊ − r₋)/2h. One-sided, of the same order: ±(−3r₀ + 4r₁ − r₂)/2h.
-std::optional<Eigen::MatrixXd> Objective::jacobian(std::span<const double> shares, const Eigen::VectorXd& at) {
-  Eigen::MatrixXd J(points(), parameters());
-  std::vector<double> moved(shares.begin(), shares.end());
-  for (std::size_t k = 0; k < moved.size(); ++k) {
-    const double here = shares[k], h = kDifference;
-    const auto to = [&](double share) -> std::optional<Eigen::VectorXd> {
-      if (share < 0.0 || share > 1.0) return std::nullopt;
-      moved[k] = share;
-      return residuals(moved);
+std::optional<Eigen::MatrixXd> Objective::jacobian(const Eigen::VectorXd& place, const Eigen::VectorXd& at) {
+  Eigen::MatrixXd J(data_.size(), place.size());
+  for (Eigen::Index k = 0; k < place.size(); ++k) {
+    const auto moved = [&](double by) -> std::optional<Eigen::VectorXd> {
+      Eigen::VectorXd there = place;
+      there[k] += by;
+      return there[k] < 0.0 || there[k] > 1.0 ? std::nullopt : residuals(there);
     };
-    const auto up = to(here + h), down = to(here - h);
+    const double h = kDifference;
+    const auto up = moved(h), down = moved(-h);
     if (up && down) {
       J.col(k) = (*up - *down) / (2.0 * h);
-    } else if (up || down) {
-      const double side = up ? h : -h;
-      const auto far = to(here + 2.0 * side);
-      if (!far) return std::nullopt;
-      J.col(k) = (-3.0 * at + 4.0 * (up ? *up : *down) - *far) / (2.0 * side);
-    } else {
-      return std::nullopt;
+      continue;
     }
-    moved[k] = here;
+    const double side = up ? h : -h;
+    const auto far = up || down ? moved(2.0 * side) : std::nullopt;
+    if (!far) return std::nullopt;
+    J.col(k) = (-3.0 * at + 4.0 * (up ? *up : *down) - *far) / (2.0 * side);
   }
   return J;
 }

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -21,24 +20,24 @@ class Objective {
   Objective(const Calibration& calibration, EvaluationTable& table, ProgressCall progress);
 
   std::size_t parameters() const { return calibration_.parameters.size(); }
-  std::size_t points() const { return data_.size(); }
+  std::size_t points() const { return static_cast<std::size_t>(data_.size()); }
   const Calibration& calibration() const { return calibration_; }
   /// Evaluations asked for so far, of which `computed()` were not in the table.
   std::size_t asked() const { return asked_; }
   std::size_t computed() const { return computed_; }
 
   /// In the parameters' units.
-  std::vector<double> values(std::span<const double> shares) const;
+  std::vector<double> values(const Eigen::VectorXd& place) const;
   /// On the scales.
-  std::vector<double> start() const;
+  Eigen::VectorXd start() const;
 
   /// What the model says, from the table where it is known. The reference holds until the next call.
-  const Prediction& predict(std::span<const double> shares, TargetSet set = TargetSet::fitted);
+  const Prediction& predict(const Eigen::VectorXd& place, TargetSet set = TargetSet::fitted);
   /// r of all points; none where the model has no answer.
-  std::optional<Eigen::VectorXd> residuals(std::span<const double> shares);
+  std::optional<Eigen::VectorXd> residuals(const Eigen::VectorXd& place);
   /// ∂r/∂share: central differences, one-sided of second order where a bound or a model without an answer is near.
   /// @param at r here @returns none where differences are not to be had
-  std::optional<Eigen::MatrixXd> jacobian(std::span<const double> shares, const Eigen::VectorXd& at);
+  std::optional<Eigen::MatrixXd> jacobian(const Eigen::VectorXd& place, const Eigen::VectorXd& at);
 
   /// Step of the differences, of a scale.
   static constexpr double kDifference = 1e-4;
@@ -48,7 +47,7 @@ class Objective {
   EvaluationTable& table_;
   ProgressCall progress_;
   std::string held_out_state_;
-  std::vector<double> data_, sigma_;  // of all points of the fitted targets
+  Eigen::VectorXd data_, sigma_;  // of all points of the fitted targets
   std::size_t asked_ = 0, computed_ = 0;
 };
 

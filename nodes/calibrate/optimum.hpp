@@ -20,7 +20,7 @@ struct OptimizerOptions {
 
 /// How one start went. Places are on the scales from 0 to 1.
 struct StartResult {
-  std::vector<double> begin, end;
+  Eigen::VectorXd begin, end;
   std::optional<double> squares;  // Σ r² at the end; none: the model had no answer where it began
   int iterations = 0;
   std::string ended;  // "converged", "out of iterations", or why not
@@ -36,7 +36,7 @@ struct Reach {
 
 struct Optimum {
   std::vector<StartResult> starts;
-  std::vector<double> place;  // of the least
+  Eigen::VectorXd place;      // of the least
   Eigen::VectorXd residuals;  // there
   Eigen::MatrixXd jacobian;   // ∂r/∂share there; of a surrogate where the model is noisy
   double squares = 0.0;       // Σ r² there

@@ -58,7 +58,7 @@ Json targets_json(const std::vector<Target>& targets, const Prediction& predicti
     } else {
       const Goodness g = goodness(target, rest.first(target.y.size()));
       rest = rest.subspan(target.y.size());
-      json["r_squared"] = json_number(g.r_squared);
+      json["r_squared"] = json_number(g.r_squared());
       json["largest_error"] = g.largest_error;
       json["largest_error_of_peak"] = json_number(g.largest_error / g.peak);
       json["root_mean_square_error"] = g.root_mean_square;
@@ -84,10 +84,10 @@ Json total_json(const std::vector<Target>& targets, const Prediction& prediction
           {"largest_error_of_peak", largest_of_peak(each)}};
 }
 
-Json place_json(const Calibration& calibration, std::span<const double> shares) {
+Json place_json(const Calibration& calibration, const Eigen::VectorXd& place) {
   Json json = Json::object();
-  for (std::size_t k = 0; k < shares.size(); ++k)
-    json[calibration.parameters[k].name] = calibration.parameters[k].off_scale(shares[k]);
+  Eigen::Index k = 0;
+  for (const Parameter& p : calibration.parameters) json[p.name] = p.off_scale(place[k++]);
   return json;
 }
 

@@ -51,7 +51,7 @@ struct Confidence {
 /// @param place on the scales @param jacobian ∂r/∂share
 /// @param known_errors the residuals are over their whole standard errors: σ̂ is 1, and the intervals are those of the
 /// normal distribution @pre more points than parameters, or known errors
-Confidence confidence(std::span<const Parameter> parameters, std::span<const double> place,
+Confidence confidence(std::span<const Parameter> parameters, const Eigen::VectorXd& place,
                       const Eigen::VectorXd& residuals, const Eigen::MatrixXd& jacobian, bool known_errors = false);
 
 /// "0.71 bending − 0.70 shear": what is above a fiftieth, largest first.
@@ -59,10 +59,11 @@ std::string combination_text(std::span<const Parameter> parameters, std::span<co
 
 /// How well values meet data.
 struct Goodness {
-  double r_squared = 0.0;  // 1 − Σ(model − data)²/Σ(data − their mean)², both over σ²; NaN: the data do not vary
-  double largest_error = 0.0;  // |model − data|, in the unit of the data
-  double peak = 0.0;           // largest |data|
+  double off = 0.0, total = 0.0;  // Σ(model − data)²/σ², Σ(data − their mean)²/σ²
+  double largest_error = 0.0;     // |model − data|, in the unit of the data
+  double peak = 0.0;              // largest |data|
   double root_mean_square = 0.0;
+  double r_squared() const;  // 1 − off/total; NaN: the data do not vary
 };
 Goodness goodness(const Target& target, std::span<const double> model);
 /// R² of several targets together, each about its own mean, every point over its σ.

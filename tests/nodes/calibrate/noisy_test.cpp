@@ -86,6 +86,12 @@ std::vector<Parameter> soil_parameters() {
   return {{"rolling", "-", 0.0, 1.0, 0.2, false}, {"cohesion", "kPa", 0.0, 60.0, 30.0, false}};
 }
 
+/// A study of them; the figures that `figures` has need not be those of the data.
+Calibration soil_study(std::uint64_t seed, int evaluations, std::vector<double> data = {28.0, 1500.0, 0.014},
+                       Figures figures = soil_like) {
+  return noisy_study(std::move(figures), std::move(data), kSigma, kNoise, soil_parameters(), seed, evaluations);
+}
+
 TEST(Surrogate, gives_back_a_line_and_its_error) {
   // y = 3 − 2 s + ε: ordinary least squares has a closed form, and the process must add nothing to a line.
   const int n = 12;
@@ -167,8 +173,7 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
     std::vector<double> data = exact;
     for (std::size_t q = 0; q < data.size(); ++q)
       data[q] += kSigma[q] * deviate(truth, 1000 + static_cast<std::uint64_t>(k), q);
-    const CalibrationResults results =
-        calibrated(noisy_study(soil_like, data, kSigma, kNoise, soil_parameters(), static_cast<std::uint64_t>(k), 20));
+    const CalibrationResults results = calibrated(soil_study(static_cast<std::uint64_t>(k), 20, data));
     ASSERT_LE(results.optimum.evaluations, 20);
     for (std::size_t p = 0; p < 2; ++p) {
       const Estimate& e = results.confidence.estimates[p];
@@ -188,10 +193,7 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
 
 TEST(OptimizeNoisy, the_same_study_gives_the_same_bits_and_keeps_to_its_budget) {
   for (const int evaluations : {least_evaluations(2), 14}) {
-    const Calibration first =
-        noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 5, evaluations);
-    const Calibration second =
-        noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 5, evaluations);
+    const Calibration first = soil_study(5, evaluations), second = soil_study(5, evaluations);
     const CalibrationResults a = calibrated(first), b = calibrated(second);
     EXPECT_EQ(a.values, b.values);
     EXPECT_EQ(calibration_json(first, a).dump(), calibration_json(second, b).dump());
@@ -204,24 +206,24 @@ TEST(OptimizeNoisy, the_same_study_gives_the_same_bits_and_keeps_to_its_budget) 
 }
 
 TEST(OptimizeNoisy, an_interrupted_calibration_ends_with_the_same_bits) {
-  const Calibration whole = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 2, 16);
+  const Calibration whole = soil_study(2, 16);
   const CalibrationResults expected = calibrated(whole);
   const furrow::testing::TemporaryFolder folder;
   int left = 5;
-  const Calibration broken = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 2, 16);
+  const Calibration broken = soil_study(2, 16);
   EXPECT_THROW(calibrate(broken, folder.path(),
                          [&](const std::string&, double) {
                            if (--left == 0) throw Error(ExitCode::stopped, "stopped");
                          }),
                Error);
-  const Calibration again = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 2, 16);
+  const Calibration again = soil_study(2, 16);
   const CalibrationResults results = calibrate(again, folder.path(), {});
   EXPECT_LT(model_of(again).asked.size(), model_of(whole).asked.size());
   EXPECT_EQ(calibration_json(again, results).dump(), calibration_json(whole, expected).dump());
 }
 
 TEST(OptimizeNoisy, progress_goes_on_within_an_evaluation) {
-  const Calibration c = noisy_study(soil_like, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 2, 16);
+  const Calibration c = soil_study(2, 16);
   const furrow::testing::TemporaryFolder folder;
   std::vector<double> shares;
   calibrate(c, folder.path(), [&](const std::string&, double share) { shares.push_back(share); });
@@ -233,7 +235,7 @@ TEST(OptimizeNoisy, progress_goes_on_within_an_evaluation) {
 
 TEST(OptimizeNoisy, a_target_that_cannot_be_reached_is_told_with_the_range) {
   // The largest first figure within the bounds is 20 + 14 (1 − e⁻²) + 3 = 35.1.
-  const Calibration c = noisy_study(soil_like, {45.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 1, 18);
+  const Calibration c = soil_study(1, 18, {45.0, 1500.0, 0.014});
   const CalibrationResults results = calibrated(c);
   EXPECT_EQ(reach_state(results.optimum.reach[0], 45.0, 0.5), ReachState::out_of_range);
   EXPECT_LT(results.optimum.reach[0].high, 38.0);
@@ -261,12 +263,11 @@ TEST(OptimizeNoisy, what_the_figures_do_not_tell_apart_is_named) {
 
 TEST(OptimizeNoisy, places_without_an_answer_are_left_out_and_too_few_answers_end_it) {
   const auto half = [](std::span<const double> p) { return p[0] > 0.8 ? std::vector<double>(3, NAN) : soil_like(p); };
-  const CalibrationResults results =
-      calibrated(noisy_study(half, soil_like(std::vector{0.4, 20.0}), kSigma, kNoise, soil_parameters(), 1, 18));
+  const CalibrationResults results = calibrated(soil_study(1, 18, soil_like(std::vector{0.4, 20.0}), half));
   EXPECT_NEAR(results.values[1], 20.0, 6.0);
   const auto none = [](std::span<const double>) { return std::vector<double>(3, NAN); };
   try {
-    calibrated(noisy_study(none, {28.0, 1500.0, 0.014}, kSigma, kNoise, soil_parameters(), 1, 18));
+    calibrated(soil_study(1, 18, {28.0, 1500.0, 0.014}, none));
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::physics);

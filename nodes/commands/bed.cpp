@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/scenario/memory_check.hpp"
@@ -60,9 +60,7 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   return j;
 }
 
-}  // namespace
-
-ExitCode bed_command(const scenario::Scenario& scenario) {
+ExitCode make_bed(const scenario::Scenario& scenario) {
   const terrain::dem::DemOptions grains = scenario.grains("only grains make a bed");
   scenario::require_memory(scenario);
   launch::catch_stop_signals();
@@ -84,6 +82,21 @@ ExitCode bed_command(const scenario::Scenario& scenario) {
     print_warning(scenario.file.string() + ": the bed did not come to rest and is used as it is");
   std::cout << bed_json(scenario, grains, prepared, statistics, wall).dump(2) << "\n";
   return ExitCode::done;
+}
+
+Action bed_options(CLI::App& command, Typed& typed) {
+  add_scenario(command, typed);
+  return [&typed] { return make_bed(load(typed)); };
+}
+
+}  // namespace
+
+Command bed_entry() {
+  return {.name = "bed",
+          .task = task::test,
+          .purpose = "Settle the bed of a scenario, keep it for later runs, and print its statistics as JSON.",
+          .options = bed_options,
+          .examples = {{"bed drawbar_pull_small.json", "Settle a bed that later runs share."}}};
 }
 
 }  // namespace furrow::commands

@@ -1,11 +1,13 @@
 // `furrow bench grains`: what the command line says, and the result as JSON.
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/grain_bench.hpp"
@@ -13,6 +15,20 @@
 
 namespace furrow::commands {
 namespace {
+
+struct GrainBench {
+  std::string bed = "default";      // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
+  std::string law = "mindlin";      // mindlin | hertz_tanh
+  std::string precision = "mixed";  // mixed | double
+  double cohesion = 0.0;            // Pa
+  double rolling_friction = 0.0;    // -
+  double step = 4e-5;               // s
+  int threads = 1;
+  int steps = 1000;
+  int warm = 100;       // steps before, not timed
+  double settle = 0.0;  // first settled for that long at most, s
+  std::string save;     // CSV that receives the positions before the timed steps; empty: none
+};
 
 void check(const GrainBench& bench) {
   const auto require = [](bool ok, const char* key, const std::string& expected) {
@@ -48,8 +64,7 @@ terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   return options;
 }
 
-}  // namespace
-
+/// Every grain is integrated and every contact evaluated in every step. @param progress may throw
 std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) {
   check(bench);
   const terrain::dem::GrainBenchResult r = terrain::dem::run_grain_bench(
@@ -77,6 +92,45 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
                                        {"rolling_friction", bench.rolling_friction},
                                        {"state_hash", r.state_hash}};
   return json.dump(2) + "\n";
+}
+
+Action add_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<GrainBench>();
+  command
+      .add_option("--bed", arguments->bed,
+                  "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, "
+                  "y from 0 to 0.6 and z ≥ 0. 'default' is the reference bed.")
+      ->capture_default_str();
+  command.add_option("--law", arguments->law, "Choose the contact law: " + terrain::dem::law_names() + ".")
+      ->capture_default_str();
+  command.add_option("--precision", arguments->precision, "Choose the precision of the contact law: mixed or double.")
+      ->capture_default_str();
+  command.add_option("--cohesion", arguments->cohesion, "Set the cohesion of the contacts, Pa.")->capture_default_str();
+  command.add_option("--rolling-friction", arguments->rolling_friction, "Set the coefficient of rolling resistance.")
+      ->capture_default_str();
+  command.add_option("--threads", arguments->threads, "Use this number of threads.")->capture_default_str();
+  command.add_option("--steps", arguments->steps, "Time this number of steps.")->capture_default_str();
+  command.add_option("--warm", arguments->warm, "Take this number of steps before the timed ones.")
+      ->capture_default_str();
+  command.add_option("--settle", arguments->settle, "Let the bed settle first, for at most this time, s.")
+      ->capture_default_str();
+  command.add_option("--save-bed", arguments->save, "Write the positions before the timed steps to this CSV file.");
+  command.add_option("--step", arguments->step, "Set the time step, s.")->capture_default_str();
+  return [arguments] {
+    return run_bench(arguments->threads,
+                     [&](const ProgressCall& progress) { return bench_grains(*arguments, progress); });
+  };
+}
+
+}  // namespace
+
+Command bench_grains_entry() {
+  return {.name = "bench grains",
+          .task = nullptr,
+          .purpose = "Time the steps of a settled bed, with every grain integrated in every step.",
+          .options = add_options,
+          .examples = {
+              {"bench grains --cohesion 5000 --threads 2", "Time the reference bed with cohesion, on two cores."}}};
 }
 
 }  // namespace furrow::commands

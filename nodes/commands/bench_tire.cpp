@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <memory>
 #include <numbers>
 #include <numeric>
 
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
@@ -21,6 +23,20 @@
 
 namespace furrow::commands {
 namespace {
+
+struct TireBench {
+  std::string tire = "default";  // tire file, or default: the layered tire
+  double pressure = 200e3;       // gauge, Pa
+  double load = 465.0;           // carried by the spindle, kg
+  double speed = 8.56;           // of the rim's spin, rad/s
+  double step = 4e-5;            // s
+  double tolerance = 1e-4;       // of the free residual, relative to the norm of the pressure forces
+  double renewal = 0.01;         // change of shape at which a sector of the factor is renewed
+  int columns = 0, width = 0;    // elements around and across; 0: the file's
+  int threads = 1;
+  int steps = 0;      // timed; 0: one revolution
+  double warm = 0.6;  // touch-down and transients before that, s
+};
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
 
@@ -94,8 +110,8 @@ double quantile(const std::vector<double>& sorted, double p) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
 }
 
-}  // namespace
-
+/// The tire rolls freely on hard ground under a carriage. Times per step are those of the tire alone: wall time, and
+/// processor time of the calling thread, also by parts. @param progress may throw
 std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
   check(bench);
   const std::unique_ptr<tire::TireSpec> spec = read_tire(bench);
@@ -159,6 +175,55 @@ std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
       {"threads", bench.threads},
       {"state_hash", hash.hex()}};
   return json.dump(2) + "\n";
+}
+
+Action add_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<TireBench>();
+  command.add_option("--tire", arguments->tire, "Read this tire file. 'default' is the layered tire.")
+      ->capture_default_str();
+  command.add_option("--threads", arguments->threads, "Use this number of threads.")->capture_default_str();
+  command.add_option("--steps", arguments->steps, "Time this number of steps; 0 means one revolution.")
+      ->capture_default_str();
+  command.add_option("--step", arguments->step, "Set the time step, s.")->capture_default_str();
+  command
+      .add_option("--warm", arguments->warm,
+                  "Roll for this time before the timed steps, so that the touch-down is over, s.")
+      ->capture_default_str();
+  command.add_option("--pressure", arguments->pressure, "Set the inflation pressure (gauge), Pa.")
+      ->capture_default_str();
+  command.add_option("--load", arguments->load, "Set the mass that the tire carries, kg.")->capture_default_str();
+  command.add_option("--speed", arguments->speed, "Set the angular speed of the rim, rad/s.")->capture_default_str();
+  command
+      .add_option("--tolerance", arguments->tolerance,
+                  "Set the tolerance of the free residual, relative to the norm of the pressure forces.")
+      ->capture_default_str();
+  command
+      .add_option("--renewal", arguments->renewal,
+                  "Renew a sector's part of the factor once its shape has changed by this share; 0 renews it "
+                  "in every step.")
+      ->capture_default_str();
+  command
+      .add_option("--elements-circumference", arguments->columns,
+                  "Set the number of elements around the tire; 0 keeps the file's.")
+      ->capture_default_str();
+  command
+      .add_option("--elements-width", arguments->width,
+                  "Set the number of elements across the tire; 0 keeps the file's.")
+      ->capture_default_str();
+  return [arguments] {
+    return run_bench(arguments->threads,
+                     [&](const ProgressCall& progress) { return bench_tire(*arguments, progress); });
+  };
+}
+
+}  // namespace
+
+Command bench_tire_entry() {
+  return {.name = "bench tire",
+          .task = nullptr,
+          .purpose = "Time the parts of a step of a loaded tire that rolls on hard ground.",
+          .options = add_options,
+          .examples = {{"bench tire --tire hmmwv_lumped.json", "Time the steps of this tire."}}};
 }
 
 }  // namespace furrow::commands

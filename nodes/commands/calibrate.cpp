@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "nodes/calibrate/calibrate.hpp"
 #include "nodes/calibrate/evaluations.hpp"
 #include "nodes/calibrate/explain.hpp"
-#include "nodes/commands/commands.hpp"
-#include "nodes/commands/questions.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
@@ -78,19 +78,14 @@ std::string result_text(const Json& summary) {
   return text;
 }
 
-}  // namespace
+struct CalibrateArguments {
+  std::filesystem::path study;
+  std::filesystem::path out;  // empty: results/<study>
+  bool overwrite = false;
+  bool plots = true;
+};
 
-ExitCode validate_calibration(const std::string& name, bool json) {
-  const calibrate::Calibration calibration = calibrate::load_calibration(name);
-  for (const std::string& note : calibration.model->notes()) print_warning(note);
-  if (json)
-    std::cout << calibrate::calibration_check_json(calibration).dump(2) << "\n";
-  else
-    print_text(calibrate::calibration_check_text(calibration), Piped::whole_lines);
-  return ExitCode::done;
-}
-
-ExitCode calibrate_command(const CalibrateArguments& arguments) {
+ExitCode calibrate_study(const CalibrateArguments& arguments) {
   const calibrate::Calibration calibration = calibrate::load_calibration(arguments.study);
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / calibration.name : arguments.out;
@@ -136,6 +131,39 @@ ExitCode calibrate_command(const CalibrateArguments& arguments) {
   std::cout << folder.string() << std::endl;
   if (arguments.plots) make_report_or_warn(folder);
   return ExitCode::done;
+}
+
+Action calibrate_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<CalibrateArguments>();
+  command.add_option("STUDY", arguments->study, "Read this calibration study (JSON), as given or in rigs/.")
+      ->required();
+  command.add_option("--out", arguments->out, "Keep the calibration in this folder (default: results/<study>).");
+  command.add_flag("--overwrite", arguments->overwrite,
+                   "Begin again: remove what an earlier calibration wrote into the folder.");
+  add_no_plots(command, arguments->plots);
+  return [arguments] { return calibrate_study(*arguments); };
+}
+
+}  // namespace
+
+ExitCode validate_calibration(const std::string& name, bool json) {
+  const calibrate::Calibration calibration = calibrate::load_calibration(name);
+  for (const std::string& note : calibration.model->notes()) print_warning(note);
+  if (json)
+    std::cout << calibrate::calibration_check_json(calibration).dump(2) << "\n";
+  else
+    print_text(calibrate::calibration_check_text(calibration), Piped::whole_lines);
+  return ExitCode::done;
+}
+
+Command calibrate_entry() {
+  return {.name = "calibrate",
+          .task = task::compare,
+          .purpose =
+              "Fit the parameters of a tire or a soil to data, with the error of each, or continue an "
+              "interrupted calibration.",
+          .options = calibrate_options,
+          .examples = {{"calibrate calibrate_ring.json", "Fit the ring to the shell, with errors."}}};
 }
 
 }  // namespace furrow::commands

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -26,6 +28,18 @@ struct Kind {
   const char* folder;
   const char* use;
   FileKind holds;  // files of the folder that are of another kind are listed elsewhere
+};
+
+struct ListArguments {
+  std::string kind;  // empty: all
+  bool json = false;
+};
+
+struct NewArguments {
+  std::filesystem::path name;
+  std::string tire, soil, vehicle;  // files; empty: see scenario::StarterOptions
+  bool rigid = false;
+  std::optional<double> load;  // of the wheel, N
 };
 
 constexpr Kind kKinds[] = {
@@ -78,9 +92,8 @@ Json catalogue(const std::string& only) {
   return all;
 }
 
-}  // namespace
-
-ExitCode list_command(const std::string& only, bool json) {
+ExitCode list(const ListArguments& arguments) {
+  const std::string& only = arguments.kind;
   std::string kinds;
   bool known = only.empty();
   for (const Kind& kind : kKinds) {
@@ -90,7 +103,7 @@ ExitCode list_command(const std::string& only, bool json) {
   if (!known)
     throw input_error("command line", "KIND", fmt::format("is {}, expected one of {}", value_text(Json(only)), kinds));
   const Json all = catalogue(only);
-  if (json) {
+  if (arguments.json) {
     std::cout << all.dump(2) << "\n";
     return ExitCode::done;
   }
@@ -105,7 +118,7 @@ ExitCode list_command(const std::string& only, bool json) {
   return ExitCode::done;
 }
 
-ExitCode new_command(const NewArguments& arguments) {
+ExitCode write_new(const NewArguments& arguments) {
   std::filesystem::path file = arguments.name;
   if (const std::string name = file.filename().string(); name.empty() || name[0] == '-' || name[0] == '.')
     throw input_error("command line", "NAME", "is '" + arguments.name.string() + "', expected a name for a file");
@@ -120,6 +133,53 @@ ExitCode new_command(const NewArguments& arguments) {
   launch::say(fmt::format("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n",
                           file.string(), name, name));
   return ExitCode::done;
+}
+
+Action list_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<ListArguments>();
+  command.add_option("KIND", arguments->kind,
+                     "List this kind only: scenarios, studies, calibrations, tires, soils or vehicles (default: all).");
+  command.add_flag("--json", arguments->json, "Print JSON.");
+  return [arguments] { return list(*arguments); };
+}
+
+Action new_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<NewArguments>();
+  command.add_option("NAME", arguments->name, "Write to this file; .json is added where it is missing.")->required();
+  CLI::Option* tire =
+      command.add_option("--tire", arguments->tire, "Use this tire file (default: the layered HMMWV tire).");
+  command.add_option("--soil", arguments->soil,
+                     "Use this soil file; one of empirical soil gives engine scm (default: cohesive grains).");
+  command.add_flag("--rigid", arguments->rigid, "Make the tires rigid (tire.rigid).");
+  CLI::Option* load =
+      command.add_option("--load", arguments->load, "Set the load on the wheel, N (default: by the tire's size).")
+          ->check(above_zero());
+  command.add_option("--vehicle", arguments->vehicle, "Use this vehicle file: a whole vehicle in place of one wheel.")
+      ->excludes(tire)
+      ->excludes(load);
+  return [arguments] { return write_new(*arguments); };
+}
+
+}  // namespace
+
+Command list_entry() {
+  return {.name = "list",
+          .task = task::begin,
+          .purpose = "List the scenarios, studies, calibrations, tires, soils and vehicles that come with Furrow.",
+          .options = list_options,
+          .examples = {{"list", "See everything that comes with Furrow."},
+                       {"list tires --json", "Let a script choose a tire."}},
+          .quiet = false};
+}
+
+Command new_entry() {
+  return {.name = "new",
+          .task = task::begin,
+          .purpose = "Write a scenario of your own to start from, with a comment for every key, and print its name.",
+          .options = new_options,
+          .examples = {{"new mine", "Write mine.json: one wheel on cohesive grains."},
+                       {"new mine --tire my_tire.json --load 5000", "Give your own tire its load, N."},
+                       {"new trip --vehicle hmmwv.json", "Drive a whole vehicle."}}};
 }
 
 }  // namespace furrow::commands

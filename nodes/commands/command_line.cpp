@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <new>
+#include <span>
 #include <sstream>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/examples.hpp"
+#include "nodes/commands/command_table.hpp"
+#include "nodes/commands/commands.hpp"
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/scenario/memory_check.hpp"
@@ -24,17 +27,22 @@ constexpr std::size_t kMaxShown = 400;  // bytes of what the command line has wr
 
 Error usage_error(const std::string& what) { return input_error("command line", "", what); }
 
-/// Commands that say more than their result, and those below them, take --quiet.
-void add_quiet(CLI::App& app) {
-  const auto all = [](const CLI::App*) { return true; };
-  for (CLI::App* command : app.get_subcommands(all)) {
-    const std::string name = command->get_name();
-    if (!command->get_subcommands(all).empty())
-      add_quiet(*command);
-    else if (name != "list" && name != "explain" && name != "events")
-      command->add_flag_callback("--quiet", launch::silence_messages,
-                                 "Print errors only on standard error; what goes to standard output stays the same.");
-  }
+constexpr Example kExamples[] = {
+    {"run first_look.json", "Run a wheel on soil, in seconds."},
+    {"new mine --tire my_tire.json", "Write a scenario of your own."},
+    {"run mine.json --set rig.slip=0.2 --seeds 5", "Get pull and sinkage with intervals."},
+};
+
+/// What a help ends with: the examples, if there are any, and the exit codes.
+std::string closing_words(std::span<const Example> examples) {
+  std::size_t width = 0;
+  for (const Example& example : examples) width = std::max(width, example.line.size());
+  std::string text = examples.empty() ? "" : "Examples:\n";
+  for (const Example& example : examples)
+    text += fmt::format("  furrow {:{}}  {}\n", example.line, width, example.purpose);
+  return text + (examples.empty() ? "" : "\n") +
+         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
+         "6 memory or another limit ran out, 70 a fault of the program itself, 75 stopped by a signal.";
 }
 
 /// The command whose help says more, with a blank after it.
@@ -88,47 +96,45 @@ void print_lines(const char* kind, const std::string& text) {
 
 }  // namespace
 
-CommandLine::CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
+CommandLine::CommandLine(int argc, char** argv, std::span<const Command> commands) {
+  typed_.argc = argc;
+  typed_.argv = argv;
   app_.set_help_flag("-h,--help", "Print this help and exit.");
   app_.set_version_flag("--version", "furrow " FURROW_VERSION, "Print the version and exit.");
   app_.require_subcommand(1);
-  app_.footer(closing_words(""));
-  add_group("Begin", &CommandLine::add_beginnings);
-  add_group("Run", &CommandLine::add_runs);
-  add_group("Ask before a run", &CommandLine::add_questions);
-  add_group("Test tires, soils and vehicles", &CommandLine::add_virtual_tests);
-  add_group("Test tires, soils and vehicles", &CommandLine::add_vehicles);
-  add_group("Compare and look", &CommandLine::add_studies);
-  add_group("Measure this machine", &CommandLine::add_benches);
-  add_quiet(app_);
+  app_.footer(closing_words(kExamples));
+  for (const Command& command : commands) add(command);
 }
 
-CLI::App& CommandLine::add(CLI::App& parent, const char* name, const char* purpose, std::function<ExitCode()> action) {
-  CLI::App& command = *parent.add_subcommand(name, purpose);
-  command.footer(closing_words(&parent == &app_ ? name : parent.get_name() + " " + name));
-  command.callback([this, action = std::move(action)] { chosen_ = action; });
-  return command;
-}
-
-void CommandLine::add_group(const char* task, void (CommandLine::*add_commands)()) {
-  const auto all = [](const CLI::App*) { return true; };
-  const std::size_t before = app_.get_subcommands(all).size();
-  (this->*add_commands)();
-  const std::vector<CLI::App*> commands = app_.get_subcommands([](CLI::App*) { return true; });
-  for (std::size_t k = before; k < commands.size(); ++k) commands[k]->group(task);
+void CommandLine::add(const Command& command) {
+  const std::string name = command.name;
+  const std::size_t blank = name.rfind(' ');
+  CLI::App& parent = blank == std::string::npos ? app_ : *app_.get_subcommand(name.substr(0, blank));
+  CLI::App& app = *parent.add_subcommand(name.substr(blank + 1), command.purpose);
+  if (command.task) app.group(command.task);
+  app.footer(closing_words(command.examples));
+  const Action action = command.options(app, typed_);
+  if (!action) {
+    app.require_subcommand(1);
+    return;
+  }
+  app.callback([this, action] { chosen_ = action; });
+  if (command.quiet)
+    app.add_flag_callback("--quiet", launch::silence_messages,
+                          "Print errors only on standard error; what goes to standard output stays the same.");
 }
 
 ExitCode CommandLine::execute() {
-  check_arguments(argc_, argv_);
+  check_arguments(typed_.argc, typed_.argv);
   try {
-    app_.parse(argc_, argv_);
+    app_.parse(typed_.argc, typed_.argv);
   } catch (const CLI::Success& asked) {  // --help, --version
     std::ostringstream text;
     app_.exit(asked, text);
     print_text(text.str(), Piped::wrap);
     return ExitCode::done;
   } catch (const CLI::ParseError& error) {
-    throw usage_error(parse_problem(app_, error, argc_, argv_));
+    throw usage_error(parse_problem(app_, error, typed_.argc, typed_.argv));
   }
   try {
     return chosen_();
@@ -137,7 +143,7 @@ ExitCode CommandLine::execute() {
   }
 }
 
-ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv).execute(); }
+ExitCode run_command_line(int argc, char** argv) { return CommandLine(argc, argv, all_commands()).execute(); }
 
 void print_error(const std::string& text) { print_lines("error", text); }
 void print_warning(const std::string& text) {

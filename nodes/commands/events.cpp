@@ -2,10 +2,12 @@
 #include <sys/wait.h>
 
 #include <iostream>
+#include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/commands/python_script.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -15,9 +17,13 @@ namespace {
 
 constexpr double kAddressSpace = 512e6;  // bytes; numpy's BLAS waits forever for less
 
-}  // namespace
+struct EventsArguments {
+  std::filesystem::path directory;
+  std::optional<double> from, to;  // window of the means, s
+  bool json = false;
+};
 
-ExitCode events_command(const EventsArguments& arguments) {
+ExitCode list_events(const EventsArguments& arguments) {
   launch::require_run_directory(arguments.directory);
   launch::require_plain_files(arguments.directory);
   PythonScript script{.name = "events.py",
@@ -40,6 +46,26 @@ ExitCode events_command(const EventsArguments& arguments) {
   throw io_error(arguments.directory.string(), launch::stop_signalled()
                                                    ? "the table of events was interrupted"
                                                    : "made no table of events, expected a vehicle's run");
+}
+
+Action events_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<EventsArguments>();
+  command.add_option("DIR", arguments->directory, "Read the run in this folder.")->required();
+  command.add_option("--from", arguments->from, "Begin the means at this time, s (default: where they are steady).");
+  command.add_option("--to", arguments->to, "End the means at this time, s (default: the end of the run).");
+  command.add_flag("--json", arguments->json, "Print JSON.");
+  return [arguments] { return list_events(*arguments); };
+}
+
+}  // namespace
+
+Command events_entry() {
+  return {.name = "events",
+          .task = task::compare,
+          .purpose = "List what happened in a vehicle's run and when, and compare its axles.",
+          .options = events_options,
+          .examples = {{"events results/hmmwv_small-001", "List what happened, and compare the axles."}},
+          .quiet = false};
 }
 
 }  // namespace furrow::commands

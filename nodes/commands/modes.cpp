@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -22,6 +23,18 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr int kMostAround = 2000, kMostAcross = 400;
 constexpr double kMostPressure = 1e8;  // Pa
+
+struct ModesArguments {
+  std::string tire;           // file, as given or in tire/data/
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool plots = true;
+  bool csv = false, json = false;     // printed, in place of a folder
+  std::optional<int> orders;          // highest circumferential order; none: 8, or half of the elements around
+  std::optional<int> count;           // frequencies of each order; none: 3, or the unknowns of a section
+  std::optional<double> pressure;     // gauge, Pa; none: the file's
+  std::optional<int> around, across;  // elements; none: the file's
+};
 
 Error refused(const char* option, const std::string& what) { return input_error("command line", option, what); }
 
@@ -90,9 +103,7 @@ void warn_of_unstable(const tire::ModesResults& results) {
                   first->order, std::ranges::count_if(results.modes, unstable), results.modes.size()));
 }
 
-}  // namespace
-
-ExitCode modes_command(const ModesArguments& arguments) {
+ExitCode modes(const ModesArguments& arguments) {
   const std::unique_ptr<tire::TireSpec> spec = tire_of(arguments);
   const std::unique_ptr<tire::ModalTest> test = spec->modal_test();
   if (!test)
@@ -128,6 +139,42 @@ ExitCode modes_command(const ModesArguments& arguments) {
   std::cout << directory.path().string() << std::endl;
   if (arguments.plots) make_report_or_warn(directory.path());
   return ExitCode::done;
+}
+
+Action add_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<ModesArguments>();
+  command.add_option("TIRE", arguments->tire, "Read this tire file (JSON), as given or in tire/data/.")->required();
+  CLI::Option* out = add_folder_options(command, arguments->out, arguments->overwrite, "<tire>-modes-NNN");
+  command.add_option("--orders", arguments->orders,
+                     "Compute circumferential orders from 0 to this one (default: 8, or half of the elements around).");
+  command.add_option(
+      "--count", arguments->count,
+      "Compute this number of frequencies of each order (default: 3, or all that a section of the tire has).");
+  command.add_option("--pressure", arguments->pressure,
+                     "Set the inflation pressure (gauge), Pa (default: the file's).");
+  command.add_option("--elements-circumference", arguments->around,
+                     "Set the number of elements around the tire (default: the file's).");
+  command.add_option("--elements-width", arguments->across,
+                     "Set the number of elements across the tire (default: the file's).");
+  add_no_plots(command, arguments->plots);
+  CLI::Option* csv =
+      command.add_flag("--csv", arguments->csv, "Print the frequencies as CSV and make no folder.")->excludes(out);
+  command.add_flag("--json", arguments->json, "Print the frequencies as JSON and make no folder.")
+      ->excludes(out)
+      ->excludes(csv);
+  return [arguments] { return modes(*arguments); };
+}
+
+}  // namespace
+
+Command modes_entry() {
+  return {.name = "modes",
+          .task = task::test,
+          .purpose =
+              "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential "
+              "order, and print the folder of the results.",
+          .options = add_options,
+          .examples = {{"modes hmmwv_lumped.json --orders 3", "Get the frequencies of the lowest orders."}}};
 }
 
 }  // namespace furrow::commands

@@ -2,10 +2,12 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -22,6 +24,20 @@ namespace {
 
 constexpr int kFormatVersion = 1;
 constexpr double kMostCamber = 0.7;  // rad, as of the rig
+
+/// What is not given is as the section `press` of the scenario says.
+struct PressArguments {
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  std::optional<std::string> on;                    // plate | cleat | profile
+  std::filesystem::path profile;                    // CSV; empty: none
+  std::optional<double> deflection;                 // largest, m
+  std::optional<int> points;                        // of the curve up to it
+  std::optional<double> load;                       // of the footprint, N
+  std::optional<double> camber;                     // rad
+  std::optional<double> cleat_height, cleat_width;  // m
+  std::optional<double> cleat_position;             // of its middle, forward of the axle, m
+};
 
 /// An option overrides the scenario's key; the schema has checked the latter.
 tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
@@ -106,9 +122,7 @@ std::string not_reached(const tire::PressOptions& options, const tire::PressResu
       options.load, results.at_load.force);
 }
 
-}  // namespace
-
-ExitCode press_command(const scenario::Scenario& scenario, const PressArguments& arguments) {
+ExitCode press(const scenario::Scenario& scenario, const PressArguments& arguments) {
   const std::unique_ptr<tire::StaticTest> test = static_test(scenario);
   const tire::PressOptions options = press_options(scenario, arguments);
   const tire::PressureSchedule& pressure = scenario.tires.front()->options().pressure;
@@ -150,6 +164,44 @@ ExitCode press_command(const scenario::Scenario& scenario, const PressArguments&
   if (ended.empty()) return ExitCode::done;
   print_error(fmt::format("the curve ends early: {}; what was found is in {}", ended, directory.path().string()));
   return ExitCode::physics;
+}
+
+Action add_options(CLI::App& command, Typed& typed) {
+  const auto arguments = std::make_shared<PressArguments>();
+  add_scenario(command, typed);
+  add_folder_options(command, arguments->out, arguments->overwrite, "<scenario>-press-NNN");
+  command.add_option("--on", arguments->on, "Choose the obstacle: plate, cleat or profile (arguments->on).");
+  command.add_option("--deflection", arguments->deflection, "Press up to this deflection, m (arguments->deflection).");
+  command.add_option("--points", arguments->points,
+                     "Compute this number of points of the load–deflection curve (arguments->points).");
+  command.add_option("--load", arguments->load, "Compute the footprint at this load, N (arguments->load).");
+  command.add_option("--camber", arguments->camber,
+                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of "
+                     "travel. Shell tires only (arguments->camber).");
+  command.add_option("--cleat-height", arguments->cleat_height,
+                     "Set the height of the cleat, m (arguments->cleat_height).");
+  command.add_option("--cleat-width", arguments->cleat_width,
+                     "Set the width of the cleat's top along the direction of travel, m (arguments->cleat_width).");
+  command.add_option("--cleat-position", arguments->cleat_position,
+                     "Set the position of the cleat's middle, forward of the axle, m (arguments->cleat_position).");
+  command.add_option(
+      "--profile", arguments->profile,
+      "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs --on "
+      "profile and a flexible ring or planar tire.");
+  return [arguments, &typed] { return press(load(typed), *arguments); };
+}
+
+}  // namespace
+
+Command press_entry() {
+  return {.name = "press",
+          .task = task::test,
+          .purpose =
+              "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder "
+              "of the results.",
+          .options = add_options,
+          .examples = {{"press rigid_ground.json --load 6000", "Get the load-deflection curve, and a footprint."},
+                       {"press cleat_press.json --cleat-height 0.025", "Press the tire on a cleat."}}};
 }
 
 }  // namespace furrow::commands

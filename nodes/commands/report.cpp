@@ -4,12 +4,13 @@
 #include <chrono>
 #include <cstring>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/commands/python_script.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
@@ -37,8 +38,22 @@ void show_progress(PythonScript& script, launch::ProgressDisplay& display, const
   script.message = [&display](const std::string& line) { display.say_error(line); };
 }
 
-}  // namespace
+struct ReportArguments {
+  std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a page that compares them
+  std::filesystem::path out = {};           // folder of what is made; empty: that of the run
+  bool unasked = false;                     // by another command: no messages, and no longer than a minute
+};
 
+/// As typed.
+struct ReportRequest {
+  std::string run;                  // folder
+  std::vector<std::string> others;  // folders of runs, on one page with it
+  std::filesystem::path out;        // empty: the run's folder
+  std::string soil, vtk;            // soil.json to add the theory of; folder for VTP files; empty: none
+};
+
+/// Plots and page of a run, or the page of several. @returns none if the
+/// script said why. @throws Error
 std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   for (const auto& run : report.runs) {
     launch::require_run_directory(run);
@@ -81,15 +96,8 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   return plots;
 }
 
-std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
-  try {
-    return make_report({.runs = {run}, .unasked = true});
-  } catch (const Error& error) {
-    print_warning(std::string("no plots: ") + error.what());
-    return {};
-  }
-}
-
+/// Writes the frames of a run as VTP files into a new folder, and prints the names of the lists of these files.
+/// @returns how it ended; the script has said what was wrong. @throws Error
 ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder) {
   PythonScript script{.name = "frames_vtk.py",
                       .arguments = {"--out", folder.string()},
@@ -111,12 +119,12 @@ ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path
   throw io_error(run.string(), "made no VTP files, expected the frames of a run");
 }
 
-ExitCode report_command(const ReportRequest& asked) {
+ExitCode report(const ReportRequest& asked) {
   launch::require_run_directory(asked.run);
   launch::require_plain_files(asked.run);
   launch::catch_stop_signals();
-  ReportArguments report{.runs = {asked.run}, .out = asked.out};
-  report.runs.insert(report.runs.end(), asked.others.begin(), asked.others.end());
+  ReportArguments arguments{.runs = {asked.run}, .out = asked.out};
+  arguments.runs.insert(arguments.runs.end(), asked.others.begin(), asked.others.end());
   if (!asked.others.empty() && asked.out.empty())
     throw input_error("command line", "--out",
                       "is missing, expected the folder of the page that compares several runs");
@@ -138,9 +146,48 @@ ExitCode report_command(const ReportRequest& asked) {
     if (const ExitCode code = write_vtk(asked.run, asked.vtk); code != ExitCode::done) return code;
   }
   launch::say("furrow: plotting " + asked.run + "\n");
-  const auto plots = make_report(report);
+  const auto plots = make_report(arguments);
   for (const auto& plot : plots) std::cout << plot.string() << "\n";
   return plots.empty() ? ExitCode::io : ExitCode::done;
+}
+
+Action report_options(CLI::App& command, Typed&) {
+  const auto asked = std::make_shared<ReportRequest>();
+  command
+      .add_option("DIR", asked->run,
+                  "Read the results in this folder: of a run, of its beds, of a study, of a calibration or of tests.")
+      ->required();
+  command.add_option("OTHERS", asked->others, "Compare the run of DIR with the runs in these folders, on one page.");
+  command.add_option("--out", asked->out,
+                     "Write the files to this folder (default: DIR). It is required with several runs.");
+  command.add_option("--soil", asked->soil,
+                     "Read this soil.json of 'furrow soil', and add what soil theory expects to the run's result.");
+  command.add_option(
+      "--vtk", asked->vtk,
+      "Write the frames of the run, tires and grains, as VTP files for ParaView and VTK to this new folder.");
+  return [asked] { return report(*asked); };
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run) {
+  try {
+    return make_report({.runs = {run}, .unasked = true});
+  } catch (const Error& error) {
+    print_warning(std::string("no plots: ") + error.what());
+    return {};
+  }
+}
+
+Command report_entry() {
+  return {.name = "report",
+          .task = task::compare,
+          .purpose =
+              "Plot results of any command: PNG files and report.html, a page with plots and, of "
+              "a run, 3-D playback.",
+          .options = report_options,
+          .examples = {{"report results/first_look-001", "Make plots and report.html of a run."},
+                       {"report results/a results/b --out both", "Compare runs on one page."}}};
 }
 
 }  // namespace furrow::commands

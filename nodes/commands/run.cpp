@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,7 +12,7 @@
 #include "nodes/checkpoint/checkpoint.hpp"
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/checkpoint/run_summary.hpp"
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/launch/limits.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -24,6 +25,7 @@
 #include "protocol/core/no_step_helps.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
+#include "protocol/mpi_transport.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -181,16 +183,6 @@ void refuse_tasks_without_mpi() {
   throw error;
 }
 
-}  // namespace
-
-void require_launch(const scenario::Scenario& scenario) {
-  scenario::require_runnable(scenario);
-  scenario::require_memory(scenario);
-  launch::start_patience();
-  launch::find_mpirun();
-  launch::require_files(scenario::rank_table(scenario).size());
-}
-
 ExitCode run_supervised(const RunArguments& arguments) {
   refuse_tasks_without_mpi();
   const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
@@ -221,6 +213,80 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   launch::say(fmt::format("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name,
                           plan.point.manifest.time, directory.path().string()));
   return supervise_run(plan.scenario, directory, arguments);
+}
+
+ExitCode run(RunArguments arguments, const Typed& typed) {
+  arguments.scenario = typed.scenario;
+  arguments.settings = settings_of(typed);
+  if (arguments.seeds) return run_on_beds(arguments);
+  if (arguments.jobs)
+    throw input_error("command line", "--jobs", "is given without --seeds, expected both: one bed is one job");
+  return launched_by_mpi() ? run_as_rank(arguments, typed.argc, typed.argv) : run_supervised(arguments);
+}
+
+ExitCode resume(RunArguments arguments, const Typed& typed) {
+  arguments.settings = settings_of(typed);
+  arguments.resume = true;
+  return launched_by_mpi() ? run_as_rank(arguments, typed.argc, typed.argv) : resume_supervised(arguments);
+}
+
+Action run_options(CLI::App& command, Typed& typed) {
+  const auto arguments = std::make_shared<RunArguments>();
+  add_scenario(command, typed);
+  add_folder_options(command, arguments->out, arguments->overwrite, "<scenario>-NNN");
+  command.add_flag("--profile", arguments->profile,
+                   "Write profile.json too: where the time of each step goes (Chrome trace).");
+  add_no_plots(command, arguments->plots);
+  command.add_option("--seeds", arguments->seeds,
+                     "Run on this number of beds, 2 to 1000, with run.seed, run.seed + 1, …, and write means and "
+                     "95 % intervals. "
+                     "The same command continues interrupted ones.");
+  command.add_option(
+      "--jobs", arguments->jobs,
+      "Run this number of beds at once, each with its share of the cores (default: 1). It needs --seeds.");
+  return [arguments, &typed] { return run(*arguments, typed); };
+}
+
+Action resume_options(CLI::App& command, Typed& typed) {
+  const auto arguments = std::make_shared<RunArguments>();
+  command.add_option("DIR", arguments->out, "Continue the run in this folder.")->required();
+  command.add_option("--until", typed.until, "Run until this simulated time, s (run.end).");
+  add_settings(command, typed);
+  command.add_flag("--profile", arguments->profile, "Write profile.json too, of the steps from here on.");
+  add_no_plots(command, arguments->plots);
+  return [arguments, &typed] { return resume(*arguments, typed); };
+}
+
+}  // namespace
+
+void require_launch(const scenario::Scenario& scenario) {
+  scenario::require_runnable(scenario);
+  scenario::require_memory(scenario);
+  launch::start_patience();
+  launch::find_mpirun();
+  launch::require_files(scenario::rank_table(scenario).size());
+}
+
+Command run_entry() {
+  return {
+      .name = "run",
+      .task = task::run,
+      .purpose = "Run a scenario and print the folder that holds the results.",
+      .options = run_options,
+      .examples = {{"run first_look.json", "Run a wheel on soil, in seconds."},
+                   {"run drawbar_pull_small.json --set rig.slip=0.2 --seeds 5", "Get pull and sinkage with intervals."},
+                   {"run rigid_ground.json --out hard --overwrite", "Choose the folder of the results."}}};
+}
+
+Command resume_entry() {
+  return {.name = "resume",
+          .task = task::run,
+          .purpose =
+              "Continue a run from its last checkpoint. The result is bit-identical to that of an "
+              "uninterrupted run.",
+          .options = resume_options,
+          .examples = {{"resume results/first_look-001", "Go to the end that the scenario gives."},
+                       {"resume results/first_look-001 --until 3", "Lengthen a finished run to 3 s."}}};
 }
 
 }  // namespace furrow::commands

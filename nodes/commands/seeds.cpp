@@ -29,10 +29,10 @@ void require_options(const RunArguments& arguments) {
   const auto require = [](bool ok, const std::string& option, const std::string& what) {
     if (!ok) throw input_error("command line", option, what);
   };
-  require(arguments.seeds >= 2 && arguments.seeds <= kMostBeds, "--seeds",
-          fmt::format("is {}, expected 2 to {} beds", arguments.seeds, kMostBeds));
-  require(arguments.jobs >= 1 && arguments.jobs <= 1024, "--jobs",
-          fmt::format("is {}, expected 1 to 1024", arguments.jobs));
+  require(*arguments.seeds >= 2 && *arguments.seeds <= kMostBeds, "--seeds",
+          fmt::format("is {}, expected 2 to {} beds", *arguments.seeds, kMostBeds));
+  require(arguments.jobs.value_or(1) >= 1 && arguments.jobs.value_or(1) <= 1024, "--jobs",
+          fmt::format("is {}, expected 1 to 1024", arguments.jobs.value_or(1)));
   require(!arguments.profile, "--profile", "is given with --seeds, expected it for a run on one bed");
 }
 
@@ -93,13 +93,13 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
                      const RunArguments& arguments) {
   const std::filesystem::path& folder = directory.path();
   study::Sweep sweep(
-      study::study_of_beds(arguments.scenario, scenario.name, arguments.settings, scenario.run.seed, arguments.seeds),
-      {folder, arguments.jobs});
+      study::study_of_beds(arguments.scenario, scenario.name, arguments.settings, scenario.run.seed, *arguments.seeds),
+      {folder, arguments.jobs.value_or(1)});
   sweep.require_places();
   study::begin_beds(directory, scenario.digest, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, arguments.seeds, folder.string()));
+  launch::say(fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, *arguments.seeds, folder.string()));
   const ExitCode code = sweep.run(directory.lock());
   if (code != ExitCode::done && directory.replaces()) {
     const std::vector<study::Sweep::Outcome> outcomes = sweep.outcomes();
@@ -131,7 +131,7 @@ ExitCode run_on_beds(const RunArguments& arguments) {
   require_options(arguments);
   const scenario::Scenario scenario = scenario::load_scenario(arguments.scenario, arguments.settings);
   for (const std::string& warning : scenario.warnings) print_warning(warning);
-  study::require_beds(scenario, arguments.seeds);
+  study::require_beds(scenario, *arguments.seeds);
   require_launch(scenario);
   launch::RunDirectory directory = arguments.out.empty() ? launch::RunDirectory(scenario.name, {}, false)
                                                          : launch::RunDirectory::of_study(arguments.out);

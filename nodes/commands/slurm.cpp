@@ -8,7 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/slurm.hpp"
+#include "nodes/commands/typed.hpp"
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "protocol/core/assert.hpp"
@@ -182,6 +183,30 @@ exit "$code"
 )";
 
 }  // namespace
+
+CLI::Option* add_slurm_options(CLI::App& command, SlurmArguments& job) {
+  CLI::Option* slurm = command.add_flag("--slurm")->description(
+      "Print a batch script for sbatch. It saves the run before its time "
+      "is over, and continues when it is queued again.");
+  const auto of_slurm = [&](CLI::Option* option) { option->needs(slurm); };
+  of_slurm(
+      command.add_option("--nodes", job.nodes, "Use this number of nodes; the ranks are spread over them in order.")
+          ->capture_default_str());
+  of_slurm(command
+               .add_option("--cores-per-node", job.cores_per_node,
+                           "Use this number of cores on each node (default: all of them).")
+               ->check(above_zero()));
+  of_slurm(command.add_option("--partition", job.partition, "Submit to this partition (default: the cluster's)."));
+  of_slurm(command.add_option("--time", job.time,
+                              "Limit one start of the job to this time, in minutes, as hh:mm:ss or as "
+                              "days-hh:mm:ss. A longer run takes "
+                              "several starts (default: the partition's limit)."));
+  of_slurm(command.add_option("--account", job.account, "Charge the job to this account (default: your own)."));
+  of_slurm(command.add_option(
+      "--out", job.out,
+      "Write the results to this new folder (default: results/<scenario>-job<number> where you submit)."));
+  return slurm;
+}
 
 std::string slurm_script(const scenario::Scenario& scenario, const SlurmArguments& job, const Settings& settings) {
   check_word("--partition", job.partition);

@@ -1,10 +1,11 @@
 // `furrow soil`: virtual soil tests on a scenario's grains.
 #include <algorithm>
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -17,6 +18,16 @@
 
 namespace furrow::commands {
 namespace {
+
+struct SoilArguments {
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool quick = false;
+  int seeds = 3;
+  double speed = 0.1;             // of the tools, m/s
+  std::vector<std::string> only;  // plate, shear, cone, repose; empty: all
+  std::vector<double> stresses;   // of the shear tests, Pa; empty: the usual ones
+};
 
 terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains, const SoilArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
@@ -61,9 +72,7 @@ ProgressCall shown_on(launch::ProgressDisplay& display) {
   };
 }
 
-}  // namespace
-
-ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& arguments) {
+ExitCode test_soil(const scenario::Scenario& scenario, const SoilArguments& arguments) {
   const terrain::dem::DemOptions grains = scenario.grains("only grains can be tested");
   const terrain::soil::SoilOptions options = soil_options(grains, arguments);
   const terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
@@ -93,6 +102,47 @@ ExitCode soil_command(const scenario::Scenario& scenario, const SoilArguments& a
   }
   make_report_or_warn(directory.path());
   return ExitCode::done;
+}
+
+Action soil_options(CLI::App& command, Typed& typed) {
+  const auto arguments = std::make_shared<SoilArguments>();
+  add_scenario(command, typed);
+  add_folder_options(command, arguments->out, arguments->overwrite, "<scenario>-soil-NNN");
+  command
+      .add_option("--seeds", arguments->seeds,
+                  "Repeat each test on this number of beds, with run.seed, run.seed + 1, …")
+      ->capture_default_str();
+  command.add_option("--speed", arguments->speed, "Move plate, shear box and cone at this speed, m/s.")
+      ->capture_default_str();
+  command
+      .add_option("--only", arguments->only,
+                  "Run this test only: plate, shear, cone or repose. The option may be repeated.")
+      ->take_all()
+      ->allow_extra_args(false);
+  command
+      .add_option("--stress", arguments->stresses,
+                  "Shear under this normal stress, Pa. Repeat the option: two stresses or more are needed "
+                  "(default: 20, "
+                  "50 and 100 kPa, less for soft grains).")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_flag("--quick", arguments->quick,
+                   "Use small boxes and one seed, for an impression within seconds. Do not quote its results.");
+  return [arguments, &typed] { return test_soil(load(typed), *arguments); };
+}
+
+}  // namespace
+
+Command soil_entry() {
+  return {.name = "soil",
+          .task = task::test,
+          .purpose =
+              "Run virtual soil tests on a scenario's grains (plate sinkage, direct shear, "
+              "cone, angle of repose) and print the results as JSON.",
+          .options = soil_options,
+          .examples = {
+              {"soil drawbar_pull_small.json --quick", "Get an impression within seconds."},
+              {"soil drawbar_pull_small.json --only shear", "Measure cohesion and friction angle on three beds."}}};
 }
 
 }  // namespace furrow::commands

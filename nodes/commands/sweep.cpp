@@ -1,18 +1,26 @@
 // `furrow sweep`: the table of runs of a study.
 #include <cstdio>
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
 #include "nodes/study/beds.hpp"
 #include "nodes/study/sweep.hpp"
 
 namespace furrow::commands {
+namespace {
 
-ExitCode sweep_command(const SweepArguments& arguments) {
+struct SweepArguments {
+  std::filesystem::path study;
+  std::filesystem::path out;  // empty: results/<study>
+  int jobs = 1;
+};
+
+ExitCode sweep_study(const SweepArguments& arguments) {
   study::Study study = study::load_study(arguments.study);
   if (arguments.jobs < 1 || arguments.jobs > 1024)
     throw input_error("command line", "--jobs", "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
@@ -41,6 +49,25 @@ ExitCode sweep_command(const SweepArguments& arguments) {
                 std::to_string(static_cast<int>(code)));
   std::cout << folder.string() << "\n";
   return code;
+}
+
+Action sweep_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<SweepArguments>();
+  command.add_option("STUDY", arguments->study, "Read this study file (JSON), as given or in rigs/.")->required();
+  command.add_option("--out", arguments->out, "Keep the study in this folder (default: results/<study>).");
+  command.add_option("--jobs", arguments->jobs, "Run this number of runs at once, each with its share of the cores.")
+      ->capture_default_str();
+  return [arguments] { return sweep_study(*arguments); };
+}
+
+}  // namespace
+
+Command sweep_entry() {
+  return {.name = "sweep",
+          .task = task::compare,
+          .purpose = "Run a parameter study, or continue an interrupted one.",
+          .options = sweep_options,
+          .examples = {{"sweep study_slip.json --jobs 2", "Get pull against slip, two runs at once."}}};
 }
 
 }  // namespace furrow::commands

@@ -1,5 +1,8 @@
 #include "nodes/commands/typed.hpp"
 
+#include <cmath>
+#include <cstdlib>
+
 #include <fmt/format.h>
 
 #include "nodes/scenario/load_scenario.hpp"
@@ -47,6 +50,27 @@ scenario::Scenario load(Typed& typed) {
   typed.memory = scenario.memory.all;
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   return scenario;
+}
+
+CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
+                                const std::string& usual) {
+  CLI::Option* option =
+      command.add_option("--out", out, "Write the results to this new folder (default: results/" + usual + ").");
+  command.add_flag("--overwrite", overwrite, "Replace the results of an earlier run in the folder of --out.");
+  return option;
+}
+
+void add_no_plots(CLI::App& command, bool& plots) {
+  command.add_flag_callback(
+      "--no-plots", [&plots] { plots = false; }, "Make no plots; 'furrow report' makes them later.");
+}
+
+CLI::Validator above_zero() {
+  const auto problem = [](const std::string& text) -> std::string {
+    const double value = std::strtod(text.c_str(), nullptr);
+    return std::isfinite(value) && value > 0.0 ? "" : "is " + excerpt(text) + ", expected a number above 0";
+  };
+  return {problem, "POSITIVE"};
 }
 
 }  // namespace furrow::commands

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +12,12 @@
 
 namespace furrow::commands {
 
-/// As CLI11 fills it in. The options of commands that have many are in arguments.hpp.
+/// The command line, and what it says of a scenario.
 struct Typed {
-  std::string scenario, threads, key, directory, soil, until, vtk;
-  std::filesystem::path out;
-  std::vector<std::string> settings, others;
-  bool overwrite = false, profile = false, json = false, no_plots = false, slurm = false;
-  std::optional<int> seeds, jobs;
+  int argc = 0;
+  char** argv = nullptr;
+  std::string scenario, threads, until;
+  std::vector<std::string> settings;
   double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
 };
 
@@ -33,5 +31,13 @@ Settings settings_of(const Typed& typed);
 
 /// The scenario, with its settings; prints its warnings, and notes the memory that it needs. @throws Error
 scenario::Scenario load(Typed& typed);
+
+/// --out and --overwrite of a command that makes a folder. @param usual its name without --out: "<scenario>-NNN"
+/// @returns --out
+CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
+                                const std::string& usual);
+void add_no_plots(CLI::App& command, bool& plots);
+/// A check of an option's value: finite and above 0.
+CLI::Validator above_zero();
 
 }  // namespace furrow::commands

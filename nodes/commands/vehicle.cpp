@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <memory>
 
 #include <fmt/format.h>
 
-#include "nodes/commands/commands.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/commands/wrapped.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/run_directory.hpp"
@@ -27,6 +28,16 @@ constexpr double kTravelShare = 0.2;  // of the smallest tire's radius
 constexpr double kMostTravel = 1.0;   // m
 constexpr double kQuiet = 2.0;        // in which most vehicles have come to stand: before progress is told, s
 constexpr int kLeastPoints = 3, kMostPoints = 1001;
+
+struct KinematicsArguments {
+  std::string vehicle;
+  std::filesystem::path out;  // empty: a fresh folder under results/
+  bool overwrite = false;
+  bool plots = true;
+  bool csv = false, json = false;  // printed, in place of a folder
+  double travel = 0.0;             // up and down, m; 0: a fifth of the smallest tire's radius
+  int points = 21;                 // of each motion
+};
 
 void check(const KinematicsArguments& arguments) {
   const auto require = [](bool ok, const char* key, const std::string& what) {
@@ -98,19 +109,7 @@ nlohmann::ordered_json summary(const vehicle::VehicleSpec& spec, const vehicle::
   return json;
 }
 
-}  // namespace
-
-ExitCode validate_vehicle(const std::string& name, bool json) {
-  const vehicle::VehicleSpec spec = vehicle::read_vehicle(scenario::find_vehicle(name));
-  const vehicle::VehiclePage page = stand(spec);
-  if (json)
-    std::cout << vehicle::page_json(page).dump(2) << "\n";
-  else
-    print_text(vehicle::page_text(page), Piped::whole_lines);
-  return ExitCode::done;
-}
-
-ExitCode kinematics_command(const KinematicsArguments& arguments) {
+ExitCode kinematics(const KinematicsArguments& arguments) {
   check(arguments);
   const std::filesystem::path file = scenario::find_vehicle_alone(arguments.vehicle);
   const vehicle::VehicleSpec spec = vehicle::read_vehicle(file);
@@ -142,6 +141,47 @@ ExitCode kinematics_command(const KinematicsArguments& arguments) {
   std::cout << directory.path().string() << std::endl;
   if (arguments.plots) make_report_or_warn(directory.path());
   return ExitCode::done;
+}
+
+Action add_options(CLI::App& command, Typed&) {
+  const auto arguments = std::make_shared<KinematicsArguments>();
+  command.add_option("VEHICLE", arguments->vehicle, "Read this vehicle file (JSON), as given or in vehicle/data/.")
+      ->required();
+  CLI::Option* out = add_folder_options(command, arguments->out, arguments->overwrite, "<vehicle>-kc-NNN");
+  command.add_option("--travel", arguments->travel,
+                     "Move the wheels up and down by this travel, m (default: a fifth of the smallest tire's radius).");
+  command.add_option("--points", arguments->points, "Compute this number of points of each motion.")
+      ->capture_default_str();
+  add_no_plots(command, arguments->plots);
+  CLI::Option* csv =
+      command.add_flag("--csv", arguments->csv, "Print the table as CSV and make no folder.")->excludes(out);
+  command.add_flag("--json", arguments->json, "Print table and figures as JSON and make no folder.")
+      ->excludes(out)
+      ->excludes(csv);
+  return [arguments] { return kinematics(*arguments); };
+}
+
+}  // namespace
+
+ExitCode validate_vehicle(const std::string& name, bool json) {
+  const vehicle::VehicleSpec spec = vehicle::read_vehicle(scenario::find_vehicle(name));
+  const vehicle::VehiclePage page = stand(spec);
+  if (json)
+    std::cout << vehicle::page_json(page).dump(2) << "\n";
+  else
+    print_text(vehicle::page_text(page), Piped::whole_lines);
+  return ExitCode::done;
+}
+
+Command kinematics_entry() {
+  return {.name = "kc",
+          .task = task::test,
+          .purpose =
+              "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more "
+              "against travel and "
+              "steering, and print the folder of the results.",
+          .options = add_options,
+          .examples = {{"kc hmmwv.json --travel 0.05", "Move the wheels by 50 mm up and down."}}};
 }
 
 }  // namespace furrow::commands

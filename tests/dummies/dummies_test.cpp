@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "nodes/commands/command_line.hpp"
+#include "nodes/commands/command_table.hpp"
 #include "nodes/output/line_builder.hpp"
 #include "nodes/scenario/scenario_checks.hpp"
 #include "nodes/scenario/schema.hpp"
@@ -21,6 +23,7 @@
 #include "terrain/terrains.hpp"
 #include "tests/dummies/held_hub.hpp"
 #include "tests/dummies/linear_law.hpp"
+#include "tests/dummies/roll_command.hpp"
 #include "tests/dummies/spring_mat.hpp"
 #include "tests/dummies/spring_wheel.hpp"
 #include "tests/terrain/law_promises.hpp"
@@ -368,6 +371,42 @@ TEST(Dummies, grain_under_a_new_law_rebounds_from_the_floor_as_a_damped_spring) 
   const double rebound = -std::exp(-gamma * end) * (std::cos(omega * end) - gamma / omega * std::sin(omega * end));
   EXPECT_NEAR(grains.velocity[0].z, rebound, 1e-3);
   EXPECT_NEAR(dt * sums.sample.power.normal_damping, 0.5 * grain.mass * (1.0 - rebound * rebound), 2e-3 * grain.mass);
+}
+
+/// What `furrow` prints on this command line beside its own commands, or the error that ends it.
+std::string printed(std::vector<std::string> words) {
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  std::vector<commands::Command> all = commands::all_commands();
+  all.push_back(commands::roll_entry());
+  testing::internal::CaptureStdout();
+  std::string error;
+  try {
+    commands::CommandLine(static_cast<int>(argv.size()), argv.data(), all).execute();
+  } catch (const Error& refused) {
+    error = refused.what();
+  }
+  return testing::internal::GetCapturedStdout() + error;
+}
+
+TEST(Dummies, command_is_an_entry_with_its_options_and_its_place_in_the_help) {
+  EXPECT_EQ(printed({"furrow", "roll", "2", "--radius", "0.4"}), "5 rad/s\n");
+  EXPECT_EQ(printed({"furrow", "roll", "2"}), "4 rad/s\n");
+  const std::string all = printed({"furrow", "--help"});
+  const std::size_t heading = all.find("Ask before a run:"), own = all.find("  roll "), next = all.find("Test tires");
+  EXPECT_TRUE(heading < own && own < next) << all;
+  const std::string help = printed({"furrow", "roll", "--help"});
+  EXPECT_NE(help.find("Print the angular speed of a wheel that rolls freely."), std::string::npos) << help;
+  EXPECT_NE(help.find("furrow roll 2 --radius 0.4  Roll a small wheel."), std::string::npos) << help;
+  EXPECT_EQ(help.find("--quiet"), std::string::npos) << help;
+}
+
+TEST(Dummies, command_line_of_a_command_is_refused_by_what_is_wrong) {
+  EXPECT_NE(printed({"furrow", "roll"}).find("SPEED is required, see furrow roll --help"), std::string::npos)
+      << printed({"furrow", "roll"});
+  EXPECT_NE(printed({"furrow", "roll", "2", "--radius", "0"}).find("is 0, expected a number above 0"),
+            std::string::npos);
+  EXPECT_EQ(printed({"furrow", "rol", "2"}), "command line: unknown command 'rol'; did you mean 'roll'?");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@ comparisons."""
 import os
 import pathlib
 import shutil
+import signal
 import sys
 import tempfile
 
@@ -81,6 +82,27 @@ class CheckpointTest(SystemTest):
     def resume(self, *flags, code=0, run=None):
         return self.program("resume", run or self.run_folder, "--no-plots", *flags, code=code)
 
+    def continues(self, run=None, leave_out=()):
+        """The run goes on to the end of the whole one. @param leave_out files that differ by intent"""
+        self.resume(run=run)
+        self.same_as_whole(run, leave_out)
+
+    def afresh(self):
+        """Nothing is left of the run and of its fault."""
+        shutil.rmtree(self.run_folder, ignore_errors=True)
+        self.mark.unlink(missing_ok=True)
+
+    def released(self, process, code=0, **told):
+        """A run that has waited goes on to this exit code. @returns what it said on standard error"""
+        self.mark.unlink()
+        return self.ended(process, code, **told)
+
+    def told_to_stop(self, process, number=signal.SIGTERM):
+        """A run that waits has noticed the signal."""
+        process.send_signal(number)
+        while "stopping" not in process.stderr.readline():
+            pass
+
     def no_process_left(self):
         wait_for(lambda: not survivors(self.folder), 10, f"all processes end, still there: {survivors(self.folder)}")
 
@@ -90,6 +112,13 @@ class CheckpointTest(SystemTest):
         for name in ("summary.json", "results.h5"):
             (self.run_folder / name).unlink()
         return self.run_folder
+
+    def cut_to(self, step):
+        """The whole run as if it had died after the checkpoint of this step."""
+        self.afresh()
+        self.copy_of_whole()
+        for later in [s for s in steps(self.whole) if s > step]:
+            shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
 
     def same_as_whole(self, run=None, leave_out=()):
         """@param leave_out files that differ by intent"""

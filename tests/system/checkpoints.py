@@ -17,22 +17,15 @@ class Signals(CheckpointTest):
             with self.subTest(number.name):
                 run = self.folder / number.name
                 process = self.start_waiting("step", 0, 250, run=run)
-                process.send_signal(number)
-                wait_for_stop = process.stderr.readline
-                while "stopping" not in wait_for_stop():
-                    pass
-                self.mark.unlink()
-                out, err = process.communicate(timeout=30)
-                self.assertEqual(process.returncode, 75, err)
-                self.assertEqual(out, f"{run}\n")
-                self.assertIn(f"furrow: to continue from the last checkpoint: furrow resume '{run}'", err)
+                self.told_to_stop(process, number)
+                err = self.released(process, 75, prints=f"{run}\n", says="furrow: to continue from the last "
+                                    f"checkpoint: furrow resume '{run}'")
                 self.assertNotIn("error", err)
                 self.assertFalse((run / "summary.json").exists())
                 self.assertTrue((run / "results.h5").exists())
                 stopped = steps(run)[-1]
                 self.assertIn(stopped, range(250, 270))
-                self.resume(run=run)
-                self.same_as_whole(run)
+                self.continues(run)
                 self.assertEqual([s["from_step"] for s in summary(run)["segments"]], [0, stopped])
 
 
@@ -53,8 +46,7 @@ class Resume(CheckpointTest):
         for count in (120, 110):
             self.furrow("resume", self.run_folder, "--no-plots", program=FAULTY, env=self.fault("step", 1, count,
                                                                                                 "kill"), code=4)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual([s["from_step"] for s in summary(self.run_folder)["segments"]], [0, 100, 200, 300])
 
     def test_a_later_end_is_as_if_it_had_been_so_from_the_start(self):
@@ -194,8 +186,7 @@ class FlexibleTire(CheckpointTest):
         alive = [s for s in (100, 200, 300, 400) if made[s // 10 - 2] == made[s // 10 + 1] > 0]
         self.assertTrue(alive, f"no factor lives through a checkpoint: {made}")
         self.run_with_fault("step", 1, alive[0] + 50, "kill")
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], alive[0])
 
 

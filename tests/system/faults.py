@@ -43,8 +43,7 @@ class Killed(CheckpointTest):
             self.furrow("report", self.run_folder)
             for plot in (*self.run_folder.glob("*.png"), *self.run_folder.glob("report.html")):
                 plot.unlink()
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], step)
 
 
@@ -65,8 +64,7 @@ class ProgramFault(CheckpointTest):
         self.assertIn("furrow: error: fault of the program: thrown by a test; please report it", done.stderr)
         failed = read_json(self.run_folder / "summary_failed.json")["failed"]
         self.assertEqual(failed["exit_code"], 70)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
 
 class KilledAtTheStart(CheckpointTest):
@@ -89,8 +87,7 @@ class Stopped(CheckpointTest):
     def test_a_rank_that_stops_is_named_and_the_run_goes_on_without_it(self):
         done = self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"])
         self.assertRegex(done.stderr, r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
-        self.resume()
-        self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
+        self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
 
 class LauncherThatDoesNotEnd(CheckpointTest):
@@ -119,15 +116,11 @@ class LauncherThatDoesNotEnd(CheckpointTest):
 
     def test_once_all_ranks_have_stopped_is_killed_and_the_run_goes_on(self):
         process = self.start_waiting("step", 0, 250, env=self.launcher(""))
-        process.terminate()
-        while "stopping" not in process.stderr.readline():
-            pass
+        self.told_to_stop(process)
         time.sleep(1)  # the signal passes through the launcher
-        self.mark.unlink()
-        self.ended(process, 75, says="furrow: stopped by a signal; partial results are in")
+        self.released(process, 75, says="furrow: stopped by a signal; partial results are in")
         self.hung()
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_whose_supervisor_was_killed_is_killed_by_who_waits_for_the_folder(self):
         process = self.start_waiting("step", 0, 250, env=self.launcher(""))
@@ -197,8 +190,7 @@ class FullDisk(CheckpointTest):
         self.assertEqual(process.returncode, 5, err)
         self.assertRegex(err, expected)
         self.assertEqual(steps(self.run_folder)[-1], step)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_in_a_checkpoint_it_is_told_and_the_last_one_stays(self):
         # The terrain waits, so that another rank may be the first to write; a frame of the same step may end the run
@@ -277,8 +269,7 @@ class Damaged(CheckpointTest):
         shutil.rmtree(self.newest)
         with open(self.run / "timeseries.csv", "a") as series:
             series.write("0.102,0.3,")  # a line cut short
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_series_that_was_changed(self):
         text = (self.run / "timeseries.csv").read_text()
@@ -312,8 +303,7 @@ class Folder(CheckpointTest):
                   (["resume", self.run_folder], ["run", self.path, "--out", self.run_folder, "--overwrite"])]
         for other in others:
             self.ended(other, 2, says="is in use by a run that has not ended")
-        self.mark.unlink()
-        self.ended(process, 0)
+        self.released(process)
         self.same_as_whole()
 
     @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "needs a user who is not root")
@@ -335,8 +325,7 @@ class Folder(CheckpointTest):
         process.communicate(timeout=10)
         self.mark.unlink()
         self.no_process_left()
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_killed_supervisor_of_ranks_that_are_being_started(self):
         """MPI may be stuck, as it is where memory is scarce: nobody waits for it."""

@@ -145,12 +145,8 @@ class BordersThatMove(CheckpointTest):
         self.assertNotEqual(self.borders(self.MOVED), self.borders(100))
         for step in (self.MOVED, self.MOVED - 100):
             with self.subTest(step):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.copy_of_whole()
-                for later in [s for s in steps(self.whole) if s > step]:
-                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
-                self.resume()
-                self.same_as_whole()
+                self.cut_to(step)
+                self.continues()
 
     def test_the_summary_tells_the_imbalance(self):
         told = summary(self.whole)
@@ -165,19 +161,11 @@ class Faults(CheckpointTest):
     SCENARIO = on_liggghts(kept("rigid"), 2)
     RANKS = {"terrain 0": 2, "terrain 1": 3}
 
-    def continues(self, **options):
-        self.resume()
-        self.same_as_whole(**options)
-
-    def again(self):
-        shutil.rmtree(self.run_folder, ignore_errors=True)
-        self.mark.unlink(missing_ok=True)
-
     def test_ranks_killed_in_a_step_a_checkpoint_and_a_frame(self):
         for point, count in (("step", 250), ("checkpoint.write", 3), ("frame", 5)):
             for name, rank in self.RANKS.items():
                 with self.subTest(f"{name}, {point}"):
-                    self.again()
+                    self.afresh()
                     done = self.run_with_fault(point, rank, count, "kill")
                     self.assertIn(f"rank {rank} ({name}) was lost: killed by signal 9", done.stderr)
                     self.continues()
@@ -185,7 +173,7 @@ class Faults(CheckpointTest):
     def test_one_that_stops_ends_the_run(self):
         for name, rank in self.RANKS.items():
             with self.subTest(name):
-                self.again()
+                self.afresh()
                 done = self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"])
                 self.assertRegex(done.stderr, r"furrow: error: .*terrain 0 does not answer; .*one of terrain 1 to 1")
                 self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])

@@ -179,21 +179,20 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def says(self, text, says=(), matches=None):
-        """The text holds all of these words, and something that matches the pattern."""
+    def expect(self, got, out, err, code, says=(), matches=None, prints=None):
+        self.assertEqual(got, code, err)
         for words in [says] if isinstance(says, str) else says:
-            self.assertIn(words, text)
+            self.assertIn(words, err)
         if matches is not None:
-            self.assertRegex(text, matches)
+            self.assertRegex(err, matches)
+        if prints is not None:
+            self.assertEqual(out, prints)
 
     def furrow(self, *arguments, code=0, says=(), matches=None, prints=None, **options):
         """Runs the program to its end. It ends with this exit code, says these words on standard error, one that
         matches the pattern too, and prints exactly this on standard output."""
         done = furrow(*arguments, **{"cwd": self.folder, **options})
-        self.assertEqual(done.returncode, code, (arguments, done.stderr))
-        self.says(done.stderr, says, matches)
-        if prints is not None:
-            self.assertEqual(done.stdout, prints)
+        self.expect(done.returncode, done.stdout, done.stderr, code, says, matches, prints)
         return done
 
     def start(self, *arguments, **options):
@@ -202,11 +201,10 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
-    def ended(self, process, code, says=(), matches=None, timeout=60):
-        """Waits for a program that ends with this exit code. @returns what it said on standard error"""
-        _, err = process.communicate(timeout=timeout)
-        self.assertEqual(process.returncode, code, err)
-        self.says(err, says, matches)
+    def ended(self, process, code, says=(), matches=None, prints=None, timeout=60):
+        """Waits for a program that ends as `furrow` above says. @returns what it said on standard error"""
+        out, err = process.communicate(timeout=timeout)
+        self.expect(process.returncode, out, err, code, says, matches, prints)
         return err
 
     def names(self):

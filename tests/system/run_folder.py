@@ -152,8 +152,7 @@ class Gone(CheckpointTest):
                            "furrow: error: .*out: was moved, removed or emptied while the run was under way")
         self.assertNotIn("resume", err)
         self.assertFalse(self.run_folder.exists())
-        self.resume(run=elsewhere)
-        self.same_as_whole(elsewhere)
+        self.continues(elsewhere)
 
     def test_removed(self):
         process = self.start_waiting("step", 0, 220)
@@ -177,8 +176,7 @@ class Gone(CheckpointTest):
         elsewhere.mkdir()
         (elsewhere / "rig.h5").write_text("mine")
         (self.run_folder / "checkpoints" / ".000000000300.part").symlink_to(elsewhere)
-        self.mark.unlink()
-        self.ended(process, 0, says="the checkpoint at t = 0.06 s could not be written")
+        self.released(process, says="the checkpoint at t = 0.06 s could not be written")
         self.assertEqual({path.name: path.read_text() for path in elsewhere.iterdir()}, {"rig.h5": "mine"})
         self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
 
@@ -190,8 +188,7 @@ class Gone(CheckpointTest):
         part.mkdir()
         for path in (part / "rig.h5", part / "tire0.h5", self.run_folder / ".results.h5.0123456789abcdef.part"):
             path.write_text("half")
-        self.mark.unlink()
-        self.ended(process, 0)
+        self.released(process)
         self.same_as_whole(self.run_folder)
 
     def test_a_link_in_the_place_of_a_folder_of_results_is_refused(self):
@@ -237,8 +234,7 @@ class Gone(CheckpointTest):
             with self.subTest(change=change, name=name):
                 process = self.start_waiting("step", 0, 220)
                 change(self.run_folder / name)
-                self.mark.unlink()
-                self.ended(process, 0,
+                self.released(process,
                            says=f"{name} was removed or changed while the run was under way, and is written again")
                 self.same_as_whole()
                 shutil.rmtree(self.run_folder)
@@ -270,8 +266,7 @@ class Gone(CheckpointTest):
             os.chmod(self.run_folder / name, 0o755)
         for path in self.folder.rglob("*"):
             os.chown(path, 0, 0)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
 
 class Killed(CheckpointTest):
@@ -291,8 +286,7 @@ class Killed(CheckpointTest):
             self.mark.unlink()
             process.communicate(timeout=30)
             command = ["resume", self.run_folder, "--no-plots"]
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual(len(summary(self.run_folder)["segments"]), CYCLES + 1)
 
     def test_whoever_waits_in_vain_is_told_for_whom(self):

@@ -86,7 +86,8 @@ def write_run(folder, **shape):
         "scenario": "made", "terrain_engine": "dem", "law": "mindlin", "grains": 3000,
         "ranks": [{"rank": 0, "node": "rig", "kind": "vehicle", "threads": 1,
                    "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 2.0}],
-        "wheels": [{"vertical_load_N": load, "lateral_m": TRACK * (-1) ** k} for k, load in enumerate(LOADS)]})
+        "wheels": [{"vertical_load_N": load, "net_terrain_force_N": [0.0, 0.0, load], "lateral_m": TRACK * (-1) ** k}
+                   for k, load in enumerate(LOADS)]})
     return vehicle, wheels
 
 

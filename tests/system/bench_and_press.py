@@ -256,9 +256,8 @@ class Press(SystemTest):
         write_json(self.folder / "tire.json", {**tire, "integrator": "runge_kutta_4"})
         path = write_json(self.folder / "static.json", {**SCENARIO, "tire": {"file": "tire.json"}})
         for command in ("validate", "run"):
-            self.furrow(command, path, code=2,
-                        says="key 'tire.file': is a planar finite-element tire, whose key 'integrator' is "
-                        "'runge_kutta_4'")
+            self.furrow(command, path, code=2, says="key 'tire.file': is a planar finite-element tire, whose key "
+                        "'integrator' is 'runge_kutta_4'")
             self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json", "tire.json"])
         self.furrow("validate", path, "--set", "tire.rigid=true")
 

@@ -172,8 +172,7 @@ class Resume(CheckpointTest):
         self.run_with_fault("step", 0, 250, "kill")
         command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
                    FAULTY, "resume", str(self.run_folder)]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.call(command)
         self.same_as_whole()
 
 

@@ -67,8 +67,7 @@ class EmpiricalSoil(SystemTest):
         self.assertNotIn("rolling_friction", terrain)
         self.assertNotIn("are ignored", told)
         path = write_scenario(self.folder, changed(terrain={"material": "loose_sand.json"}))
-        done = self.furrow("validate", path)
-        self.assertNotIn("are ignored", done.stderr)
+        self.furrow("validate", path, lacks="are ignored")
 
     def test_commands_that_need_grains_say_so(self):
         path = write_scenario(self.folder, WHEEL)

@@ -77,9 +77,8 @@ class KilledAtTheStart(CheckpointTest):
     def test_the_launcher(self):
         process = self.start_waiting("start", 1, 1)
         os.kill(children(process.pid)[0], signal.SIGKILL)
-        self.ended(process, 4,
-                   says="furrow: error: the ranks were lost while they were being started: mpirun was killed by signal "
-                   "9")
+        self.ended(process, 4, says="furrow: error: the ranks were lost while they were being started: mpirun was "
+                   "killed by signal 9")
         self.no_process_left()
 
 

@@ -207,13 +207,11 @@ class Reports(SystemTest):
     def test_frames_that_are_none(self):
         triangle = np.array([[0, 1, 2]])
         vertex = np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1]])
-        for content, expected in (({"position": vertex, "triangle": triangle + 7},
-                                   "holds no surface that could be drawn"),
-                                  ({"position": vertex * np.nan, "triangle": triangle},
-                                   "holds no surface that could be drawn"),
-                                  ({"position": vertex[:, :2], "triangle": triangle},
-                                   "has the shape (3, 2), expected N × 3"),
-                                  ({"position": vertex}, "the dataset 'triangle' is missing")):
+        for content, expected in (
+                ({"position": vertex, "triangle": triangle + 7}, "holds no surface that could be drawn"),
+                ({"position": vertex * np.nan, "triangle": triangle}, "holds no surface that could be drawn"),
+                ({"position": vertex[:, :2], "triangle": triangle}, "has the shape (3, 2), expected N × 3"),
+                ({"position": vertex}, "the dataset 'triangle' is missing")):
             with h5py.File(self.run / "frames" / "tire0_000000.h5", "w") as file:
                 file.attrs["time_s"] = 0.0
                 for name, values in content.items():

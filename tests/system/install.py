@@ -15,9 +15,7 @@ BUILD = pathlib.Path(PROGRAM).parent
 class Install(SystemTest):
     def setUp(self):
         super().setUp()
-        done = subprocess.run(["cmake", "--install", str(BUILD), "--prefix", str(self.folder / "first")],
-                              capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.call(["cmake", "--install", str(BUILD), "--prefix", str(self.folder / "first")])
         self.tree = self.folder / "moved tree"
         (self.folder / "first").rename(self.tree)
         self.builds = self.tree / "libexec" / "furrow"

@@ -240,8 +240,8 @@ class Refused(CheckpointTest):
         shutil.copy2(FAULTY, program)
         for command in (["run", self.path, "--out", self.run_folder], ["validate", self.path],
                         ["ranks", "--slurm", self.path]):
-            done = self.furrow(*command, program=str(program), code=2, matches="key 'terrain.engine': 'liggghts' is not "
-                               "part of this program: .*libliggghts-dev")
+            done = self.furrow(*command, program=str(program), code=2, matches="key 'terrain.engine': 'liggghts' is "
+                               "not part of this program: .*libliggghts-dev")
             self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
         self.assertFalse(self.run_folder.exists())
         with open(LIBRARY, "rb") as whole:

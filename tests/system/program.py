@@ -179,21 +179,29 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def expect(self, got, out, err, code, says=(), matches=None, prints=None):
-        self.assertEqual(got, code, err)
-        for words in [says] if isinstance(says, str) else says:
-            self.assertIn(words, err)
+    def expect(self, done, code=0, says=(), lacks=(), matches=None, shows=(), prints=None):
+        """A program has ended with this exit code. Standard error has the words `says`, not those of `lacks`, and
+        something that matches the pattern; standard output has the words `shows`, or is `prints`. @returns it"""
+        self.assertEqual(done.returncode, code, done.stderr or done.stdout[-2000:])
+        for check, text, words in ((self.assertIn, done.stderr, says), (self.assertNotIn, done.stderr, lacks),
+                                   (self.assertIn, done.stdout, shows)):
+            for word in [words] if isinstance(words, str) else words:
+                check(word, text)
         if matches is not None:
-            self.assertRegex(err, matches)
+            self.assertRegex(done.stderr, matches)
         if prints is not None:
-            self.assertEqual(out, prints)
-
-    def furrow(self, *arguments, code=0, says=(), matches=None, prints=None, **options):
-        """Runs the program to its end. It ends with this exit code, says these words on standard error, one that
-        matches the pattern too, and prints exactly this on standard output."""
-        done = furrow(*arguments, **{"cwd": self.folder, **options})
-        self.expect(done.returncode, done.stdout, done.stderr, code, says, matches, prints)
+            self.assertEqual(done.stdout, prints)
         return done
+
+    def furrow(self, *arguments, cwd=None, env=None, program=PROGRAM, timeout=200, **expected):
+        """Runs the program to its end, which is as `expect` says."""
+        return self.expect(furrow(*arguments, cwd=cwd or self.folder, env=env, program=program, timeout=timeout),
+                           **expected)
+
+    def call(self, command, cwd=None, env=None, timeout=900, **expected):
+        """The same for any command."""
+        return self.expect(subprocess.run(command, cwd=cwd or self.folder, env=env, timeout=timeout, text=True,
+                                          errors="replace", capture_output=True, stdin=subprocess.DEVNULL), **expected)
 
     def start(self, *arguments, **options):
         """Starts the program, which ends with the test at the latest."""
@@ -201,11 +209,15 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
-    def ended(self, process, code, says=(), matches=None, prints=None, timeout=60):
-        """Waits for a program that ends as `furrow` above says. @returns what it said on standard error"""
+    def ended(self, process, code, timeout=60, **expected):
+        """Waits for a program to end as `expect` says. @returns what it said on standard error"""
         out, err = process.communicate(timeout=timeout)
-        self.expect(process.returncode, out, err, code, says, matches, prints)
+        self.expect(subprocess.CompletedProcess(process.args, process.returncode, out, err), code, **expected)
         return err
+
+    def accounts_close(self, summary):
+        for what in ("energy", "momentum"):
+            self.assertTrue(summary["accounts"][what]["closes"], summary["accounts"][what])
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())

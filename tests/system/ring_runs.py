@@ -92,8 +92,7 @@ class RingRuns(SystemTest):
         scenario["tire"] = RING
         summary, _ = self.run_of("out", scenario, "--set", "output.frame_interval=0", "--set", "run.end=0.9", "--set",
                                  "run.average_from=0.7")
-        self.assertTrue(summary["accounts"]["energy"]["closes"])
-        self.assertTrue(summary["accounts"]["momentum"]["closes"])
+        self.accounts_close(summary)
         self.assertEqual(len(summary["wheels"]), 4)
 
     def test_study_and_report(self):

@@ -4,7 +4,6 @@ import csv
 import os
 import shutil
 import signal
-import subprocess
 
 from program import (PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, read_json, survivors, wait_for,
                      write_json, write_scenario)
@@ -92,9 +91,7 @@ class Run(SystemTest):
         path = write_scenario(self.folder)
         command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
                    PROGRAM, "run", str(path)]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout, "results/small-001\n")
+        done = self.call(command, prints="results/small-001\n")
         self.assertTrue((self.folder / "results" / "small-001" / "summary.json").exists())
         self.assertEqual(done.stderr.count(" simulated s, "), 1, done.stderr)
 

@@ -82,12 +82,11 @@ def write_run(folder, **shape):
         "rig": {"type": "vehicle", "vehicle": shape.get("vehicle", "hmmwv.json"), "lateral": 0.0},
         "run": {"end": shape.get("end", END), "average_from": 1.0},
         "terrain": {"engine": "dem"}})
-    write_json(folder / "summary.json", {
-        "scenario": "made", "terrain_engine": "dem", "law": "mindlin", "grains": 3000,
-        "ranks": [{"rank": 0, "node": "rig", "kind": "vehicle", "threads": 1,
-                   "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 2.0}],
-        "wheels": [{"vertical_load_N": load, "net_terrain_force_N": [0.0, 0.0, load], "lateral_m": TRACK * (-1) ** k}
-                   for k, load in enumerate(LOADS)]})
+    write_json(folder / "summary.json", {"scenario": "made", "terrain_engine": "dem", "law": "mindlin", "grains": 3000,
+                                         "ranks": [{"rank": 0, "node": "rig", "kind": "vehicle", "threads": 1,
+                                                    "cpu_s": 1.0, "compute_s": 1.0, "wait_s": 2.0}],
+                                         "wheels": [{"vertical_load_N": load, "net_terrain_force_N": [0.0, 0.0, load],
+                                                     "lateral_m": TRACK * (-1) ** k} for k, load in enumerate(LOADS)]})
     return vehicle, wheels
 
 

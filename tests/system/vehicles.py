@@ -55,8 +55,7 @@ class Vehicles(SystemTest):
             self.assertGreater(wheel[drives]["iso_force_x_N"], 100)
             self.assertLess(abs(wheel[drives]["suspension_travel_m"]), 0.05)
         self.assertIn("vehicle", summary["subjects"])
-        self.assertTrue(summary["accounts"]["energy"]["closes"])
-        self.assertTrue(summary["accounts"]["momentum"]["closes"])
+        self.accounts_close(summary)
         self.assertLess(summary["accounts"]["energy"]["residual_share"], 0.01)
 
     def test_brakes_hold_the_car_on_a_slope(self):
@@ -133,8 +132,7 @@ class Vehicles(SystemTest):
                  if read_json(path).get("rig", {}).get("type") == "vehicle"]
         self.assertGreaterEqual(len(names), 3)
         for name in names:
-            done = self.furrow("validate", ROOT / "rigs" / name)
-            self.assertIn("vehicle ", done.stdout)
+            self.furrow("validate", ROOT / "rigs" / name, shows="vehicle ")
             self.furrow("ranks", ROOT / "rigs" / name)
 
     def test_what_is_wrong_is_told_in_one_line_before_anything_is_written(self):

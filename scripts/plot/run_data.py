@@ -82,7 +82,8 @@ def check_types(content, kinds, where):
         value, name = content.get(key), NAMES[kind if isinstance(kind, type) else type(kind)]
         if value is None:
             continue
-        if not (is_number(value) if kind is float else isinstance(value, kind if isinstance(kind, type) else type(kind))):
+        if not (is_number(value) if kind is float else isinstance(value, kind if isinstance(kind,
+                                                                                            type) else type(kind))):
             raise Damaged(f"{where}: key '{key}': is {printable(json.dumps(value))[:60]}, expected {name}")
         if isinstance(kind, dict):
             check_types(value, kind, f"{where}: key '{key}'")

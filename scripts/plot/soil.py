@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .run_data import Damaged, Missing, read_object
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
 
@@ -38,10 +38,9 @@ class Soil:
         figure, axes = plt.subplots(1, columns, figsize=(6.4 * columns if columns > 1 else 8.4, height), squeeze=False)
         grains = self.values.get("grains") or {}
         note = ", quick look: no result to quote" if self.values.get("quick") else ""
-        figure.suptitle(f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
+        heading(figure, f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
                         f"{1e3 * grains.get('radius_m', np.nan):g} mm, cohesion "
-                        f"{1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}",
-                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+                        f"{1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}", 11)
         return figure, axes[0]
 
 

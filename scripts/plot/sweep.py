@@ -8,7 +8,7 @@ import numpy as np
 from .digits import with_error
 from .run_data import Damaged, Missing, read_dataset, read_object
 from .student import half_interval
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, GREY]
 
@@ -174,8 +174,7 @@ def passes(sweep):
         axis.set_xlabel("pass")
         axis.set_xticks(range(1, int(sweep.values["passes"]) + 1))
     profiles(sweep, right)
-    figure.suptitle(f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes",
-                    x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes")
     figure.tight_layout()
     return figure
 
@@ -264,5 +263,5 @@ def beds(sweep):
         axis.legend(fontsize=8, loc="upper left")
         axis.margins(y=0.35)
     lost = f" · {len(sweep.failed)} failed" if sweep.failed else ""
-    figure.suptitle(f"{sweep.title()} on {len(at)} beds{lost}", x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{sweep.title()} on {len(at)} beds{lost}")
     return figure

@@ -122,7 +122,8 @@ class VehicleRun:
 
     @property
     def hard_ground(self):
-        return (self.run.told.get("terrain_engine") or (self.run.scenario.get("terrain") or {}).get("engine")) == "rigid"
+        return (self.run.told.get("terrain_engine") or (self.run.scenario.get("terrain")
+                                                        or {}).get("engine")) == "rigid"
 
     def of_axle(self, axle):
         return [wheel for wheel in self.wheels if wheel.axle == axle]

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import axles, events
 from .run_data import Missing
-from .style import GREY, RED
+from .style import GREY, RED, heading
 from .vehicle_run import running_mean
 from .vehicle_style import AXLES, SIDES, grid, limits, line, mark_events, mark_window, steadiness
 
@@ -102,8 +102,8 @@ def front_and_rear(v):
              ("terrain_resistance_N", "resistance of the axle's wheels, N", 1.0, True),
              ("sinkage_m", "sinkage below the undisturbed surface, mm", 1e3, False)]
     figure, axes = plt.subplots(2, 2, figsize=(13, 7.6), sharex=True)
-    figure.suptitle(f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the "
-                    "same soil", fontsize=11, x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the "
+                    "same soil", 11)
     begin = events.first(v.time >= quiet_time(v)) or 0
     for axis, (column, title, factor, total) in zip(axes.flat, shown):
         curves = []

@@ -375,8 +375,7 @@ class BadFile(SystemTest):
         """What standard error holds: one error, told once."""
         command = [shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", str(count), PROGRAM,
                    "run", write_scenario(self.folder, changed(**sections))]
-        done = self.call(command, code=2)
-        self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
+        done = self.call(command, code=2, errors=1)
         self.assertEqual(self.names(), ["small.json"])
         return done.stderr
 

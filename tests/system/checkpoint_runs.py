@@ -57,17 +57,17 @@ class CheckpointTest(SystemTest):
         self.run_folder = self.folder / "out"
         self.mark = self.folder / "fired"
 
-    def program(self, *arguments, code=0, **options):
-        done = self.furrow(*arguments, program=FAULTY, **options, code=code)
+    def program(self, *arguments, **expected):
+        done = self.furrow(*arguments, program=FAULTY, **expected)
         self.no_process_left()
         return done
 
     def fault(self, point, rank, count, action):
         return {"FURROW_FAULT": f"{point}:{rank}:{count}:{action}", "FURROW_FAULT_FIRED": str(self.mark)}
 
-    def run_with_fault(self, point, rank, count, action, code=4, flags=(), run=None):
-        done = self.program("run", self.path, "--out", run or self.run_folder, "--no-plots", *flags, code=code,
-                            env=self.fault(point, rank, count, action))
+    def run_with_fault(self, point, rank, count, action, code=4, flags=(), **expected):
+        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", *flags, code=code,
+                            env=self.fault(point, rank, count, action), **expected)
         self.assertTrue(self.mark.exists(), f"the fault {point} of rank {rank} did not fire")
         return done
 
@@ -79,8 +79,8 @@ class CheckpointTest(SystemTest):
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
         return process
 
-    def resume(self, *flags, code=0, run=None):
-        return self.program("resume", run or self.run_folder, "--no-plots", *flags, code=code)
+    def resume(self, *flags, run=None, **expected):
+        return self.program("resume", run or self.run_folder, "--no-plots", *flags, **expected)
 
     def continues(self, run=None, leave_out=()):
         """The run goes on to the end of the whole one. @param leave_out files that differ by intent"""

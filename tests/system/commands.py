@@ -15,8 +15,7 @@ SHIPPED = sorted(path.name for path in (ROOT / "rigs").glob("*.json")
 
 class Commands(SystemTest):
     def output(self, *arguments):
-        done = self.furrow(*arguments)
-        return done.stdout
+        return self.furrow(*arguments).stdout
 
     def test_version(self):
         self.assertRegex(self.output("--version"), r"^furrow \d+\.\d+\.\d+\n$")

@@ -119,8 +119,8 @@ class Vehicle(Exact, CheckpointTest):
         for rank, name in ((0, "rig"), (1, "tire 0"), (4, "tire 3"), (5, "terrain")):
             with self.subTest(name):
                 self.afresh()
-                done = self.run_with_fault("step", rank, 257, "stop", flags=["--set", "run.peer_timeout=5"])
-                self.assertRegex(done.stderr, rf"furrow: error: .*waited 5 s for .*{name} does not answer")
+                self.run_with_fault("step", rank, 257, "stop", flags=["--set", "run.peer_timeout=5"],
+                                    matches=rf"furrow: error: .*waited 5 s for .*{name} does not answer")
                 self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
     def test_after_a_signal(self):
@@ -189,8 +189,8 @@ class BeforeTheWall(CheckpointTest):
         with open(self.whole / "timeseries_wheel0.csv", newline="") as file:
             position = [float(line["position_m"]) for line in csv.DictReader(file)]
         self.assertAlmostEqual(5.5 - position[-1] - 0.4673 - 1.21, 0.0, delta=2e-3)
-        done = self.program("resume", self.whole, "--no-plots")
-        self.assertRegex(done.stderr, r"is finished: it ended at 0\.\d+ s; there is nothing to do")
+        self.program("resume", self.whole,
+                     "--no-plots", matches=r"is finished: it ended at 0\.\d+ s; there is nothing to do")
 
     def test_from_every_checkpoint_around_the_end(self):
         all_steps = steps(self.whole)
@@ -199,8 +199,7 @@ class BeforeTheWall(CheckpointTest):
         for step in range(end - 2, end + 1):
             with self.subTest(step=step):
                 self.cut_to(step)
-                done = self.resume()
-                self.assertIn("a tire came near the end wall", done.stderr)
+                self.resume(says="a tire came near the end wall")
                 self.same_as_whole()
 
 

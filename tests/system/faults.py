@@ -48,8 +48,8 @@ class Killed(CheckpointTest):
 
 
     def test_a_rank_after_all_results(self):
-        done = self.run_with_fault("done", RANKS["rig"], 1, "kill", code=0)
-        self.assertIn("furrow: warning: the run had finished before this happened: rank 0 (rig) was lost", done.stderr)
+        self.run_with_fault("done", RANKS["rig"], 1, "kill", code=0,
+                            says="furrow: warning: the run had finished before this happened: rank 0 (rig) was lost")
         self.assertFalse((self.run_folder / "summary_failed.json").exists())
         self.same_as_whole()
 
@@ -60,8 +60,8 @@ for row in KILLS:
 
 class ProgramFault(CheckpointTest):
     def test_an_exception_that_no_code_expects(self):
-        done = self.run_with_fault("step", RANKS["tire"], 250, "throw", code=70)
-        self.assertIn("furrow: error: fault of the program: thrown by a test; please report it", done.stderr)
+        self.run_with_fault("step", RANKS["tire"], 250, "throw", code=70,
+                            says="furrow: error: fault of the program: thrown by a test; please report it")
         failed = read_json(self.run_folder / "summary_failed.json")["failed"]
         self.assertEqual(failed["exit_code"], 70)
         self.continues()
@@ -71,8 +71,7 @@ class KilledAtTheStart(CheckpointTest):
     """Before MPI connects the ranks."""
 
     def test_a_rank(self):
-        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9",
-                      self.run_with_fault("start", 1, 1, "kill").stderr)
+        self.run_with_fault("start", 1, 1, "kill", says="furrow: error: rank 1 (tire 0) was lost: killed by signal 9")
 
     def test_the_launcher(self):
         process = self.start_waiting("start", 1, 1)
@@ -84,8 +83,8 @@ class KilledAtTheStart(CheckpointTest):
 
 class Stopped(CheckpointTest):
     def test_a_rank_that_stops_is_named_and_the_run_goes_on_without_it(self):
-        done = self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"])
-        self.assertRegex(done.stderr, r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
+        self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"],
+                            matches=r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
         self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
 
@@ -108,8 +107,7 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.assertIn(self.LOG, (self.run_folder / "run.log").read_text())
 
     def test_once_all_ranks_are_done_is_killed_and_the_run_is_done(self):
-        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", env=self.launcher(""))
-        self.assertNotIn("warning", done.stderr)
+        self.program("run", self.path, "--out", self.run_folder, "--no-plots", env=self.launcher(""), lacks="warning")
         self.hung()
         self.same_as_whole()
 
@@ -126,8 +124,7 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         process.kill()
         self.mark.unlink()
         process.communicate(timeout=60)
-        self.assertRegex(self.resume().stderr,
-                         r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
+        self.resume(matches=r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
         self.no_process_left()
         self.same_as_whole()
 
@@ -212,9 +209,7 @@ class Damaged(CheckpointTest):
         self.newest = self.run / "checkpoints" / f"{STEPS:012}"
 
     def goes_on_from_the_one_before(self, words):
-        done = self.resume()
-        self.assertIn(f"furrow: warning: {self.newest}", done.stderr)
-        self.assertIn(words, done.stderr)
+        self.resume(says=(f"furrow: warning: {self.newest}", words))
         self.assertEqual(summary(self.run)["segments"][-1]["from_step"], STEPS - INTERVAL)
         self.same_as_whole()
 
@@ -255,13 +250,12 @@ class Damaged(CheckpointTest):
         other = self.folder / "other"
         self.program("run", self.path, "--out", other, "--set", "run.seed=2", "--no-plots")
         shutil.copytree(other / "checkpoints" / f"{STEPS:012}", self.newest)
-        self.assertIn("key 'run.seed': is 1 but the run was computed with 2", self.resume(code=2).stderr)
+        self.resume(code=2, says="key 'run.seed': is 1 but the run was computed with 2")
 
     def test_all_of_them(self):
         for part in (self.run / "checkpoints").glob("*/terrain.h5"):
             os.truncate(part, 100)
-        done = self.resume(code=5)
-        self.assertIn("no checkpoint is whole, nothing can be continued", done.stderr)
+        done = self.resume(code=5, says="no checkpoint is whole, nothing can be continued")
         self.assertEqual(done.stderr.count("terrain.h5: does not fit its checkpoint"), 3)
 
     def test_series_that_was_written_on(self):
@@ -273,7 +267,7 @@ class Damaged(CheckpointTest):
     def test_series_that_was_changed(self):
         text = (self.run / "timeseries.csv").read_text()
         (self.run / "timeseries.csv").write_text(text.replace("0", "1", 1))
-        self.assertIn("timeseries.csv: does not hold the lines that the checkpoint knows", self.resume(code=5).stderr)
+        self.resume(code=5, says="timeseries.csv: does not hold the lines that the checkpoint knows")
 
     def test_series_and_summary_that_were_emptied_are_no_finished_run(self):
         for name in ("timeseries.csv", "summary.json"):
@@ -292,7 +286,7 @@ class Damaged(CheckpointTest):
     def test_a_log_that_is_no_file(self):
         (self.run / "run.log").unlink()
         os.mkfifo(self.run / "run.log")
-        self.assertIn("run.log: is not a file, expected one", self.resume(code=2).stderr)
+        self.resume(code=2, says="run.log: is not a file, expected one")
 
 
 class Folder(CheckpointTest):
@@ -332,7 +326,7 @@ class Folder(CheckpointTest):
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=10)
         self.no_process_left()
-        self.assertIn("start again with furrow run --overwrite", self.resume(code=2).stderr)
+        self.resume(code=2, says="start again with furrow run --overwrite")
         self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--overwrite")
         self.same_as_whole()
 

@@ -166,33 +166,33 @@ class Faults(CheckpointTest):
             for name, rank in self.RANKS.items():
                 with self.subTest(f"{name}, {point}"):
                     self.afresh()
-                    done = self.run_with_fault(point, rank, count, "kill")
-                    self.assertIn(f"rank {rank} ({name}) was lost: killed by signal 9", done.stderr)
+                    self.run_with_fault(point, rank, count, "kill",
+                                        says=f"rank {rank} ({name}) was lost: killed by signal 9")
                     self.continues()
 
     def test_one_that_stops_ends_the_run(self):
         for name, rank in self.RANKS.items():
             with self.subTest(name):
                 self.afresh()
-                done = self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"])
-                self.assertRegex(done.stderr, r"furrow: error: .*terrain 0 does not answer; .*one of terrain 1 to 1")
+                self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"],
+                                    matches=r"furrow: error: .*terrain 0 does not answer; .*one of terrain 1 to 1")
                 self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])
 
     def test_a_command_that_liggghts_refuses_on_all_ranks(self):
-        done = self.run_with_fault("liggghts", "*", 250, "say fix nonsense all nonsense")
-        self.assertIn('LIGGGHTS failed: Invalid fix style: "nonsense"', done.stderr)
+        self.run_with_fault("liggghts", "*", 250, "say fix nonsense all nonsense",
+                            says='LIGGGHTS failed: Invalid fix style: "nonsense"')
         self.continues()
 
     def test_a_file_that_one_rank_misses(self):
-        done = self.run_with_fault("liggghts", "*", 250, "say include no_such_file")
-        self.assertRegex(done.stderr, "terrain 0: LIGGGHTS failed on this rank: .*no_such_file")
+        self.run_with_fault("liggghts", "*", 250, "say include no_such_file",
+                            matches="terrain 0: LIGGGHTS failed on this rank: .*no_such_file")
         self.continues()
 
     def test_another_number_of_ranks_cannot_continue(self):
         run = self.copy_of_whole()
         shutil.rmtree(run / "checkpoints" / f"{steps(run)[-1]:012}")
-        done = self.program("resume", run, "--set", "terrain.ranks=3", "--no-plots", code=2)
-        self.assertIn("key 'terrain.ranks': is 3 but the run was computed with 2", done.stderr)
+        self.program("resume", run, "--set", "terrain.ranks=3", "--no-plots", code=2,
+                     says="key 'terrain.ranks': is 3 but the run was computed with 2")
 
 
 class Refused(CheckpointTest):
@@ -203,18 +203,16 @@ class Refused(CheckpointTest):
                            ("ground_stiffness", 1e8)):
             with self.subTest(key):
                 path = write_scenario(self.folder, on_liggghts(self.SCENARIO, 1, **{key: value}), "wrong.json")
-                done = self.program("run", path, "--out", self.run_folder, code=2)
-                self.assertIn(f"key 'terrain.{key}'", done.stderr)
+                self.program("run", path, "--out", self.run_folder, code=2, says=f"key 'terrain.{key}'")
 
     def test_parts_thinner_than_grains(self):
-        done = self.program("run", self.path, "--out", self.run_folder, "--set", "terrain.ranks=20", code=2)
-        self.assertIn("key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part",
-                      done.stderr)
+        self.program("run", self.path, "--out", self.run_folder, "--set", "terrain.ranks=20", code=2,
+                     says="key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part")
 
     def test_what_it_does_without_is_said(self):
-        done = self.program("validate", self.path, "--set", "terrain.ranks=3", "--threads", 4, "--json")
-        self.assertIn("key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core",
-                      done.stderr)
+        done = self.program("validate", self.path, "--set", "terrain.ranks=3", "--threads", 4,
+                            "--json",
+                            says="key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core")
         told = json.loads(done.stdout)
         self.assertEqual(told["time"]["terrain_threads"], 1)
         self.assertGreater(told["time"]["ghosts_per_rank"], 0)

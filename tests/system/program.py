@@ -179,10 +179,13 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def expect(self, done, code=0, says=(), lacks=(), matches=None, shows=(), prints=None):
-        """A program has ended with this exit code. Standard error has the words `says`, not those of `lacks`, and
-        something that matches the pattern; standard output has the words `shows`, or is `prints`. @returns it"""
+    def expect(self, done, code=0, says=(), lacks=(), matches=None, errors=None, shows=(), prints=None):
+        """A program has ended with this exit code. Standard error has the words `says`, not those of `lacks`, something
+        that matches the pattern, and so many errors; standard output has the words `shows`, or is `prints`.
+        @returns it"""
         self.assertEqual(done.returncode, code, done.stderr or done.stdout[-2000:])
+        if errors is not None:
+            self.assertEqual(done.stderr.count("furrow: error: "), errors, done.stderr)
         for check, text, words in ((self.assertIn, done.stderr, says), (self.assertNotIn, done.stderr, lacks),
                                    (self.assertIn, done.stdout, shows)):
             for word in [words] if isinstance(words, str) else words:

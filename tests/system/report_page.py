@@ -352,10 +352,8 @@ class OwnFiles(SystemTest):
         write_json(self.run_folder / "summary.json", summary)
         self.out.mkdir()
 
-    def report(self, *arguments, code=0, told=()):
-        done = self.furrow("report", *arguments, code=code)
-        for words in told:
-            self.assertIn(words, done.stderr)
+    def report(self, *arguments, **expected):
+        done = self.furrow("report", *arguments, **expected)
         return [pathlib.Path(line).name for line in done.stdout.splitlines()]
 
     def parts(self):
@@ -364,7 +362,7 @@ class OwnFiles(SystemTest):
     def test_a_page_in_the_folder_of_a_run_stays(self):
         (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")
         (self.run_folder / "report.html").write_text("mine")
-        self.report("run", told=["no report.html: furrow did not write the file of that name in this folder"])
+        self.report("run", says=["no report.html: furrow did not write the file of that name in this folder"])
         self.assertEqual((self.run_folder / "report.html").read_text(), "mine")
 
     def test_they_stay_in_any_folder_and_the_rest_can_be_made_again(self):
@@ -373,17 +371,17 @@ class OwnFiles(SystemTest):
             (self.out / name).write_text("mine")
         told = [f"no {name}: furrow did not write the file of that name in this folder"
                 for name in ("report.html", "ranks.png")]
-        made = self.report("run", "--out", "own", told=told)
+        made = self.report("run", "--out", "own", says=told)
         self.assertEqual(made, ["scene.png"])
         (self.out / "scene.png").write_text("of an earlier report")
-        self.assertEqual(self.report("run", "--out", "own", told=told), made)
+        self.assertEqual(self.report("run", "--out", "own", says=told), made)
         self.assertTrue((self.out / "scene.png").read_bytes().startswith(b"\x89PNG"))
         self.assertEqual([(self.out / name).read_text() for name in mine], ["mine"] * len(mine))
         self.assertEqual({path.name for path in self.out.iterdir()}, {*mine, *made, ".furrow-report"})
 
     def test_they_stay_where_runs_are_compared(self):
         (self.out / "report.html").write_text("mine")
-        self.report("run", "run", "--out", "own", code=5, told=["own/report.html: was not written"])
+        self.report("run", "run", "--out", "own", code=5, says=["own/report.html: was not written"])
         self.assertEqual([path.name for path in self.out.iterdir()], ["report.html"])
         self.assertEqual((self.out / "report.html").read_text(), "mine")
         for _ in range(2):
@@ -396,7 +394,7 @@ class OwnFiles(SystemTest):
         for name in made:
             (self.out / name).write_text("mine")
         self.report("run", "--out", "own", code=5,
-                    told=["own: no plot was written, as other files have their names, expected another folder"])
+                    says=["own: no plot was written, as other files have their names, expected another folder"])
         self.assertEqual({path.name for path in self.out.iterdir()}, set(made))
 
     def test_links_are_neither_followed_nor_replaced(self):
@@ -408,7 +406,7 @@ class OwnFiles(SystemTest):
                 for name, to in (("scene.png", "precious"), ("report.html", "nowhere")):
                     (folder / name).unlink(missing_ok=True)
                     (folder / name).symlink_to(self.folder / to)
-                made = self.report(*arguments, told=[f"no {name}: the file of that name in this folder is a link, "
+                made = self.report(*arguments, says=[f"no {name}: the file of that name in this folder is a link, "
                                                      "which furrow does not follow" for name in ("scene.png",
                                                                                                  "report.html")])
                 self.assertEqual(made, ["ranks.png"])

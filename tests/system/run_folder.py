@@ -35,10 +35,8 @@ class Overwrite(SystemTest):
         self.path = write_scenario(self.folder, RUN)
         self.out = self.folder / "out"
 
-    def run_it(self, *arguments, code=0, cwd=None):
-        done = furrow("run", *arguments, cwd=cwd or self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+    def run_it(self, *arguments, **expected):
+        return self.furrow("run", *arguments, **expected)
 
     def put_mine(self, names=MINE):
         for name in names:
@@ -88,16 +86,14 @@ class Overwrite(SystemTest):
         before = {name: path.read_bytes() for name, path in files(self.out).items()}
         link = self.folder / "link.json"
         link.symlink_to(self.out / "scenario.json")
-        done = self.run_it(link, "--out", "out", "--overwrite", "--set", "terrain.bed=none.csv", code=2)
-        self.assertIn("none.csv", done.stderr)
+        self.run_it(link, "--out", "out", "--overwrite", "--set", "terrain.bed=none.csv", code=2, says="none.csv")
         self.assertEqual({name: path.read_bytes() for name, path in files(self.out).items()}, before)
 
     def test_a_way_through_a_folder_that_is_not_there_is_refused(self):
         inner = self.folder / "inner"
         inner.mkdir()
-        done = self.run_it(self.path, "--out", "nonex/../../w/x", code=2, cwd=inner)
-        self.assertRegex(done.stderr,
-                         "^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
+        self.run_it(self.path, "--out", "nonex/../../w/x", code=2, cwd=inner,
+                    matches="^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
         self.assertEqual((self.names(), list(inner.iterdir())), (["inner", "small.json"], []))
 
     def test_a_study_is_refused_where_no_study_was(self):
@@ -139,8 +135,7 @@ class Gone(CheckpointTest):
         shutil.copytree(self.whole, self.run_folder)
         (self.run_folder / "checkpoints" / "notes.txt").write_text("mine")
         before = {name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}
-        done = self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"])
-        self.assertIn("the run had not begun to step; ", done.stderr)
+        self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"], says="the run had not begun to step; ")
         self.assertEqual({name: path.read_bytes() for name, path in files(self.run_folder).items()
                           if name != ".furrow-run"}, before)
 

@@ -44,8 +44,8 @@ class TerrainRanks(CheckpointTest):
         for name, rank in RANKS.items():
             with self.subTest(f"{point} of {name}"):
                 self.afresh()
-                done = self.run_with_fault(point, rank, count, "kill")
-                self.assertIn(f"furrow: error: rank {rank} ({name}) was lost: killed by signal 9", done.stderr)
+                self.run_with_fault(point, rank, count, "kill",
+                                    says=f"furrow: error: rank {rank} ({name}) was lost: killed by signal 9")
                 self.assertEqual(steps(self.run_folder)[-1], step)
                 self.continues()
 
@@ -62,8 +62,8 @@ class TerrainRanks(CheckpointTest):
         for name, rank in list(RANKS.items())[1:]:
             with self.subTest(name):
                 self.afresh()
-                done = self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"])
-                self.assertRegex(done.stderr, rf"furrow: error: .*waited 2 s for .*{name} does not answer")
+                self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"],
+                                    matches=rf"furrow: error: .*waited 2 s for .*{name} does not answer")
         self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
     def test_stopped_by_a_signal_they_all_save_at_the_same_step(self):
@@ -99,13 +99,13 @@ class TerrainRanks(CheckpointTest):
         run = self.copy_of_whole()
         manifests = sorted(run.glob("checkpoints/*/manifest.json"))
         shutil.rmtree(manifests[-1].parent)
-        done = self.program("resume", run, "--set", "terrain.ranks=2", "--no-plots", code=2)
-        self.assertIn("key 'terrain.ranks': is 2 but the run was computed with 3", done.stderr)
+        self.program("resume", run, "--set", "terrain.ranks=2", "--no-plots", code=2,
+                     says="key 'terrain.ranks': is 2 but the run was computed with 3")
 
     def test_more_than_the_engine_can_use_are_refused(self):
         path = write_scenario(self.folder, changed(terrain={"ranks": 2}), "grains.json")
-        done = self.program("run", path, "--out", self.run_folder, code=2)
-        self.assertIn("key 'terrain.ranks': is 2, expected 1: engine 'dem' runs on one rank", done.stderr)
+        self.program("run", path, "--out", self.run_folder, code=2,
+                     says="key 'terrain.ranks': is 2, expected 1: engine 'dem' runs on one rank")
 
 
 if __name__ == "__main__":

@@ -159,8 +159,7 @@ class Unlikely(SystemTest):
 
 class Stands(SystemTest):
     def page(self, name):
-        done = self.furrow("validate", name, "--json", timeout=300)
-        return json.loads(done.stdout)
+        return json.loads(self.furrow("validate", name, "--json", timeout=300).stdout)
 
     def test_hmmwv(self):
         page = self.page("hmmwv.json")

@@ -116,6 +116,26 @@ def table(file, name, columns):
     return values
 
 
+def read_surface(path):
+    """(vertices, triangles, time) of a frame of a tire."""
+    with h5py.File(path, "r") as file:
+        vertex, triangle = table(file, "position", 3).astype(float), table(file, "triangle", 3).astype(int)
+        time = float(file.attrs["time_s"])
+    if not (len(vertex) and len(triangle) and np.isfinite(vertex).all() and 0 <= triangle.min()
+            and triangle.max() < len(vertex)):
+        raise Damaged(f"{path.name} holds no surface that could be drawn")
+    return vertex, triangle, time
+
+
+def read_grains(path, scale=1.0):
+    """(positions, radii) of a frame of the grains, enlarged."""
+    with h5py.File(path, "r") as file:
+        position, radius = (scale * table(file, *what).astype(float) for what in (("position", 3), ("radius", 0)))
+    if not len(radius) or len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
+        raise Damaged(f"{path.name} holds no grains that could be drawn")
+    return position, radius
+
+
 class HeightField:
     """Surface heights z (m) over cell centres x, y (m); NaN where no grain is."""
 

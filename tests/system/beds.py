@@ -20,9 +20,6 @@ class Beds(SystemTest):
         path = write_scenario(self.folder, changed(output={"frame_interval": 0}))
         return self.furrow("run", path, *arguments, **expected)
 
-    def summary(self, run, name="summary.json"):
-        return read_json(self.folder / run / name)
-
     def check_means(self, run, names):
         """Against the summaries of the beds themselves."""
         beds, together = [self.summary(f"{run}/{name}") for name in names], self.summary(run)

@@ -63,9 +63,6 @@ class Press(SystemTest):
         return self.furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points,
                            "--overwrite", *more, **expected)
 
-    def summary(self, folder="out"):
-        return read_json(self.folder / folder / "summary.json")
-
     def test_plate(self):
         # Two rows of nodes or more touch: one alone has no length.
         done = self.press("--load", "2000", "--set", "tire.elements_circumference=60",

@@ -18,9 +18,7 @@ WHEEL = {
 
 class EmpiricalSoil(SystemTest):
     def run_of(self, name, *flags, scenario=WHEEL):
-        path = write_scenario(self.folder, scenario)
-        done = self.furrow("run", path, "--no-plots", "--out", self.folder / name, *flags)
-        return read_json(self.folder / name / "summary.json"), done.stderr
+        return super().run_of(name, scenario, *flags)
 
     def test_a_wheel_sinks_pulls_leaves_a_rut_and_its_accounts_close(self):
         told, _ = self.run_of("out")

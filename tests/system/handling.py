@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from program import ROOT, SystemTest, main, read_json, write_json
+from program import ROOT, SystemTest, main, write_json
 
 sys.path.insert(0, str(ROOT / "tests/tire/handling"))
 import evaluate_tir  # noqa: E402  the other evaluator
@@ -27,9 +27,7 @@ STEADY = {
 
 class Handling(SystemTest):
     def run_of(self, name, *flags, scenario=STEADY):
-        path = write_json(self.folder / "scenario.json", scenario)
-        self.furrow("run", path, "--no-plots", "--out", self.folder / name, *flags)
-        return read_json(self.folder / name / "summary.json")
+        return super().run_of(name, scenario, *flags)[0]
 
     def expected(self, summary):
         """Of the other evaluator, at the slips of the run."""
@@ -94,7 +92,7 @@ class Handling(SystemTest):
         self.assertGreater(len(checkpoints), 1)
         self.run_of("cut", "--set", "run.end=0.2", "--set", "run.average_from=0.1", scenario=scenario)
         self.furrow("resume", self.folder / "cut", "--until", "0.4", "--no-plots")
-        first, second = (read_json(self.folder / name / "summary.json")["state_hash"] for name in ("whole", "cut"))
+        first, second = (self.summary(name)["state_hash"] for name in ("whole", "cut"))
         self.assertEqual(first, second)
         for name in ("whole", "cut"):
             self.assertTrue((self.folder / name / "timeseries.csv").exists())
@@ -104,13 +102,13 @@ class Handling(SystemTest):
         path = ROOT / "rigs/hmmwv_rigid.json"
         self.furrow("run", path, "--no-plots", "--out", self.folder / "car", "--set", "tire.file=hmmwv_handling.tir",
                     "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "output.frame_interval=0")
-        told = read_json(self.folder / "car/summary.json")
+        told = self.summary("car")
         self.assertTrue(told["accounts"]["momentum"]["closes"], told["accounts"]["momentum"])
 
     def test_pressed_on_a_plate_and_validated(self):
         path = write_json(self.folder / "scenario.json", STEADY)
         self.furrow("press", path, "--out", self.folder / "press", "--load", "4000")
-        told = read_json(self.folder / "press/summary.json")
+        told = self.summary("press")
         stiffness = evaluate_tir.read(TIR)["VERTICAL_STIFFNESS"]
         self.assertAlmostEqual(told["secant_stiffness_N_per_m"], stiffness, delta=1e-6 * stiffness)
         self.furrow("press", path, "--on", "cleat", "--out", self.folder / "cleat", code=2, says="expected plate")

@@ -218,6 +218,15 @@ class SystemTest(unittest.TestCase):
         self.expect(subprocess.CompletedProcess(process.args, process.returncode, out, err), code, **expected)
         return err
 
+    def summary(self, run="out", name="summary.json"):
+        return read_json(self.folder / run / name)
+
+    def run_of(self, name, scenario, *flags, **expected):
+        """Runs a scenario into a folder of this name. @returns its summary and what was said on standard error"""
+        done = self.furrow("run", write_scenario(self.folder, scenario, f"{name}.json"), "--no-plots", "--out",
+                           self.folder / name, *flags, timeout=400, **expected)
+        return self.summary(name), done.stderr
+
     def accounts_close(self, summary):
         for what in ("energy", "momentum"):
             self.assertTrue(summary["accounts"][what]["closes"], summary["accounts"][what])

@@ -72,7 +72,7 @@ class Run(SystemTest):
         for number, flags in enumerate((["--threads", "1"], ["--threads", "2"],
                                         ["--set", "run.seed=2"], [*sides, "1"], [*sides, "2"])):
             self.furrow("run", path, "--out", f"out{number}", *flags)
-            hashes.append(read_json(self.folder / f"out{number}" / "summary.json")["state_hash"])
+            hashes.append(self.summary(f"out{number}")["state_hash"])
         self.assertEqual(hashes[0], hashes[1])
         self.assertEqual(hashes[3], hashes[4])
         self.assertEqual(len({hashes[0], hashes[2], hashes[3]}), 3)
@@ -99,7 +99,7 @@ class Run(SystemTest):
         self.furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
                     "--set", "terrain.layers=3", "--set", "run.step=2e-4")
         masses = [200, 320, 450, 700]
-        summary = read_json(self.folder / "out" / "summary.json")
+        summary = self.summary()
         self.assertEqual(len(summary["ranks"]), 6)
         self.assertNotIn("vertical_load_N", summary)
         for wheel, (mass, entry) in enumerate(zip(masses, summary["wheels"], strict=True)):

@@ -17,9 +17,6 @@ class Vehicles(SystemTest):
         rows = rows_of(self.folder / "out" / f"timeseries_{subject}.csv")
         return [{key: float(value) for key, value in line.items()} for line in rows]
 
-    def summary(self):
-        return read_json(self.folder / "out" / "summary.json")
-
     def test_the_car_on_hard_ground_is_let_down_stands_and_drives_off(self):
         done = self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
         self.assertRegex(done.stderr + done.stdout,

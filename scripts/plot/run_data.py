@@ -116,6 +116,18 @@ def table(file, name, columns):
     return values
 
 
+def read_table(path):
+    """Columns of a CSV file of numbers by their names; none where it has no line."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    names = lines[0].split(",") if lines else []
+    # A run that still continues may be half-way through its last line.
+    rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
+    try:
+        return dict(zip(names, np.array(rows, dtype=float).T)) if rows else {}
+    except ValueError as error:
+        raise Damaged(f"{path.name} holds something that is no number: {error}") from error
+
+
 def read_surface(path):
     """(vertices, triangles, time) of a frame of a tire."""
     with h5py.File(path, "r") as file:
@@ -146,6 +158,17 @@ class HeightField:
         self.z, self.cell = np.asarray(z, float), cell
         self.x = x0 + cell * np.arange(self.z.shape[0])
         self.y = y0 + cell * np.arange(self.z.shape[1])
+
+
+def read_heights(path):
+    """(before, after), HeightField, of results.h5."""
+    if not path.exists():
+        raise Missing("there is no results.h5 yet")
+    with h5py.File(path, "r") as file:
+        if "terrain/height_after" not in file:
+            raise Missing("this ground has no surface that deforms")
+        return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
+                                 read_dataset(file, f"terrain/height_{when}_grid")) for when in ("before", "after"))
 
 
 class Run:
@@ -193,18 +216,7 @@ class Run:
     def table(self, name):
         """Columns of a table by their names; none when there is no such file."""
         path = self.directory / name
-        if not path.exists():
-            return {}
-        lines = path.read_text(encoding="utf-8").splitlines()
-        names = lines[0].split(",") if lines else []
-        # A run that still continues may be half-way through its last line.
-        rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
-        if not rows:
-            return {}
-        try:
-            return dict(zip(names, np.array(rows, dtype=float).T))
-        except ValueError as error:
-            raise Damaged(f"{path.name} holds something that is no number: {error}") from error
+        return read_table(path) if path.exists() else {}
 
     def column(self, name):
         if name not in self.series:
@@ -213,15 +225,7 @@ class Run:
 
     def heights(self):
         """(before, after), HeightField."""
-        path = self.directory / "results.h5"
-        if not path.exists():
-            raise Missing("there is no results.h5 yet")
-        with h5py.File(path, "r") as file:
-            if "terrain/height_after" not in file:
-                raise Missing("this ground has no surface that deforms")
-            return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
-                                     read_dataset(file, f"terrain/height_{when}_grid"))
-                         for when in ("before", "after"))
+        return read_heights(self.directory / "results.h5")
 
     def frames(self, kind):
         """Frame files of `kind` ("tire0", "terrain") by index."""

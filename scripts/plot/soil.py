@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Damaged, Missing, read_object
+from .run_data import Missing, read_object, read_table
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
@@ -20,12 +20,7 @@ class Soil:
         path = self.directory / name
         if not path.exists():
             raise Missing(f"this test was not run: there is no {name}")
-        lines = path.read_text(encoding="utf-8").splitlines()
-        try:
-            rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
-            return dict(zip(lines[0].split(","), rows.T))
-        except (IndexError, ValueError) as error:
-            raise Damaged(f"{name} holds something that is no number: {error}") from error
+        return read_table(path)
 
     def text(self, name, factor=1.0, form=".3g"):
         """value ± standard error."""

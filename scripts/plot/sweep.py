@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import with_error
-from .run_data import Damaged, Missing, read_dataset, read_object
+from .run_data import Damaged, Missing, read_heights, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 
@@ -179,17 +179,6 @@ def passes(sweep):
     return figure
 
 
-def heights(sweep, row):
-    """x, y of the cells, undisturbed and final height of a pass, m."""
-    import h5py
-    with h5py.File(sweep.directory / row["folder"] / "results.h5", "r") as file:
-        x0, y0, cell = read_dataset(file, "terrain/height_before_grid")
-        before, after = read_dataset(file, "terrain/height_before"), read_dataset(file, "terrain/height_after")
-    x = x0 + cell * np.arange(after.shape[0])
-    y = y0 + cell * np.arange(after.shape[1])
-    return x, y, before, after
-
-
 def rut_lines(sweep, axis, where, profile):
     """A line per pass of each group, mean over its runs, of the surface against that before the first pass of the run;
     `profile(x, y, summary, change)` makes it and `where(x, y)` its abscissa."""
@@ -197,10 +186,11 @@ def rut_lines(sweep, axis, where, profile):
     for g, (label, rows) in enumerate(groups.items()):
         undisturbed, lines = None, {}
         for row in rows:
-            x, y, before, after = heights(sweep, row)
+            before, after = read_heights(sweep.directory / row["folder"] / "results.h5")
             if number(row["pass"]) == 1:
-                undisturbed = before
-            lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after - undisturbed))
+                undisturbed = before.z
+            x, y = after.x, after.y
+            lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after.z - undisturbed))
         for n, of_runs in sorted(lines.items()):
             axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)],
                       alpha=0.35 + 0.65 * n / len(lines), lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label

@@ -99,7 +99,8 @@ def energy(run):
     heading(figure, run.title)
     over_time(run, left)
     bars(right, rows, "J")
-    right.set(xlabel="over the whole run, J", title="Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
+    right.set(xlabel="over the whole run, J",
+              title="Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
     return figure
 
 

@@ -142,8 +142,8 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", help="this plot only; may be repeated", choices={
-        name for plots in (RIDE_PLOTS, VEHICLE_PLOTS, SWEEP_PLOTS, BEDS_PLOTS, *OTHER_PLOTS.values()) for name in plots})
+    parser.add_argument("--only", action="append", help="this plot only; may be repeated", choices=sorted(
+        set().union(RIDE_PLOTS, VEHICLE_PLOTS, SWEEP_PLOTS, BEDS_PLOTS, *OTHER_PLOTS.values())))
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     parser.add_argument("--progress", action="store_true",
                         help="print the share that is done, 'progress 0.25', before each plot")

@@ -4,7 +4,7 @@ import numpy as np
 
 from .digits import digits
 from .run_data import Missing
-from .style import BLUE, GREY, ORANGE, PURPLE, RED, mark_window
+from .style import BLUE, GREY, ORANGE, PURPLE, RED, heading, mark_window
 
 # Entries of accounts.energy, in J.
 WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along", "guide_work": "rails and steering",
@@ -96,18 +96,19 @@ def energy(run):
     found = account(run, "energy")
     rows = entries(found)
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6))
-    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, run.title)
     over_time(run, left)
     bars(right, rows, "J")
-    right.set(xlabel="over the whole run, J", title="Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
+    right.set(xlabel="over the whole run, J",
+              title="Energy by mechanism, each from its own sums\n" + verdict(found, "what is turned over"))
     return figure
 
 
 def momentum(run):
     found = account(run, "momentum")
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2))
-    figure.suptitle(f"{run.title}\nMomentum: changes of what holds it (purple) = impulses on it (blue) − residual; "
-                    + verdict(found, "the largest impulse"), fontsize=11, x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{run.title}\nMomentum: changes of what holds it (purple) = impulses on it (blue) − residual; "
+                    + verdict(found, "the largest impulse"), 11)
     for i, (axis, name) in enumerate(zip(axes, ("x, forward", "y, left", "z, up"))):
         rows = []
         for key, label in MOMENTUM.items():

@@ -6,7 +6,7 @@ import numpy as np
 
 from .run_data import Missing, read_object
 from .soil import COLOURS
-from .style import GREY, RED
+from .style import GREY, RED, heading
 from .units import naming
 
 COLUMNS = 3  # panels side by side
@@ -20,9 +20,8 @@ class Calibration:
         self.values = read_object(directory / "calibration.json")
 
     def title(self, figure, what):
-        figure.suptitle(f"{self.values.get('study', self.directory.name)} · {self.values.get('calibrate', '')} · "
-                        f"{what}",
-                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+        heading(figure, f"{self.values.get('study', self.directory.name)} · {self.values.get('calibrate', '')} · "
+                        f"{what}", 11)
 
     def targets(self):
         """What calibration.json says of each target, with x_name and y_name, and its points: x, data, sigma, model

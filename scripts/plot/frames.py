@@ -2,17 +2,15 @@
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Generic, TypeVar, overload
+from typing import Generic, TypeVar
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from .run_data import Missing, table
-
-Numbers = NDArray[np.float32]
 
 
 class Frame:
@@ -37,47 +35,29 @@ class Frame:
         return f"<{type(self).__name__} {self.index} at {self.time:g} s>"
 
 
+def _dataset(name, columns, about):
+    """An array of a frame, read when it is first used."""
+    def read(frame):
+        return frame.dataset(name, columns)
+    read.__doc__ = about
+    return cached_property(read)
+
+
 class TireFrame(Frame):
     """A tire's surface, world axes: x forward, y left, z up."""
 
-    @cached_property
-    def position(self) -> Numbers:
-        """Nodes, shape (n, 3), m."""
-        return self.dataset("position", 3)
-
-    @cached_property
-    def velocity(self) -> Numbers:
-        """Of the nodes, shape (n, 3), m/s."""
-        return self.dataset("velocity", 3)
-
-    @cached_property
-    def force(self) -> Numbers:
-        """On the nodes by the terrain, shape (n, 3), N."""
-        return self.dataset("force", 3)
-
-    @cached_property
-    def triangle(self) -> NDArray[np.int32]:
-        """Indices of the nodes of each triangle, shape (m, 3)."""
-        return self.dataset("triangle", 3)
+    position = _dataset("position", 3, "Nodes, shape (n, 3), m.")
+    velocity = _dataset("velocity", 3, "Of the nodes, shape (n, 3), m/s.")
+    force = _dataset("force", 3, "On the nodes by the terrain, shape (n, 3), N.")
+    triangle = _dataset("triangle", 3, "Indices of the nodes of each triangle, shape (m, 3).")
 
 
 class GrainFrame(Frame):
     """All grains of the terrain."""
 
-    @cached_property
-    def position(self) -> Numbers:
-        """Centres, shape (n, 3), m."""
-        return self.dataset("position", 3)
-
-    @cached_property
-    def speed(self) -> Numbers:
-        """Shape (n,), m/s."""
-        return self.dataset("speed", 0)
-
-    @cached_property
-    def radius(self) -> Numbers:
-        """Shape (n,), m."""
-        return self.dataset("radius", 0)
+    position = _dataset("position", 3, "Centres, shape (n, 3), m.")
+    speed = _dataset("speed", 0, "Shape (n,), m/s.")
+    radius = _dataset("radius", 0, "Shape (n,), m.")
 
 
 F = TypeVar("F", bound=Frame)
@@ -92,16 +72,8 @@ class Frames(Sequence[F], Generic[F]):
     def __len__(self) -> int:
         return len(self._frames)
 
-    @overload
-    def __getitem__(self, at: int) -> F: ...
-    @overload
-    def __getitem__(self, at: slice) -> list[F]: ...
-
     def __getitem__(self, at: int | slice) -> F | list[F]:
         return self._frames[at]
-
-    def __iter__(self) -> Iterator[F]:
-        return iter(self._frames)
 
     @property
     def times(self) -> NDArray[np.float64]:

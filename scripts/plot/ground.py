@@ -6,7 +6,7 @@ import numpy as np
 
 from .digits import digits
 from .run_data import Missing
-from .style import BLUE, GREY, ORANGE, RED
+from .style import BLUE, GREY, ORANGE, RED, heading
 
 NEAREST, FARTHEST = 0.642, 1.177  # tire radii behind the axle: where the rut is measured (terrain/rut.cpp)
 
@@ -31,7 +31,7 @@ def rut(run):
     window = sorted(end - sign * share * radius for share in (NEAREST, FARTHEST))
     figure = plt.figure(figsize=(12, 7.6))
     grid = figure.add_gridspec(2, 2, height_ratios=[1, 1.15], width_ratios=[1, 1.5])
-    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, run.title)
     top_view(figure, figure.add_subplot(grid[0, :]), after, depth, start, end, sign, tread, lateral, window)
     across(figure.add_subplot(grid[1, 0]), run, after, depth, end, tread, lateral, window)
     along(figure.add_subplot(grid[1, 1]), before, after, start, end, sign, tread, lateral, window)

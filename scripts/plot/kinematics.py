@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .run_data import Damaged, Missing, read_object
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY]
 DEGREES = 180.0 / np.pi
@@ -64,7 +64,7 @@ def draw(run, motion, against, panels, columns, what):
         raise Missing(f"kinematics.csv has no figures of the motion '{motion}'")
     rows = -(-len(shown) // columns)
     figure, axes = plt.subplots(rows, columns, figsize=(3.6 * columns, 2.7 * rows), squeeze=False, sharex=True)
-    figure.suptitle(f"{run.values.get('vehicle')} · {what}", fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{run.values.get('vehicle')} · {what}")
     places = dict(run.curves(motion, name))
     colour = {axle: COLOURS[k % len(COLOURS)] for k,
               axle in enumerate(dict.fromkeys(wheel.rsplit(" ", 1)[0] for wheel in places))}

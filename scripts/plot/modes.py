@@ -4,7 +4,7 @@ import numpy as np
 
 from .run_data import Missing, read_object
 from .soil import COLOURS, Soil
-from .style import BLUE, GREY, RED
+from .style import BLUE, GREY, RED, heading
 
 MOST_ORDERS, MOST_NUMBERS = 6, 3  # of one picture
 AMPLITUDE = 0.12                  # of the largest radius, of a picture
@@ -20,8 +20,7 @@ class Modes(Soil):
         self.values = read_object(directory / "summary.json")
 
     def title(self, figure, what):
-        figure.suptitle(f"{self.values.get('tire', self.directory.name)} · {what}",
-                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+        heading(figure, f"{self.values.get('tire', self.directory.name)} · {what}", 11)
 
     def frequencies(self):
         """{(order, number): Hz}"""

@@ -4,7 +4,7 @@ import numpy as np
 
 from .run_data import read_object
 from .soil import Soil
-from .style import BLUE, GREY, ORANGE
+from .style import BLUE, GREY, ORANGE, heading
 
 
 class Press(Soil):
@@ -15,8 +15,8 @@ class Press(Soil):
         self.values = read_object(directory / "summary.json")
 
     def title(self, figure, what):
-        figure.suptitle(f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",
-                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+        heading(figure, f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",
+                11)
 
 
 def load_deflection(run):

@@ -82,7 +82,8 @@ def check_types(content, kinds, where):
         value, name = content.get(key), NAMES[kind if isinstance(kind, type) else type(kind)]
         if value is None:
             continue
-        if not (is_number(value) if kind is float else isinstance(value, kind if isinstance(kind, type) else type(kind))):
+        if not (is_number(value) if kind is float else isinstance(value, kind if isinstance(kind,
+                                                                                            type) else type(kind))):
             raise Damaged(f"{where}: key '{key}': is {printable(json.dumps(value))[:60]}, expected {name}")
         if isinstance(kind, dict):
             check_types(value, kind, f"{where}: key '{key}'")
@@ -115,6 +116,38 @@ def table(file, name, columns):
     return values
 
 
+def read_table(path):
+    """Columns of a CSV file of numbers by their names; none where it has no line."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    names = lines[0].split(",") if lines else []
+    # A run that still continues may be half-way through its last line.
+    rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
+    try:
+        return dict(zip(names, np.array(rows, dtype=float).T)) if rows else {}
+    except ValueError as error:
+        raise Damaged(f"{path.name} holds something that is no number: {error}") from error
+
+
+def read_surface(path):
+    """(vertices, triangles, time) of a frame of a tire."""
+    with h5py.File(path, "r") as file:
+        vertex, triangle = table(file, "position", 3).astype(float), table(file, "triangle", 3).astype(int)
+        time = float(file.attrs["time_s"])
+    if not (len(vertex) and len(triangle) and np.isfinite(vertex).all() and 0 <= triangle.min()
+            and triangle.max() < len(vertex)):
+        raise Damaged(f"{path.name} holds no surface that could be drawn")
+    return vertex, triangle, time
+
+
+def read_grains(path, scale=1.0):
+    """(positions, radii) of a frame of the grains, enlarged."""
+    with h5py.File(path, "r") as file:
+        position, radius = (scale * table(file, *what).astype(float) for what in (("position", 3), ("radius", 0)))
+    if not len(radius) or len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
+        raise Damaged(f"{path.name} holds no grains that could be drawn")
+    return position, radius
+
+
 class HeightField:
     """Surface heights z (m) over cell centres x, y (m); NaN where no grain is."""
 
@@ -125,6 +158,17 @@ class HeightField:
         self.z, self.cell = np.asarray(z, float), cell
         self.x = x0 + cell * np.arange(self.z.shape[0])
         self.y = y0 + cell * np.arange(self.z.shape[1])
+
+
+def read_heights(path):
+    """(before, after), HeightField, of results.h5."""
+    if not path.exists():
+        raise Missing("there is no results.h5 yet")
+    with h5py.File(path, "r") as file:
+        if "terrain/height_after" not in file:
+            raise Missing("this ground has no surface that deforms")
+        return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
+                                 read_dataset(file, f"terrain/height_{when}_grid")) for when in ("before", "after"))
 
 
 class Run:
@@ -172,18 +216,7 @@ class Run:
     def table(self, name):
         """Columns of a table by their names; none when there is no such file."""
         path = self.directory / name
-        if not path.exists():
-            return {}
-        lines = path.read_text(encoding="utf-8").splitlines()
-        names = lines[0].split(",") if lines else []
-        # A run that still continues may be half-way through its last line.
-        rows = [line.split(",") for line in lines[1:] if line.count(",") == len(names) - 1]
-        if not rows:
-            return {}
-        try:
-            return dict(zip(names, np.array(rows, dtype=float).T))
-        except ValueError as error:
-            raise Damaged(f"{path.name} holds something that is no number: {error}") from error
+        return read_table(path) if path.exists() else {}
 
     def column(self, name):
         if name not in self.series:
@@ -192,15 +225,7 @@ class Run:
 
     def heights(self):
         """(before, after), HeightField."""
-        path = self.directory / "results.h5"
-        if not path.exists():
-            raise Missing("there is no results.h5 yet")
-        with h5py.File(path, "r") as file:
-            if "terrain/height_after" not in file:
-                raise Missing("this ground has no surface that deforms")
-            return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
-                                     read_dataset(file, f"terrain/height_{when}_grid"))
-                         for when in ("before", "after"))
+        return read_heights(self.directory / "results.h5")
 
     def frames(self, kind):
         """Frame files of `kind` ("tire0", "terrain") by index."""

@@ -1,12 +1,11 @@
 """A picture of the tire on the bed with its rut, from the last frames of a run."""
-import h5py
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import digits, with_error
 from .raster import Buffers, Camera, occlusion, shade, shadow
-from .run_data import Damaged, Missing, table
+from .run_data import Missing, read_grains, read_surface
 
 WIDTH, HEIGHT = 1500, 860  # pixels of the picture; rendered at twice that
 BEHIND, AHEAD = 1.45, 0.75  # m of the bed that are shown, from the axle of a tire as high as this one:
@@ -45,11 +44,7 @@ class Soil:
     """The grains worth drawing: near the top or near the cuts that face the camera."""
 
     def __init__(self, path, centre, sign, scale):
-        with h5py.File(path, "r") as file:
-            position = scale * table(file, "position", 3).astype(float)
-            radius = scale * table(file, "radius", 0).astype(float)
-        if len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
-            raise Damaged(f"{path.name} holds no grains that could be drawn")
+        position, radius = read_grains(path, scale)
         self.lateral = (position[:, 1].min(), position[:, 1].max())
         ahead = sign * (position[:, 0] - centre[0])
         inside = (ahead > -BEHIND) & (ahead < AHEAD)
@@ -76,13 +71,19 @@ def soil_colours(soil, surface, span):
     return (map_(share)[:, :3] * speckle).astype(np.float32)
 
 
+def spin_axis(vertex):
+    """Of a tire: the direction nearest to the left in which it is thinnest or symmetric."""
+    _, vectors = np.linalg.eigh(np.cov((vertex - vertex.mean(0)).T))
+    return vectors[:, int(np.argmax(np.abs(vectors[1])))]
+
+
 def add_tire(buffers, vertex, triangle):
+    """Also of a wheel that is steered or leans."""
     if buffers.depth_only:
         buffers.triangles(vertex, triangle)
         return
-    axle = 0.5 * (vertex.min(0) + vertex.max(0))
-    middle = vertex[triangle].mean(1) - axle
-    distance = np.hypot(middle[:, 0], middle[:, 2])
+    middle, axis = vertex[triangle].mean(1) - 0.5 * (vertex.min(0) + vertex.max(0)), spin_axis(vertex)
+    distance = np.linalg.norm(middle - (middle @ axis)[:, None] * axis, axis=1)
     rim = distance < 0.52 * distance.max()
     colour = np.where(rim[:, None], RIM, RUBBER).astype(np.float32)
     edge = outline(vertex, triangle) & ~rim[:, None]
@@ -123,17 +124,24 @@ def render(tire, soil, colours, centre, sign, ground):
     eye = target - 3.5 * along + [0.0, -4.5, 2.9]
     camera = Camera(eye, target, 2 * WIDTH, 2 * HEIGHT, field_of_view=np.radians(24.5))
     light = LIGHT * [sign, 1.0, 1.0] / np.linalg.norm(LIGHT)
-    picture = Buffers(camera)
-    draw(picture, tire, soil, colours, centre, sign, ground)
     from_light = Buffers(Camera(target + 5.0 * light, target, 1500, 1500, width_m=3.2), depth_only=True)
     draw(from_light, tire, soil, None, centre, sign, ground)
-    lit = shadow(picture, from_light, bias=0.006)
-    hidden = occlusion(picture, (6, 16, 40), 0.05)
+    image = picture(camera, lambda buffers: draw(buffers, tire, soil, colours, centre, sign, ground), light, from_light,
+                    0.006, 0.05)
+    return image, camera
+
+
+def picture(camera, draw_in, light, from_light, bias, depth):
+    """sRGB pixels at half the camera's resolution. `light` points to the light, which sees `from_light`, None: all;
+    `bias` of its shadows and `depth` of the occlusion, m."""
+    buffers = Buffers(camera)
+    draw_in(buffers)
+    lit = 1.0 if from_light is None else shadow(buffers, from_light, bias=bias)
     row = np.linspace(0.0, 1.0, camera.height)[:, None, None]
     background = np.broadcast_to((1 - row) * [0.80, 0.86, 0.92] + row * [0.97, 0.97, 0.96],
                                  (camera.height, camera.width, 3))
-    image = shade(picture, light, lit, hidden, background)
-    return image.reshape(HEIGHT, 2, WIDTH, 2, 3).mean((1, 3)), camera
+    image = shade(buffers, light, lit, occlusion(buffers, (6, 16, 40), depth), background)
+    return image.reshape(camera.height // 2, 2, camera.width // 2, 2, 3).mean((1, 3))
 
 
 def scale_of(height):
@@ -171,13 +179,7 @@ def annotate(axis, run, time, camera, centre, sign, ground, scale):
 
 def scene(run):
     tire_file, grain_file = last_frames(run)
-    with h5py.File(tire_file, "r") as file:
-        tire = table(file, "position", 3).astype(float), table(file, "triangle", 3).astype(int)
-        time = float(file.attrs["time_s"])
-    vertex, triangle = tire
-    if not (len(vertex) and len(triangle) and np.isfinite(vertex).all() and 0 <= triangle.min()
-            and triangle.max() < len(vertex)):
-        raise Damaged(f"{tire_file.name} holds no surface that could be drawn")
+    vertex, triangle, time = read_surface(tire_file)
     scale = scale_of(float(np.ptp(vertex[:, 2])))
     tire = scale * vertex, triangle
     centre, sign = 0.5 * (tire[0].min(0) + tire[0].max(0)), run.travel_sign

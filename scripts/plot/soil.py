@@ -2,8 +2,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .run_data import Damaged, Missing, read_object
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from .run_data import Missing, read_object, read_table
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
 
@@ -20,12 +20,7 @@ class Soil:
         path = self.directory / name
         if not path.exists():
             raise Missing(f"this test was not run: there is no {name}")
-        lines = path.read_text(encoding="utf-8").splitlines()
-        try:
-            rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
-            return dict(zip(lines[0].split(","), rows.T))
-        except (IndexError, ValueError) as error:
-            raise Damaged(f"{name} holds something that is no number: {error}") from error
+        return read_table(path)
 
     def text(self, name, factor=1.0, form=".3g"):
         """value ± standard error."""
@@ -38,10 +33,9 @@ class Soil:
         figure, axes = plt.subplots(1, columns, figsize=(6.4 * columns if columns > 1 else 8.4, height), squeeze=False)
         grains = self.values.get("grains") or {}
         note = ", quick look: no result to quote" if self.values.get("quick") else ""
-        figure.suptitle(f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
+        heading(figure, f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
                         f"{1e3 * grains.get('radius_m', np.nan):g} mm, cohesion "
-                        f"{1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}",
-                        fontsize=11, x=0.01, ha="left", fontweight="bold")
+                        f"{1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}", 11)
         return figure, axes[0]
 
 

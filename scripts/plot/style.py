@@ -14,10 +14,14 @@ LOOK = {
 plt.rcParams.update(LOOK)
 
 
+def heading(figure, text, size=11.5):
+    figure.suptitle(text, fontsize=size, x=0.01, ha="left", fontweight="bold")
+
+
 def panels(run, rows, height, **options):
     """A figure with `rows` axes, which share the time axis unless `sharex` is False."""
     figure, axes = plt.subplots(rows, 1, figsize=(10, height), squeeze=False, **{"sharex": True, **options})
-    figure.suptitle(run.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, run.title)
     return figure, axes[:, 0]
 
 

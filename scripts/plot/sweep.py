@@ -6,9 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import with_error
-from .run_data import Damaged, Missing, read_dataset, read_object
+from .run_data import Damaged, Missing, read_heights, read_object
 from .student import half_interval
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, GREY]
 
@@ -174,21 +174,9 @@ def passes(sweep):
         axis.set_xlabel("pass")
         axis.set_xticks(range(1, int(sweep.values["passes"]) + 1))
     profiles(sweep, right)
-    figure.suptitle(f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes",
-                    x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{sweep.title()} · {sweep.values.get('rest_s', 0):g} s of rest between passes")
     figure.tight_layout()
     return figure
-
-
-def heights(sweep, row):
-    """x, y of the cells, undisturbed and final height of a pass, m."""
-    import h5py
-    with h5py.File(sweep.directory / row["folder"] / "results.h5", "r") as file:
-        x0, y0, cell = read_dataset(file, "terrain/height_before_grid")
-        before, after = read_dataset(file, "terrain/height_before"), read_dataset(file, "terrain/height_after")
-    x = x0 + cell * np.arange(after.shape[0])
-    y = y0 + cell * np.arange(after.shape[1])
-    return x, y, before, after
 
 
 def rut_lines(sweep, axis, where, profile):
@@ -198,10 +186,11 @@ def rut_lines(sweep, axis, where, profile):
     for g, (label, rows) in enumerate(groups.items()):
         undisturbed, lines = None, {}
         for row in rows:
-            x, y, before, after = heights(sweep, row)
+            before, after = read_heights(sweep.directory / row["folder"] / "results.h5")
             if number(row["pass"]) == 1:
-                undisturbed = before
-            lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after - undisturbed))
+                undisturbed = before.z
+            x, y = after.x, after.y
+            lines.setdefault(int(row["pass"]), []).append(profile(x, y, sweep.summary(row), after.z - undisturbed))
         for n, of_runs in sorted(lines.items()):
             axis.plot(where(x, y), 1e3 * np.nanmean(of_runs, axis=0), color=COLOURS[g % len(COLOURS)],
                       alpha=0.35 + 0.65 * n / len(lines), lw=0.6 + 0.6 * n, label=f"after pass {n}" if not label
@@ -264,5 +253,5 @@ def beds(sweep):
         axis.legend(fontsize=8, loc="upper left")
         axis.margins(y=0.35)
     lost = f" · {len(sweep.failed)} failed" if sweep.failed else ""
-    figure.suptitle(f"{sweep.title()} on {len(at)} beds{lost}", x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{sweep.title()} on {len(at)} beds{lost}")
     return figure

@@ -2,7 +2,7 @@
 N."""
 import math
 
-# Ending of a name, its unit as results.h5 has it, the unit that people are shown and the factor to it. The first counts.
+# Ending of a name, its unit in results.h5, the unit that people are shown and the factor to it. The first counts.
 ENDINGS = (("kg_m_per_s", "kg m/s", "kg m/s", 1.0), ("Nm_per_rad", "N m/rad", "N m/rad", 1.0),
            ("rad_per_s", "rad/s", "rad/s", 1.0), ("m_per_s2", "m/s2", "m/s²", 1.0), ("m_per_s", "m/s", "m/s", 1.0),
            ("m_s", "m/s", "m/s", 1.0), ("rpm", "1/min", "1/min", 1.0), ("N_per_mm", "N/mm", "N/mm", 1.0),

@@ -5,7 +5,7 @@ import numpy as np
 
 from .ground import FARTHEST, NEAREST, median3, row_mean
 from .run_data import Damaged, Missing
-from .style import GREY
+from .style import GREY, heading
 from .vehicle_style import AXLES, SIDES
 
 LARGEST = 1e5  # cells that a way may be long
@@ -32,7 +32,7 @@ def rut(v):
     depth = median3(depth)
     figure = plt.figure(figsize=(13, 8.4))
     cells = figure.add_gridspec(2, 2, height_ratios=[1.15, 1], width_ratios=[1, 1.5])
-    figure.suptitle(v.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, v.title)
     top_view(figure, figure.add_subplot(cells[0, :]), v, after, depth)
     across(figure.add_subplot(cells[1, 0]), v, after, depth)
     along(figure.add_subplot(cells[1, 1]), v, after, depth)

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import gear_balance
 from .run_data import Missing
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 from .vehicle_run import running_mean
 from .vehicle_style import AXLES, grid, limits, mark_events, mark_window
 
@@ -13,15 +13,23 @@ HEATS = {"drive_work_J": "engine and motors give", "converter_heat_J": "converte
          "lowering_heat_J": "touch-down damper"}
 
 
+def lines(axis, v, ylabel, title, *curves):
+    """Curves over time: values, colour, label."""
+    for values, colour, label in curves:
+        axis.plot(v.time, values, color=colour, label=label)
+    axis.set(ylabel=ylabel, title=title)
+    return [values for values, _, _ in curves]
+
+
 def place(axis, v):
-    axis.plot(v.time, v["x_m"] - v["x_m"][0], color=BLUE, label="x − x at the start")
-    axis.plot(v.time, v["y_m"] - v["y_m"][0], color=ORANGE, label="y − y at the start")
-    axis.set(ylabel="distance, m", title="Displacement of the vehicle's origin")
+    lines(axis, v, "distance, m", "Displacement of the vehicle's origin",
+          *((v[f"{name}_m"] - v[f"{name}_m"][0], colour, f"{name} − {name} at the start")
+            for name, colour in (("x", BLUE), ("y", ORANGE))))
 
 
 def height(axis, v):
-    axis.plot(v.time, 1e3 * (v["z_m"] - v.wheels[0].surface), color=BLUE, label="origin above the undisturbed surface")
-    axis.set(ylabel="height, mm", title="Height")
+    lines(axis, v, "height, mm", "Height",
+          (1e3 * (v["z_m"] - v.wheels[0].surface), BLUE, "origin above the undisturbed surface"))
 
 
 def speeds(axis, v):
@@ -29,19 +37,18 @@ def speeds(axis, v):
     for number, axle in enumerate(v.order):
         wheels = v.of_axle(axle)
         values = running_mean(v.time, sum(wheel["spin_rad_per_s"] * wheel.radius for wheel in wheels) / len(wheels))
-        axis.plot(v.time, values, color=AXLES[number % len(AXLES)], lw=1.0, label=f"ω R, {v.axles[axle]} wheels")
-        curves.append(values)
-    axis.plot(v.time, v["speed_m_s"], color="black", lw=1.6, label="vehicle")
+        curves.append((values, AXLES[number % len(AXLES)], f"ω R, {v.axles[axle]} wheels"))
+    drawn = lines(axis, v, "speed, m/s", "Speed, and circumferential speed of the wheels (mean of 50 ms)", *curves,
+                  (v["speed_m_s"], "black", "vehicle"))
     if "target_speed_m_per_s" in v and v["target_speed_m_per_s"].any():
         axis.plot(v.time, v["target_speed_m_per_s"], color=GREEN, ls="--", lw=1.0, label="target")
-    limits(axis, v, [v["speed_m_s"], *curves])
-    axis.set(ylabel="speed, m/s", title="Speed, and circumferential speed of the wheels (mean of 50 ms)")
+    limits(axis, v, drawn)
 
 
 def angles(axis, v):
-    axis.plot(v.time, np.degrees(v["pitch_rad"]), color=BLUE, label="pitch, nose down positive")
-    axis.plot(v.time, np.degrees(v["roll_rad"]), color=ORANGE, label="roll, right side down positive")
-    axis.set(ylabel="angle, °", title="Pitch and roll")
+    lines(axis, v, "angle, °", "Pitch and roll",
+          (np.degrees(v["pitch_rad"]), BLUE, "pitch, nose down positive"),
+          (np.degrees(v["roll_rad"]), ORANGE, "roll, right side down positive"))
 
 
 def engine(axis, v):
@@ -63,29 +70,25 @@ def engine(axis, v):
 
 
 def inputs(axis, v):
-    for name, colour in (("throttle", GREEN), ("brake", RED), ("steering", BLUE)):
-        axis.plot(v.time, v[name], color=colour, label=name + (", left positive" if name == "steering" else ""))
-    axis.set(ylim=(min(-0.05, 1.1 * v["steering"].min()), 1.1), ylabel="input, –", title="The driver's inputs")
+    lines(axis, v, "input, –", "The driver's inputs", (v["throttle"], GREEN, "throttle"), (v["brake"], RED, "brake"),
+          (v["steering"], BLUE, "steering, left positive"))
+    axis.set_ylim(min(-0.05, 1.1 * v["steering"].min()), 1.1)
 
 
 def powers(axis, v):
-    curves = []
-    for name, colour, label in (("power_W", PURPLE, "engine and motors give"),
-                                ("wheel_power_W", BLUE, "arrives at the wheels"),
-                                ("soil_power_W", ORANGE, "tires and ground take")):
-        values = 1e-3 * running_mean(v.time, v[name])
-        axis.plot(v.time, values, color=colour, label=label)
-        curves.append(values)
-    limits(axis, v, curves)
-    axis.set(ylabel="power, kW", title="Power (mean of 50 ms)")
+    limits(axis, v, lines(axis, v, "power, kW", "Power (mean of 50 ms)",
+                          *((1e-3 * running_mean(v.time, v[f"{name}power_W"]), colour, label)
+                            for name, colour, label in (("", PURPLE, "engine and motors give"),
+                                                        ("wheel_", BLUE, "arrives at the wheels"),
+                                                        ("soil_", ORANGE, "tires and ground take")))))
 
 
 def heats(axis, v):
     largest = max(np.abs(v[name]).max() for name in HEATS if name in v)
-    for (name, label), colour in zip(HEATS.items(), (PURPLE, ORANGE, GREEN, GREY, RED, BLUE, SKY)):
-        if name in v and np.abs(v[name]).max() > 1e-3 * largest:
-            axis.plot(v.time, 1e-3 * v[name], color=colour, label=label)
-    axis.set(ylabel="kJ since the start", title="Work of the drive, and heat of the parts that dissipate it")
+    lines(axis, v, "kJ since the start", "Work of the drive, and heat of the parts that dissipate it",
+          *((1e-3 * v[name], colour, label)
+            for (name, label), colour in zip(HEATS.items(), (PURPLE, ORANGE, GREEN, GREY, RED, BLUE, SKY))
+            if name in v and np.abs(v[name]).max() > 1e-3 * largest))
 
 
 def vehicle(v):
@@ -112,7 +115,7 @@ def path(v):
     if "cross_track_error_m" not in v or not v["path_distance_m"].any():
         raise Missing("the driver follows no path")
     figure, (above, error, heading) = plt.subplots(3, 1, figsize=(12, 8.6), gridspec_kw={"height_ratios": [1.7, 1, 1]})
-    figure.suptitle(v.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, v.title)
     for wheel, (x, y) in zip(v.wheels, v.tracks()):
         colour = AXLES[v.order.index(wheel.axle) % len(AXLES)]
         above.plot(x, y, color=colour, lw=0.8, label=f"{v.axles[wheel.axle]} wheels" if wheel.side == "left" else None)

@@ -2,11 +2,10 @@
 import functools
 import pathlib
 
-import h5py
 import numpy as np
 
 from .digits import digits
-from .run_data import Damaged, Missing, read_object, table
+from .run_data import Damaged, Missing, read_object, read_surface
 from .units import is_number
 
 DATA = pathlib.Path(__file__).resolve().parents[2] / "vehicle" / "data"
@@ -122,7 +121,8 @@ class VehicleRun:
 
     @property
     def hard_ground(self):
-        return (self.run.told.get("terrain_engine") or (self.run.scenario.get("terrain") or {}).get("engine")) == "rigid"
+        return (self.run.told.get("terrain_engine") or (self.run.scenario.get("terrain")
+                                                        or {}).get("engine")) == "rigid"
 
     def of_axle(self, axle):
         return [wheel for wheel in self.wheels if wheel.axle == axle]
@@ -164,12 +164,7 @@ class VehicleRun:
             path = self.run.frames(f"tire{wheel.index}").get(index)
             if path is None:
                 raise Missing(f"there is no frame {index} of tire {wheel.index}")
-            with h5py.File(path, "r") as file:
-                vertex, triangle = table(file, "position", 3).astype(float), table(file, "triangle", 3).astype(int)
-                time = float(file.attrs["time_s"])
-            if not (len(vertex) and len(triangle) and np.isfinite(vertex).all() and 0 <= triangle.min()
-                    and triangle.max() < len(vertex)):
-                raise Damaged(f"{path.name} holds no surface that could be drawn")
+            vertex, triangle, time = read_surface(path)
             tires.append((vertex, triangle))
         return tires, time
 

@@ -1,6 +1,5 @@
 """A picture of a vehicle on its bed: all tires, a sketch of the chassis, ruts coloured by their depth; the camera goes
 with the vehicle. Obliquely from behind, cut open beside the right wheels, and from above."""
-import h5py
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
@@ -8,8 +7,8 @@ import numpy as np
 from . import scene
 from .digits import digits
 from .ground import median3
-from .raster import Buffers, Camera, occlusion, shade, shadow
-from .run_data import Damaged, Missing, table
+from .raster import Buffers, Camera
+from .run_data import Damaged, Missing, read_grains
 
 WIDTH, HEIGHT, STRIP = 1500, 800, 400  # pixels: the oblique view; height of those below it, each half as wide
 TITLE = 50
@@ -31,9 +30,9 @@ class Bed:
     """Grains of an instant in the axes of the vehicle: forward, left, up from the place of its origin on the ground."""
 
     def __init__(self, v, path, before, origin, yaw, scale):
-        position, self.radius = grains(path, scale)
+        position, self.radius = read_grains(path, scale)
         self.cell = 3.0 * self.radius.max()
-        depth = self._depth(position, *grains(before, scale))
+        depth = self._depth(position, *read_grains(before, scale))
         turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
         self.position = np.column_stack([(position[:, :2] - origin[:2]) @ turn, position[:, 2]])
         ix, iy = self._cells(position)
@@ -72,15 +71,6 @@ class Bed:
         near = 3.0 * self.radius.max()
         edge = (y < left[0] + near) | ((x < ahead[0] + near) & cut) | (self.from_wall < near)
         return np.flatnonzero(inside & (edge | (self.below < 4.0 * self.radius.max())))
-
-
-def grains(path, scale):
-    with h5py.File(path, "r") as file:
-        position, radius = scale * table(file, "position",
-                                         3).astype(float), scale * table(file, "radius", 0).astype(float)
-    if not len(radius) or len(position) != len(radius) or not (np.isfinite(position).all() and (radius > 0.0).all()):
-        raise Damaged(f"{path.name} holds no grains that could be drawn")
-    return position, radius
 
 
 def colours(depth, span, number):
@@ -147,12 +137,6 @@ def add_solid(buffers, vertex, triangle, colour, gloss=0.10):
                       np.tile(np.float32(colour), (len(triangle), 1)), gloss)
 
 
-def spin_axis(vertex):
-    """Of a tire: the direction nearest to the left in which it is thinnest or symmetric."""
-    _, vectors = np.linalg.eigh(np.cov((vertex - vertex.mean(0)).T))
-    return vectors[:, int(np.argmax(np.abs(vectors[1])))]
-
-
 class Stage:
     """What is drawn, in the vehicle's axes, enlarged by `scale`."""
 
@@ -164,7 +148,7 @@ class Stage:
         turn = np.array([[np.cos(yaw), np.sin(yaw), 0.0], [-np.sin(yaw), np.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
         foot = np.array([origin[0], origin[1], 0.0])
         self.tires = [(self.scale * (vertex - foot) @ turn.T, triangle) for vertex, triangle in tires]
-        half_tire = 0.5 * float(np.median([np.ptp(vertex @ spin_axis(vertex)) for vertex, _ in self.tires]))
+        half_tire = 0.5 * float(np.median([np.ptp(vertex @ scene.spin_axis(vertex)) for vertex, _ in self.tires]))
         self.solids = [(vertex @ (turn @ rotation).T + [0.0, 0.0, self.scale * origin[2]], triangle, colour)
                        for vertex, triangle, colour in sketch(v, self.scale, half_tire)]
         self.solids += beams(v, self.tires, self.scale)
@@ -196,23 +180,9 @@ class Stage:
             add_bottom(buffers, self.bed, soil)
             buffers.spheres(soil[0], soil[1], None if buffers.depth_only else colours(soil[2], self.span, len(soil[1])))
         for vertex, triangle in self.tires:
-            add_tire(buffers, vertex, triangle)
+            scene.add_tire(buffers, vertex, triangle)
         for vertex, triangle, colour in self.solids:
             add_solid(buffers, vertex, triangle, colour)
-
-
-def add_tire(buffers, vertex, triangle):
-    """As scene.add_tire, but for a wheel that is steered or leans."""
-    if buffers.depth_only:
-        buffers.triangles(vertex, triangle)
-        return
-    middle = vertex[triangle].mean(1) - 0.5 * (vertex.min(0) + vertex.max(0))
-    axis = spin_axis(vertex)
-    distance = np.linalg.norm(middle - (middle @ axis)[:, None] * axis, axis=1)
-    rim = distance < 0.52 * distance.max()
-    colour = np.where(rim[:, None], scene.RIM, scene.RUBBER).astype(np.float32)
-    edge = scene.outline(vertex, triangle) & ~rim[:, None]
-    buffers.triangles(vertex, triangle, scene.vertex_normals(vertex, triangle), colour, 0.16, edge)
 
 
 def clip(polygon, axis, limit, sign):
@@ -255,16 +225,8 @@ def add_board(buffers, stage):
 
 
 def picture(stage, soil, camera, light):
-    """sRGB pixels at half the camera's resolution."""
-    buffers = Buffers(camera)
-    stage.draw(buffers, soil)
-    lit = 1.0 if light is None else shadow(buffers, light, bias=0.004 * stage.size)
-    hidden = occlusion(buffers, (6, 16, 40), 0.02 * stage.size)
-    row = np.linspace(0.0, 1.0, camera.height)[:, None, None]
-    background = np.broadcast_to((1 - row) * [0.80, 0.86, 0.92] + row * [0.97, 0.97, 0.96],
-                                 (camera.height, camera.width, 3))
-    image = shade(buffers, LIGHT, lit, hidden, background)
-    return image.reshape(camera.height // 2, 2, camera.width // 2, 2, 3).mean((1, 3))
+    return scene.picture(camera, lambda buffers: stage.draw(buffers, soil), LIGHT, light, 0.004 * stage.size,
+                         0.02 * stage.size)
 
 
 def shadows(stage, soil):

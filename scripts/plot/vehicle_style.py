@@ -4,7 +4,7 @@ import numpy as np
 
 from . import axles, events
 from .run_data import Missing
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, heading
 from .vehicle_run import running_mean
 
 SIDES = {"left": BLUE, "right": ORANGE}
@@ -93,7 +93,7 @@ def grid(v, rows, columns, height, width=None, **options):
     """A figure of panels that share the time axis."""
     figure, axes = plt.subplots(rows, columns, figsize=(width or min(5.6 * columns + 1.0, 16.0), height), sharex=True,
                                 squeeze=False, **options)
-    figure.suptitle(v.title, fontsize=11.5, x=0.01, ha="left", fontweight="bold")
+    heading(figure, v.title)
     for axis in axes[-1]:
         axis.set(xlabel="time, s", xlim=(0.0, v.time[-1]))
     return figure, axes

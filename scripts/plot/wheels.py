@@ -4,14 +4,9 @@ import numpy as np
 
 from . import axles, events
 from .run_data import Missing
-from .style import GREY, RED
+from .style import GREY, RED, heading
 from .vehicle_run import running_mean
 from .vehicle_style import AXLES, SIDES, grid, limits, line, mark_events, mark_window, steadiness
-
-
-def columns_of(v):
-    """(position in the figure, axle) from the front."""
-    return list(enumerate(v.order))
 
 
 def finish(axes, v, titles):
@@ -32,15 +27,15 @@ def wheel_forces(v):
               "lateral force (ISO-W y), to the left", "vertical force (ISO-W z); dashed: load at rest"]
     figure, axes = grid(v, 4, len(v.axles), 10.5, sharey="row")
     curves = [[], [], [], []]
-    for column, axle in columns_of(v):
+    for column, axle in enumerate(v.order):
         for wheel in v.of_axle(axle):
             colour = SIDES[wheel.side]
-            for row, name in ((0, "iso_force_x_N"), (1, "tractive_effort_N"),
-                              (2, "iso_force_y_N"), (3, "iso_force_z_N")):
-                line(axes[row][column], v.time, v.time, wheel[name], colour, wheel.side)
-                curves[row].append(wheel[name])
-            line(axes[1][column], v.time, v.time, -wheel["terrain_resistance_N"], colour, style="--")
-            curves[1].append(-wheel["terrain_resistance_N"])
+            for row, values, style in (
+                    (0, wheel["iso_force_x_N"], "-"), (1, wheel["tractive_effort_N"], "-"),
+                    (2, wheel["iso_force_y_N"], "-"), (3, wheel["iso_force_z_N"], "-"),
+                    (1, -wheel["terrain_resistance_N"], "--")):
+                line(axes[row][column], v.time, v.time, values, colour, wheel.side if style == "-" else None, style)
+                curves[row].append(values)
             axes[3][column].axhline(v.loads[wheel.index], color=colour, ls="--", lw=0.8)
     finish(axes, v, titles)
     for row, found in zip(axes, curves):
@@ -62,7 +57,7 @@ def wheel_motion(v):
     figure, axes = grid(v, 5, len(v.axles), 12.5, sharey="row")
     curves = [[], [], [], [], []]
     _, slow = events.drive_off(v)
-    for column, axle in columns_of(v):
+    for column, axle in enumerate(v.order):
         for wheel in v.of_axle(axle):
             colour = SIDES[wheel.side]
             axes[0][column].plot(v.time, running_mean(v.time, wheel["speed_m_per_s"]) / wheel.radius,
@@ -102,8 +97,8 @@ def front_and_rear(v):
              ("terrain_resistance_N", "resistance of the axle's wheels, N", 1.0, True),
              ("sinkage_m", "sinkage below the undisturbed surface, mm", 1e3, False)]
     figure, axes = plt.subplots(2, 2, figsize=(13, 7.6), sharex=True)
-    figure.suptitle(f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the "
-                    "same soil", fontsize=11, x=0.01, ha="left", fontweight="bold")
+    heading(figure, f"{v.title}\nMeans of each axle over its place on the bed: values above each other are for the "
+                    "same soil", 11)
     begin = events.first(v.time >= quiet_time(v)) or 0
     for axis, (column, title, factor, total) in zip(axes.flat, shown):
         curves = []

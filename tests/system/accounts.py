@@ -2,7 +2,7 @@
 """The accounts of a run: they close on grains and on hard ground, better with a smaller step, survive a resume, and are
 told."""
 
-from program import SystemTest, changed, furrow, main, read_json, rows_of, write_scenario
+from program import SystemTest, changed, furrow, main, rows_of, write_scenario
 
 FLEXIBLE = changed(tire={"rigid": False, "elements_circumference": 30, "elements_width": 6},
                    terrain={"radius": 0.03, "cohesion": 20e3, "layers": 3, "length": 1.4, "width": 0.4},
@@ -13,9 +13,8 @@ FLEXIBLE = changed(tire={"rigid": False, "elements_circumference": 30, "elements
 
 class Accounts(SystemTest):
     def accounts(self, name, *arguments, scenario=FLEXIBLE):
-        path = write_scenario(self.folder, scenario)
-        done = self.furrow("run", path, "--no-plots", "--out", self.folder / name, *arguments)
-        return read_json(self.folder / name / "summary.json")["accounts"], done.stderr
+        told, said = self.run_of(name, scenario, *arguments)
+        return told["accounts"], said
 
     def check(self, accounts):
         energy, momentum = accounts["energy"], accounts["momentum"]
@@ -76,7 +75,7 @@ class Accounts(SystemTest):
         path = write_scenario(self.folder, dict(FLEXIBLE, checkpoint={"at_end": True}))
         self.furrow("run", path, "--no-plots", "--out", self.folder / "part", "--set", "run.end=0.08")
         self.furrow("resume", self.folder / "part", "--until", "0.12", "--no-plots")
-        resumed = read_json(self.folder / "part/summary.json")["accounts"]
+        resumed = self.summary("part")["accounts"]
         self.assertEqual(resumed, whole)
         self.assertEqual((self.folder / "part/timeseries_accounts.csv").read_bytes(),
                          (self.folder / "whole/timeseries_accounts.csv").read_bytes())

@@ -16,13 +16,9 @@ STUDENT = {2: 4.302653, 3: 3.182446}  # 97.5 %
 
 
 class Beds(SystemTest):
-    def beds(self, *arguments, code=0):
+    def beds(self, *arguments, **expected):
         path = write_scenario(self.folder, changed(output={"frame_interval": 0}))
-        done = self.furrow("run", path, *arguments, code=code)
-        return done
-
-    def summary(self, run, name="summary.json"):
-        return read_json(self.folder / run / name)
+        return self.furrow("run", path, *arguments, **expected)
 
     def check_means(self, run, names):
         """Against the summaries of the beds themselves."""
@@ -43,8 +39,7 @@ class Beds(SystemTest):
         self.assertEqual(len({bed["state_hash"] for bed in beds}), len(beds))
 
     def test_beds_are_run_averaged_kept_and_extended(self):
-        done = self.beds("--seeds", "3", "--jobs", "2", *SHORT)
-        self.assertEqual(done.stdout, "results/small-001\n")
+        done = self.beds("--seeds", "3", "--jobs", "2", *SHORT, prints="results/small-001\n")
         run, names = self.folder / "results" / "small-001", ["seed1", "seed2", "seed3"]
         self.check_means(run, names)
         self.assertIn("furrow: 3 beds: drawbar pull ", done.stderr)
@@ -64,9 +59,8 @@ class Beds(SystemTest):
         self.check_means(run, [*names, "seed4"])
         self.assertEqual(furrow("report", run, cwd=self.folder).stdout, f"{run}/beds.png\n{run}/report.html\n")
 
-        other = self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set", "rig.slip=0.2", code=2)
-        self.assertIn("holds beds of another scenario or other settings, expected a new folder or --overwrite",
-                      other.stderr)
+        self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set", "rig.slip=0.2", code=2,
+                  says="holds beds of another scenario or other settings, expected a new folder or --overwrite")
         (run / "notes.txt").write_text("mine")
         self.beds("--seeds", "2", "--out", run, "--no-plots", *SHORT, "--set",
                   "rig.slip=0.2", "--set", "run.seed=7", "--overwrite")
@@ -85,8 +79,7 @@ class Beds(SystemTest):
         self.ended(process, 75, says="run the same command with --out beds")
         self.assertFalse((self.folder / "beds" / "summary.json").exists())
         self.assertEqual(survivors(self.folder), [])
-        done = self.beds("--out", "beds", *settings)
-        self.assertIn("run 1 of 2 (run.seed=1) continues", done.stderr)
+        self.beds("--out", "beds", *settings, says="run 1 of 2 (run.seed=1) continues")
         self.beds("--out", "whole", *settings)
         self.assertEqual(differences(self.folder / "whole", self.folder / "beds"), [])
         self.furrow("resume", "beds", code=2, says="holds several runs, expected the folder of one of them")
@@ -98,11 +91,9 @@ class Beds(SystemTest):
         (self.folder / "beds" / "seed2").rename(kept)
         (self.folder / "beds" / "seed2").mkdir()
         (self.folder / "beds" / "seed2" / "mine.txt").write_text("stands in the way")
-        done = self.beds("--seeds", "3", "--out", "beds", *SHORT, code=2)
-        self.assertIn("seed2 failed; the means are over the other 2 beds", done.stderr)
-        self.assertIn("furrow: 2 beds: ", done.stderr)
-        self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
-        self.assertIn("not every bed finished: seed2: ", done.stderr)
+        self.beds("--seeds", "3", "--out", "beds", *SHORT, code=2,
+                  says=("seed2 failed; the means are over the other 2 beds", "furrow: 2 beds: ",
+                        "not every bed finished: seed2: "), errors=1)
         self.assertFalse((self.folder / "beds" / "summary.json").exists())
         failed = self.summary("beds", "summary_failed.json")
         self.assertEqual((failed["failed"]["beds"], failed["failed"]["exit_code"], failed["beds"]["n"]),
@@ -132,8 +123,7 @@ class Beds(SystemTest):
                              (["--seeds", "3", "--set", "run.seed=9007199254740990"],
                               "key 'run.seed': is 9007199254740990, expected at most"),
                              (["--seeds", "3", "--set", "rig.slip=3"], "key 'rig.slip': is 3, expected")):
-            done = self.beds(*flags, code=2)
-            self.assertIn(words, done.stderr)
+            self.beds(*flags, code=2, says=words)
             self.assertFalse((self.folder / "results").exists(), flags)
 
     def test_beds_and_studies_keep_to_their_own_folders(self):
@@ -142,9 +132,9 @@ class Beds(SystemTest):
                                                         "set": {"run.end": 0.03}})
         self.furrow("sweep", study, "--out", "beds", code=2, says="holds the beds of 'furrow run --seeds'")
         self.furrow("sweep", study, "--out", "study")
-        self.assertIn("holds a study, expected a new folder or that of beds",
-                      self.beds("--seeds", "2", "--out", "study", "--overwrite", code=2).stderr)
-        self.assertIn("holds a run", self.beds("--seeds", "2", "--out", "beds/seed1", "--overwrite", code=2).stderr)
+        self.beds("--seeds", "2", "--out", "study", "--overwrite", code=2,
+                  says="holds a study, expected a new folder or that of beds")
+        self.beds("--seeds", "2", "--out", "beds/seed1", "--overwrite", code=2, says="holds a run")
 
 
 if __name__ == "__main__":

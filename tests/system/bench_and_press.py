@@ -17,8 +17,7 @@ COARSE = ("--elements-circumference", "24", "--elements-width", "6", "--warm",
 
 class Bench(SystemTest):
     def bench(self, *more):
-        done = self.furrow("bench", "tire", *COARSE, *more)
-        return json.loads(done.stdout)
+        return json.loads(self.furrow("bench", "tire", *COARSE, *more).stdout)
 
     def test_keys_and_same_state_for_any_threads(self):
         one, two = self.bench(), self.bench("--threads", "2")
@@ -59,17 +58,16 @@ class Bench(SystemTest):
 
 
 class Press(SystemTest):
-    def press(self, *more, deflection="0.012", points="4"):
+    def press(self, *more, deflection="0.012", points="4", **expected):
         path = write_json(self.folder / "pressed.json", SCENARIO)
-        return furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points,
-                      *more, cwd=self.folder)
+        return self.furrow("press", path, "--out", self.folder / "out", "--deflection", deflection, "--points", points,
+                           "--overwrite", *more, **expected)
 
     def test_plate(self):
         # Two rows of nodes or more touch: one alone has no length.
-        done = self.press("--load", "2000", "--set", "tire.elements_circumference=60")
-        self.assertRegex(done.stderr, r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, "
-                         r"footprint \d[\d.]* mm long, [\d.]+ mm wide")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.press("--load", "2000", "--set", "tire.elements_circumference=60",
+                          matches=r"a load of 2000 N deflects the tire by [\d.]+ mm: secant stiffness \d+ kN/m, "
+                          r"footprint \d[\d.]* mm long, [\d.]+ mm wide")
         out = self.folder / "out"
         self.assertEqual(done.stdout.strip(), str(out))
         summary = read_json(out / "summary.json")
@@ -93,37 +91,32 @@ class Press(SystemTest):
         self.assertEqual(forces, sorted(forces))
 
     def test_without_a_load_it_is_pressed_by_what_its_wheel_carries(self):
-        done = self.press("--set", "rig.carrier_mass=null", "--set", "rig.load=1500",
-                          "--set", "tire.elements_circumference=60")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertAlmostEqual(read_json(self.folder / "out/summary.json")["load_N"], 1500, delta=1e-6)
+        self.press("--set", "rig.carrier_mass=null", "--set", "rig.load=1500",
+                   "--set", "tire.elements_circumference=60")
+        self.assertAlmostEqual(self.summary()["load_N"], 1500, delta=1e-6)
 
     def test_what_wrinkles_and_what_buckles_on_the_way_is_named(self):
-        done = self.press("--set", "tire.file=hmmwv_layered.json", "--set",
-                          "tire.elements_circumference=60", "--set", "tire.elements_width=12")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("furrow: warning: this tire wrinkles under its pressure", done.stderr)
+        self.press("--set", "tire.file=hmmwv_layered.json", "--set", "tire.elements_circumference=60",
+                   "--set", "tire.elements_width=12", says="furrow: warning: this tire wrinkles under its pressure")
         self.furrow("press", self.folder / "pressed.json", "--out", self.folder / "out", "--overwrite", "--deflection",
                     "0.02", "--points", "5", "--load", "1000", "--set", "tire.pressure=70000",
                     "--set", "tire.elements_circumference=60", "--set", "tire.elements_width=12",
                     matches=r"furrow: warning: this tire buckles while it is pressed, first on the way to 0\.\d+ m")
-        summary = read_json(self.folder / "out/summary.json")
+        summary = self.summary()
         self.assertEqual((summary["statically_stable"], summary["stable_while_pressed"]), (True, False))
         self.assertLess(summary["director_runout_rad"], 1e-6)
 
     def test_a_cleat_that_the_tire_does_not_touch_is_told(self):
-        done = self.press("--on", "cleat", "--cleat-height", "0.1", "--cleat-position", "0.4")
-        self.assertIn("warning: within a deflection of 0.012 m the tire touches nothing", done.stderr)
-        self.assertIn("(--cleat-position)", done.stderr)
+        self.press("--on", "cleat", "--cleat-height", "0.1", "--cleat-position", "0.4",
+                   says=("warning: within a deflection of 0.012 m the tire touches nothing", "(--cleat-position)"))
 
     def test_cleat_is_softer_than_a_plate(self):
-        done = self.press("--on", "cleat", "--cleat-width", "0.004", "--load", "1e5")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        cleat = read_json(self.folder / "out/summary.json")
+        self.press("--on", "cleat", "--cleat-width", "0.004", "--load", "1e5")
+        cleat = self.summary()
         self.assertIsNone(cleat["deflection_m"])  # the load is not reached
         self.assertLess(cleat["loading_unloading_difference"], 1e-4)
-        done = self.press("--overwrite", "--load", "1e5")
-        plate = read_json(self.folder / "out/summary.json")
+        self.press("--load", "1e5")
+        plate = self.summary()
         self.assertLess(cleat["footprint"]["force_N"], plate["footprint"]["force_N"])
 
     def test_a_scenario_says_how_its_tire_is_pressed_and_options_override_it(self):
@@ -132,7 +125,7 @@ class Press(SystemTest):
         deflections = []
         for more in ((), ("--cleat-width", "0.1"), ("--set", "press.cleat_width=0.1")):
             self.furrow("press", "cleat_press.json", "--out", self.folder / "out", "--overwrite", *coarse, *more)
-            summary = read_json(self.folder / "out/summary.json")
+            summary = self.summary()
             self.assertEqual((summary["obstacle"], summary["cleat_width_m"], summary["cleat_height_m"]),
                              ("cleat", 0.1 if more else 0.051, 0.1))
             deflections.append(summary["deflection_m"])
@@ -159,7 +152,7 @@ class Press(SystemTest):
                            ("profile", ("--on", "profile", "--profile", profile))):
             self.furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.03",
                         "--points", "6", "--load", "8000", *more)
-            summary = read_json(self.folder / "out/summary.json")
+            summary = self.summary()
             self.assertEqual(summary["obstacle"], name)
             self.assertLess(summary["max_residual"], 1e-6)
             self.assertLess(summary["loading_unloading_difference"], 1e-6)
@@ -175,7 +168,7 @@ class Press(SystemTest):
         self.furrow("press", path, "--set", "tire.file=hmmwv_lumped.json", "--set", "tire.elements_circumference=30",
                     "--set", "tire.elements_width=6", "--deflection", "0.005", "--points", "1", "--load", "100",
                     "--out", self.folder / "shell")
-        summary = read_json(self.folder / "shell/summary.json")
+        summary = self.summary("shell")
         self.assertEqual(keys[0], sorted(summary) + sorted(summary["sticking_stiffness"])
                          + sorted(summary["footprint"]))
         self.assertIsNone(summary["stiffness_missing_because"])
@@ -194,7 +187,7 @@ class Press(SystemTest):
                            ("profile", ("--on", "profile", "--profile", profile))):
             self.furrow("press", path, "--out", self.folder / "out", "--overwrite", "--deflection", "0.08",
                         "--points", "4", "--load", "15000", *more)
-            summary = read_json(self.folder / "out/summary.json")
+            summary = self.summary()
             self.assertEqual(summary["obstacle"], name)
             self.assertIsNone(summary["pressure_Pa"])
             sticking = summary["sticking_stiffness"]
@@ -217,9 +210,8 @@ class Press(SystemTest):
     def test_camber_tilts_the_plate(self):
         force, moment = {}, {}
         for angle in ("0.08", "-0.08", "0"):
-            done = self.press("--camber", angle, "--overwrite", "--load", "1500")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            summary = read_json(self.folder / "out/summary.json")
+            self.press("--camber", angle, "--load", "1500")
+            summary = self.summary()
             self.assertEqual(summary["camber_rad"], float(angle))
             force[angle], moment[angle] = summary["deflection_m"], summary["rim_moment_Nm"][0]
             self.assertAlmostEqual(summary["rim_force_N"][2], 1500, delta=1.5)
@@ -228,37 +220,33 @@ class Press(SystemTest):
         self.assertNotAlmostEqual(force["0.08"], force["0"], places=4)
         self.assertAlmostEqual(moment["0.08"], -moment["-0.08"], places=2)
         self.assertLess(moment["0.08"], -1)  # leaning to the right it stands on its right shoulder
-        done = self.press("--set", "press.camber=0.08", "--overwrite", "--load", "1500")
-        self.assertAlmostEqual(read_json(self.folder / "out/summary.json")["deflection_m"], force["0.08"], places=12)
-        done = self.press("--set", "press.camber=0.02", "--set", "tire.file=hmmwv_ring.json", "--overwrite")
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("pressed.json: key 'press.camber': is 0.02 rad, expected 0: a flexible ring is alike across its "
-                      "width", done.stderr)
+        self.press("--set", "press.camber=0.08", "--load", "1500")
+        self.assertAlmostEqual(self.summary()["deflection_m"], force["0.08"], places=12)
+        self.press("--set", "press.camber=0.02", "--set", "tire.file=hmmwv_ring.json", code=2,
+                   says="pressed.json: key 'press.camber': is 0.02 rad, expected 0: a flexible ring is alike across "
+                   "its width")
 
     def test_a_curve_that_ends_early_is_written(self):
-        done = self.press("--load", "5000", deflection="0.2", points="8")
-        self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertRegex(done.stderr, r"furrow: error: the curve ends early: .*; up to 0\.\d+ m it was found")
-        summary = read_json(self.folder / "out/summary.json")
+        self.press("--load", "5000", deflection="0.2", points="8", code=3,
+                   matches=r"furrow: error: the curve ends early: .*; up to 0\.\d+ m it was found")
+        summary = self.summary()
         self.assertIn("up to", summary["ended_because"])
         lines = (self.folder / "out/press.csv").read_text().splitlines()
         self.assertTrue(2 < len(lines) < 1 + 9, lines)
         self.assertGreater(summary["footprint"]["force_N"], 0)
 
     def test_a_pressure_that_changes_is_said_to_count_as_it_begins(self):
-        done = self.press("--set", "tire.pressure=[[0, 200000], [1, 100000]]", "--load", "1500")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("tire.pressure changes in time: the tire is pressed at that of t = 0, 200000 Pa", done.stderr)
-        self.assertEqual(read_json(self.folder / "out/summary.json")["pressure_Pa"], 200000)
+        self.press("--set", "tire.pressure=[[0, 200000], [1, 100000]]", "--load", "1500",
+                   says="tire.pressure changes in time: the tire is pressed at that of t = 0, 200000 Pa")
+        self.assertEqual(self.summary()["pressure_Pa"], 200000)
 
     def test_a_static_tire_does_not_run(self):
         tire = read_json(ROOT / "tire/data/aligator_planar.json")
         write_json(self.folder / "tire.json", {**tire, "integrator": "runge_kutta_4"})
         path = write_json(self.folder / "static.json", {**SCENARIO, "tire": {"file": "tire.json"}})
         for command in ("validate", "run"):
-            self.furrow(command, path, code=2,
-                        says="key 'tire.file': is a planar finite-element tire, whose key 'integrator' is "
-                        "'runge_kutta_4'")
+            self.furrow(command, path, code=2, says="key 'tire.file': is a planar finite-element tire, whose key "
+                        "'integrator' is 'runge_kutta_4'")
             self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json", "tire.json"])
         self.furrow("validate", path, "--set", "tire.rigid=true")
 
@@ -273,9 +261,7 @@ class Press(SystemTest):
                            (("--on", "profile", "--profile", "road.csv", "--cleat-position", "0"), "--cleat-position"),
                            (("--camber", "0.8"), "--camber"), (("--camber", "nan"), "--camber"),
                            (("--set", "press.camber=1"), "press.camber")):
-            done = self.press(*more)
-            self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertIn(word, done.stderr)
+            self.press(*more, code=2, says=word)
             self.assertFalse((self.folder / "out").exists())
 
 

@@ -229,8 +229,7 @@ class Calibrate(SystemTest):
 
     def test_explain_knows_the_keys_of_calibrations(self):
         def told(key):
-            done = self.furrow("explain", key)
-            return done.stdout
+            return self.furrow("explain", key).stdout
         for key in ("calibrate.targets", "calibrate.evaluations", "calibrate.grains"):
             self.assertIn(key, told("calibrate"))
         self.assertIn("a list of objects, each with data", told("calibrate.targets"))

@@ -3,6 +3,7 @@ comparisons."""
 import os
 import pathlib
 import shutil
+import signal
 import sys
 import tempfile
 
@@ -56,17 +57,17 @@ class CheckpointTest(SystemTest):
         self.run_folder = self.folder / "out"
         self.mark = self.folder / "fired"
 
-    def program(self, *arguments, code=0, **options):
-        done = self.furrow(*arguments, program=FAULTY, **options, code=code)
+    def program(self, *arguments, **expected):
+        done = self.furrow(*arguments, program=FAULTY, **expected)
         self.no_process_left()
         return done
 
     def fault(self, point, rank, count, action):
         return {"FURROW_FAULT": f"{point}:{rank}:{count}:{action}", "FURROW_FAULT_FIRED": str(self.mark)}
 
-    def run_with_fault(self, point, rank, count, action, code=4, flags=(), run=None):
-        done = self.program("run", self.path, "--out", run or self.run_folder, "--no-plots", *flags, code=code,
-                            env=self.fault(point, rank, count, action))
+    def run_with_fault(self, point, rank, count, action, code=4, flags=(), **expected):
+        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", *flags, code=code,
+                            env=self.fault(point, rank, count, action), **expected)
         self.assertTrue(self.mark.exists(), f"the fault {point} of rank {rank} did not fire")
         return done
 
@@ -78,8 +79,29 @@ class CheckpointTest(SystemTest):
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
         return process
 
-    def resume(self, *flags, code=0, run=None):
-        return self.program("resume", run or self.run_folder, "--no-plots", *flags, code=code)
+    def resume(self, *flags, run=None, **expected):
+        return self.program("resume", run or self.run_folder, "--no-plots", *flags, **expected)
+
+    def continues(self, run=None, leave_out=()):
+        """The run goes on to the end of the whole one. @param leave_out files that differ by intent"""
+        self.resume(run=run)
+        self.same_as_whole(run, leave_out)
+
+    def afresh(self):
+        """Nothing is left of the run and of its fault."""
+        shutil.rmtree(self.run_folder, ignore_errors=True)
+        self.mark.unlink(missing_ok=True)
+
+    def released(self, process, code=0, **told):
+        """A run that has waited goes on to this exit code. @returns what it said on standard error"""
+        self.mark.unlink()
+        return self.ended(process, code, **told)
+
+    def told_to_stop(self, process, number=signal.SIGTERM):
+        """A run that waits has noticed the signal."""
+        process.send_signal(number)
+        while "stopping" not in process.stderr.readline():
+            pass
 
     def no_process_left(self):
         wait_for(lambda: not survivors(self.folder), 10, f"all processes end, still there: {survivors(self.folder)}")
@@ -90,6 +112,13 @@ class CheckpointTest(SystemTest):
         for name in ("summary.json", "results.h5"):
             (self.run_folder / name).unlink()
         return self.run_folder
+
+    def cut_to(self, step):
+        """The whole run as if it had died after the checkpoint of this step."""
+        self.afresh()
+        self.copy_of_whole()
+        for later in [s for s in steps(self.whole) if s > step]:
+            shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
 
     def same_as_whole(self, run=None, leave_out=()):
         """@param leave_out files that differ by intent"""

@@ -17,22 +17,15 @@ class Signals(CheckpointTest):
             with self.subTest(number.name):
                 run = self.folder / number.name
                 process = self.start_waiting("step", 0, 250, run=run)
-                process.send_signal(number)
-                wait_for_stop = process.stderr.readline
-                while "stopping" not in wait_for_stop():
-                    pass
-                self.mark.unlink()
-                out, err = process.communicate(timeout=30)
-                self.assertEqual(process.returncode, 75, err)
-                self.assertEqual(out, f"{run}\n")
-                self.assertIn(f"furrow: to continue from the last checkpoint: furrow resume '{run}'", err)
+                self.told_to_stop(process, number)
+                err = self.released(process, 75, prints=f"{run}\n", says="furrow: to continue from the last "
+                                    f"checkpoint: furrow resume '{run}'")
                 self.assertNotIn("error", err)
                 self.assertFalse((run / "summary.json").exists())
                 self.assertTrue((run / "results.h5").exists())
                 stopped = steps(run)[-1]
                 self.assertIn(stopped, range(250, 270))
-                self.resume(run=run)
-                self.same_as_whole(run)
+                self.continues(run)
                 self.assertEqual([s["from_step"] for s in summary(run)["segments"]], [0, stopped])
 
 
@@ -53,8 +46,7 @@ class Resume(CheckpointTest):
         for count in (120, 110):
             self.furrow("resume", self.run_folder, "--no-plots", program=FAULTY, env=self.fault("step", 1, count,
                                                                                                 "kill"), code=4)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual([s["from_step"] for s in summary(self.run_folder)["segments"]], [0, 100, 200, 300])
 
     def test_a_later_end_is_as_if_it_had_been_so_from_the_start(self):
@@ -76,14 +68,13 @@ class Resume(CheckpointTest):
 
     def test_lines_that_means_count_equally_stay_equally_long(self):
         self.run_with_fault("step", 0, 250, "kill")
-        self.assertRegex(self.resume("--set", "output.series_interval=0.004", code=2).stderr,
-                         r"key 'output.series_interval': is 0.004 .* 0.002, expected the same: .* means count all "
-                         r"lines of a series equally")
+        self.resume("--set", "output.series_interval=0.004", code=2, matches=r"key 'output.series_interval': is 0.004 "
+                    r".* 0.002, expected the same: .* means count all lines of a series equally")
 
     def test_a_finished_run_that_has_lost_results_says_so(self):
         run = self.copy_of_whole()
         shutil.copyfile(self.whole / "summary.json", run / "summary.json")
-        self.assertIn("results.h5: is missing and is written again from the last checkpoint", self.resume().stderr)
+        self.resume(says="results.h5: is missing and is written again from the last checkpoint")
         self.same_as_whole()
         (run / "timeseries.csv").unlink()
         said = self.resume().stderr
@@ -121,20 +112,17 @@ class Resume(CheckpointTest):
         part = next((run / "checkpoints").glob("*500")) / "tire0.h5"
         part.unlink()
         os.mkfifo(part)
-        self.assertIn("tire0.h5: does not exist or is no file: the checkpoint is not complete", self.resume().stderr)
+        self.resume(says="tire0.h5: does not exist or is no file: the checkpoint is not complete")
         self.same_as_whole()
         for name in ("summary.json", "results.h5", "frames/tire0_000002.h5"):
             (run / name).rename(run / "kept")
             os.mkfifo(run / name)
-            self.assertIn(f"{name}: is not a file, expected one that furrow wrote",
-                          self.program("report", run, code=2).stderr)
+            self.program("report", run, code=2, says=f"{name}: is not a file, expected one that furrow wrote")
             (run / "kept").rename(run / name)
 
     def test_a_finished_run_has_nothing_to_do(self):
         before = {path: path.stat().st_mtime_ns for path in self.whole.rglob("*")}
-        done = self.resume(run=self.whole)
-        self.assertIn("there is nothing to do", done.stderr)
-        self.assertEqual(done.stdout, f"{self.whole}\n")
+        self.resume(run=self.whole, says="there is nothing to do", prints=f"{self.whole}\n")
         self.assertEqual({path: path.stat().st_mtime_ns for path in self.whole.rglob("*")}, before)
 
     def test_changed_physics_is_refused_by_its_key(self):
@@ -143,33 +131,29 @@ class Resume(CheckpointTest):
                                   ("terrain.cohesion=1e3", "terrain.cohesion", "80e3"),
                                   ("run.step=1e-4", "run.step", "0.0002"), ("run.seed=2", "run.seed", "1"),
                                   ("terrain.engine=rigid", "terrain.engine", "'dem'")):
-            done = self.resume("--set", setting, code=2)
-            self.assertIn(f"key '{key}': is ", done.stderr)
-            self.assertIn(f"but the run was computed with {was}", done.stderr)
+            self.resume("--set", setting, code=2, says=(f"key '{key}': is ", f"but the run was computed with {was}"))
         # also where the file was edited
         scenario = read_json(run / "scenario.json")
         scenario["terrain"]["friction"] = 0.5
         write_json(run / "scenario.json", scenario)
-        self.assertIn("key 'terrain.friction': is 0.5", self.resume(code=2).stderr)
+        self.resume(code=2, says="key 'terrain.friction': is 0.5")
         self.assertFalse((run / "summary.json").exists())
         self.assertEqual(steps(run), steps(self.whole))
 
     def test_an_earlier_end_is_refused(self):
         self.copy_of_whole()
-        self.assertIn("key 'run.end': is 0.06 s, but the run has reached 0.1 s",
-                      self.resume("--until", "0.06", code=2).stderr)
+        self.resume("--until", "0.06", code=2, says="key 'run.end': is 0.06 s, but the run has reached 0.1 s")
 
     def test_nothing_goes_on_without_its_checkpoint(self):
         run = self.copy_of_whole()
         shutil.rmtree(run / "checkpoints")
-        self.assertIn("holds no checkpoint", self.resume(code=2).stderr)
+        self.resume(code=2, says="holds no checkpoint")
         self.assertFalse((run / "summary.json").exists())
 
     def test_a_lost_scenario_is_restored_from_the_checkpoint(self):
         run = self.copy_of_whole()
         (run / "scenario.json").unlink()
-        self.assertRegex(self.resume().stderr,
-                         r"warning: \S.*scenario\.json: was missing and is restored from \S.*checkpoints/\d+")
+        self.resume(matches=r"warning: \S.*scenario\.json: was missing and is restored from \S.*checkpoints/\d+")
         self.same_as_whole()
 
     def test_another_build_is_warned_of(self):
@@ -180,8 +164,7 @@ class Resume(CheckpointTest):
         self.run_with_fault("step", 0, 250, "kill")
         command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
                    FAULTY, "resume", str(self.run_folder)]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.call(command)
         self.same_as_whole()
 
 
@@ -194,8 +177,7 @@ class FlexibleTire(CheckpointTest):
         alive = [s for s in (100, 200, 300, 400) if made[s // 10 - 2] == made[s // 10 + 1] > 0]
         self.assertTrue(alive, f"no factor lives through a checkpoint: {made}")
         self.run_with_fault("step", 1, alive[0] + 50, "kill")
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], alive[0])
 
 

@@ -80,8 +80,7 @@ class QueuedAgainBySlurm(ClusterTest):
         self.assertEqual(self.cluster.job(number)["ExitCode"], "4:0")
         text = (self.folder / f"slurm-{number}.out").read_text()
         self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9", text)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_ranks_that_srun_starts(self):
         done = self.srun("run", self.path, "--out", self.run_folder, "--no-plots")

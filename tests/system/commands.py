@@ -18,8 +18,7 @@ SCHEMAS = {"scenario": "rigs/scenario.schema.json", "tire": "tire/data/tire.sche
 
 class Commands(SystemTest):
     def output(self, *arguments):
-        done = self.furrow(*arguments)
-        return done.stdout
+        return self.furrow(*arguments).stdout
 
     def test_version(self):
         self.assertRegex(self.output("--version"), r"^furrow \d+\.\d+\.\d+\n$")
@@ -108,19 +107,17 @@ class Commands(SystemTest):
                       "a file that is here comes first")
 
     def test_shipped_files_are_found_by_name_and_taken_for_what_they_are(self):
-        for arguments, expected in ((("run", "first_look"), "first_look: does not exist, expected 'first_look.json'?"),
-                                    (("validate", "frist_look.json"),
-                                     "frist_look.json: does not exist, expected 'first_look.json'?"),
-                                    (("sweep", "study_slop.json"),
-                                     "study_slop.json: does not exist, expected 'study_slip.json'?"),
-                                    (("run", "nothing_like_it.json"), "does not exist, expected a scenario in JSON"),
-                                    (("run", "calibrate_ring.json"),
-                                     "is a calibration, expected a scenario ('furrow calibrate' takes calibrations)"),
-                                    (("sweep", "calibrate_ring.json"),
-                                     "is a calibration, expected a study ('furrow calibrate' takes calibrations)"),
-                                    (("calibrate", "study_slip.json"),
-                                     "is a study, expected a calibration ('furrow sweep' takes studies)"),
-                                    (("sweep", "first_look.json"), "is a scenario, expected a study")):
+        for arguments, expected in (
+                (("run", "first_look"), "first_look: does not exist, expected 'first_look.json'?"),
+                (("validate", "frist_look.json"), "frist_look.json: does not exist, expected 'first_look.json'?"),
+                (("sweep", "study_slop.json"), "study_slop.json: does not exist, expected 'study_slip.json'?"),
+                (("run", "nothing_like_it.json"), "does not exist, expected a scenario in JSON"),
+                (("run", "calibrate_ring.json"),
+                 "is a calibration, expected a scenario ('furrow calibrate' takes calibrations)"),
+                (("sweep", "calibrate_ring.json"),
+                 "is a calibration, expected a study ('furrow calibrate' takes calibrations)"),
+                (("calibrate", "study_slip.json"), "is a study, expected a calibration ('furrow sweep' takes studies)"),
+                (("sweep", "first_look.json"), "is a scenario, expected a study")):
             self.furrow(*arguments, code=2, says=expected)
         self.assertEqual(self.names(), [])
 
@@ -306,8 +303,7 @@ class BatchScripts(SystemTest):
             with self.subTest(options):
                 self.furrow("ranks", "--slurm", *options, scenario, code=2, says=told)
         for time in ("8", "12:00:00", "1-12", "2-12:30"):
-            done = self.furrow("ranks", "--slurm", "--time", time, scenario)
-            self.assertIn(f"#SBATCH --time={time}\n", done.stdout)
+            self.furrow("ranks", "--slurm", "--time", time, scenario, shows=f"#SBATCH --time={time}\n")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, read_json, wait_for, write_json, write_scenario
+from program import PROGRAM, ROOT, SMALL, SystemTest, changed, furrow, main, read_json, wait_for, write_scenario
 
 # Its bed settles for a minute or more.
 SLOW = changed(terrain={"radius": 0.01, "layers": 12, "length": 12}, run={"step": 2e-5})
@@ -25,11 +25,11 @@ exec "$REAL" "$@" --no-plots
 
 
 def contents(folder):
-    """{path in the folder: bytes} of all files below it, but for what the folder's list held before."""
-    files = {str(path.relative_to(folder)): path.read_bytes() for path in pathlib.Path(folder).rglob("*")
+    """{path in the folder: content} of all files below it, but for what lists of files held before."""
+    files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in pathlib.Path(folder).rglob("*")
              if path.is_file()}
-    files[".furrow-run"] = sorted(set(files[".furrow-run"].decode().split("furrow-run 1\n")[-1].splitlines()))
-    return files
+    return {name: sorted(set(data.decode().split("furrow-run 1\n")[-1].splitlines())) if name.endswith(".furrow-run")
+            else data for name, data in files.items()}
 
 
 def without(stream, *arguments, cwd, **options):
@@ -39,23 +39,27 @@ def without(stream, *arguments, cwd, **options):
                           preexec_fn=lambda: os.close(stream), **options)
 
 
-class Overwrite(SystemTest):
+class Earlier:
+    """Results of a run with these flags, and what `--overwrite` does with them."""
+    FLAGS, SUMMARY, LOG = (), "summary.json", "said"
+
     @classmethod
     def setUpClass(cls):
         holder = tempfile.TemporaryDirectory(prefix="furrow base ")
         cls.addClassCleanup(holder.cleanup)
         cls.base = pathlib.Path(holder.name) / "base"
-        done = furrow("run", write_scenario(holder.name), "--out", cls.base, "--no-plots", cwd=holder.name)
+        done = furrow("run", write_scenario(holder.name), *cls.FLAGS, "--out", cls.base, "--no-plots", cwd=holder.name)
         assert done.returncode == 0, done.stderr
 
     def setUp(self):
         super().setUp()
         self.path = write_scenario(self.folder)
-        self.slow = write_scenario(self.folder, SLOW, "slow.json")
         self.out = self.folder / "out"
         shutil.copytree(self.base, self.out)
         self.before = contents(self.out)
-        self.cache = {"XDG_CACHE_HOME": str(self.folder / "cache")}
+
+    def command(self, path):
+        return ["run", path, *self.FLAGS, "--out", self.out, "--overwrite", "--no-plots"]
 
     def is_as_before(self):
         self.assertEqual(contents(self.out), self.before)
@@ -63,19 +67,25 @@ class Overwrite(SystemTest):
 
     def begun_to_settle(self):
         """The process, and the file that holds what it says."""
-        said = self.folder / "said"
+        said, log = self.folder / "said", self.folder / self.LOG
+        slow = write_scenario(self.folder, SLOW, "slow.json")
         with open(said, "w") as file:
-            process = subprocess.Popen([PROGRAM, "run", self.slow, "--out", self.out, "--overwrite", "--no-plots"],
-                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
-                                       env={**os.environ, **self.cache})
+            process = subprocess.Popen([PROGRAM, *self.command(slow)], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                       stdout=file, stderr=file,
+                                       env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
         self.addCleanup(process.kill)
-        wait_for(lambda: "settling" in said.read_text(), 60, "the bed settles")
+        wait_for(lambda: log.exists() and "settling" in log.read_text(), 60, "the bed settles")
         self.assertIsNone(process.poll())
-        self.assertTrue((self.out / ".furrow-before" / "summary.json").exists())
+        self.assertTrue((self.out / ".furrow-before" / self.SUMMARY).exists())
         return process, said
 
+    def killed_while_it_settles(self):
+        process, _ = self.begun_to_settle()
+        process.kill()
+        process.wait(timeout=60)
+
     def test_they_come_back_where_no_rank_can_be_started(self):
-        self.furrow("run", self.path, "--out", self.out, "--overwrite", env={"FURROW_MPIRUN": "/bin/false"}, code=5,
+        self.furrow(*self.command(self.path), env={"FURROW_MPIRUN": "/bin/false"}, code=5,
                     says=("no rank could be started", "out holds the earlier results again"))
         self.is_as_before()
 
@@ -86,10 +96,10 @@ class Overwrite(SystemTest):
         self.assertIn("out holds the earlier results again", said.read_text())
         self.is_as_before()
 
+
+class Overwrite(Earlier, SystemTest):
     def test_they_come_back_to_who_resumes_after_a_kill_before_the_first_step(self):
-        process, _ = self.begun_to_settle()
-        process.kill()
-        process.wait(timeout=60)
+        self.killed_while_it_settles()
         self.furrow("report", self.out, code=5,
                     says=f"{self.out}/.furrow-before holds earlier results, which 'furrow resume' brings back")
         self.furrow("resume", self.out, says="is finished")
@@ -107,91 +117,33 @@ class Overwrite(SystemTest):
         self.furrow("resume", tests, code=2, says="holds the results of 'furrow soil'")
         self.assertEqual(contents(tests), before)
 
-    def test_beds_stay_where_a_file_of_the_users_own_stands_in_the_place_of_a_new_one(self):
-        begin = ["run", self.path, "--out", "beds", "--no-plots"]
-        self.furrow(*begin, "--seeds", "2")
-        (self.folder / "beds" / "seed3.log").write_text("mine")
-        before = contents(self.folder / "beds")
-        self.furrow(*begin, "--seeds", "3", "--overwrite", code=2,
-                    says="seed3.log: stands where a result is to be written")
-        self.assertEqual(contents(self.folder / "beds"), before)
 
-
-class OverwrittenBeds(SystemTest):
-    """Beds of `furrow run --seeds`."""
-
-    @classmethod
-    def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="furrow base ")
-        cls.addClassCleanup(holder.cleanup)
-        cls.base = pathlib.Path(holder.name) / "base"
-        done = furrow("run", write_scenario(holder.name), "--seeds", "2",
-                      "--out", cls.base, "--no-plots", cwd=holder.name)
-        assert done.returncode == 0, done.stderr
-
-    def setUp(self):
-        super().setUp()
-        self.path = write_scenario(self.folder)
-        self.slow = write_scenario(self.folder, SLOW, "slow.json")
-        self.beds = self.folder / "beds"
-        shutil.copytree(self.base, self.beds)
-        self.before = self.now()
-
-    def now(self):
-        lists = {str(path.relative_to(self.beds)): path.read_text().split("furrow-run 1\n")[-1].splitlines()
-                 for path in self.beds.rglob(".furrow-run")}
-        files = {str(path.relative_to(self.beds)): path.read_bytes() for path in self.beds.rglob("*") if path.is_file()}
-        return {**files, **{name: sorted(set(lines)) for name, lines in lists.items()}}
-
-    def overwrite(self, path, **options):
-        return furrow("run", path, "--seeds", "2", "--out", self.beds,
-                      "--overwrite", "--no-plots", cwd=self.folder, **options)
-
-    def begun_to_settle(self):
-        said = self.folder / "said"
-        with open(said, "w") as file:
-            process = subprocess.Popen([PROGRAM, "run", self.slow, "--seeds",
-                                        "2", "--out", self.beds, "--overwrite", "--no-plots"],
-                                       cwd=self.folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file,
-                                       env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})
-        self.addCleanup(process.kill)
-        wait_for(lambda: (self.beds / "seed1.log").exists() and "settling" in (self.beds / "seed1.log").read_text(),
-                 60, "the bed settles")
-        self.assertTrue((self.beds / ".furrow-before" / "seed2" / "summary.json").exists())
-        return process, said
-
-    def test_they_come_back_where_no_rank_can_be_started(self):
-        done = self.overwrite(self.path, env={"FURROW_MPIRUN": "/bin/false"})
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertIn("beds holds the earlier results again", done.stderr)
-        self.assertEqual(self.now(), self.before)
-
-    def test_they_come_back_where_a_signal_ends_it_before_the_first_step(self):
-        process, said = self.begun_to_settle()
-        process.terminate()
-        self.assertEqual(process.wait(timeout=60), 75, said.read_text())
-        self.assertIn("holds the earlier results again", said.read_text())
-        self.assertEqual(self.now(), self.before)
+class OverwrittenBeds(Earlier, SystemTest):
+    FLAGS, SUMMARY, LOG = ("--seeds", "2"), "seed2/summary.json", "out/seed1.log"
 
     def test_they_come_back_to_the_next_command_after_a_kill_before_the_first_step(self):
-        process, _ = self.begun_to_settle()
-        process.kill()
-        process.wait(timeout=60)
-        done = self.furrow("run", self.path, "--seeds", "2", "--out", self.beds, "--no-plots")
+        self.killed_while_it_settles()
+        done = self.furrow("run", self.path, "--seeds", "2", "--out", self.out, "--no-plots")
         self.assertEqual(done.stderr.count("is done already"), 2, done.stderr)
-        after = self.now()
+        after = contents(self.out)
         for name in self.before:
             if name.startswith("seed"):
                 self.assertEqual(after[name], self.before[name], name)
 
     def test_a_file_of_the_users_own_in_a_bed_stays_and_the_bed_is_replaced(self):
-        mine = self.beds / "seed1" / "mine.txt"
+        mine = self.out / "seed1" / "mine.txt"
         mine.write_text("mine")
-        done = self.overwrite(write_scenario(self.folder, changed(rig={"slip": 0.2}), "other.json"))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow(*self.command(write_scenario(self.folder, changed(rig={"slip": 0.2}), "other.json")))
         self.assertEqual(mine.read_text(), "mine")
-        self.assertEqual(read_json(self.beds / "seed1" / "summary.json")["slip"], 0.2)
-        self.assertFalse((self.beds / ".furrow-before").exists())
+        self.assertEqual(read_json(self.out / "seed1" / "summary.json")["slip"], 0.2)
+        self.assertFalse((self.out / ".furrow-before").exists())
+
+    def test_they_stay_where_a_file_of_the_users_own_stands_in_the_place_of_a_new_one(self):
+        (self.out / "seed3.log").write_text("mine")
+        before = contents(self.out)
+        self.furrow("run", self.path, "--seeds", "3", "--out", self.out, "--no-plots", "--overwrite", code=2,
+                    says="seed3.log: stands where a result is to be written")
+        self.assertEqual(contents(self.out), before)
 
 
 class ClosedStreams(SystemTest):
@@ -226,14 +178,8 @@ class ContinuedRun(SystemTest):
 
     def setUp(self):
         super().setUp()
-        self.path = write_scenario(self.folder, changed(terrain={"engine": "rigid", "radius": None, "cohesion": None,
-                                                                 "layers": None, "length": None, "width": None}))
-        scenario = read_json(self.path)
-        scenario["terrain"] = {"engine": "rigid"}
-        write_json(self.path, scenario)
-        self.out = self.folder / "out"
-        self.furrow("run", self.path, "--out", self.out)
-        self.end = read_json(self.path)["run"]["end"]
+        self.out, self.end = self.folder / "out", SMALL["run"]["end"]
+        self.furrow("run", write_scenario(self.folder, {**SMALL, "terrain": {"engine": "rigid"}}), "--out", self.out)
 
     def test_it_stays_finished_where_no_rank_can_be_started(self):
         self.furrow("resume", self.out, "--until", 2 * self.end, env={"FURROW_MPIRUN": "/bin/false"}, code=5,
@@ -290,9 +236,7 @@ class RetryScript(SystemTest):
         program.chmod(0o755)
         environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}", "REAL": PROGRAM,
                        "XDG_CACHE_HOME": str(self.folder / "cache")}
-        done = subprocess.run(["bash", "-c", script], cwd=self.folder,
-                              text=True, capture_output=True, timeout=120, env=environment)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.call(["bash", "-c", script], env=environment)
         self.assertIn("stopped by a signal", (self.folder / "said").read_text())
         self.assertTrue((self.folder / "out" / "summary.json").exists())
 

@@ -2,7 +2,6 @@
 """Every file of a run that was continued is that of the run that was not interrupted, also where a frame falls on the
 step of the checkpoint, for every kind of tire. tests/campaign/compare_runs.py compares them."""
 import csv
-import shutil
 import sys
 
 import h5py
@@ -36,22 +35,16 @@ class Exact:
         interval = all_steps[0]
         for step in (interval * self.LOADED, all_steps[-1]):
             with self.subTest(step=step):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.copy_of_whole()
-                for later in [s for s in all_steps if s > step]:
-                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
-                self.resume()
-                self.same_as_whole()
+                self.cut_to(step)
+                self.continues()
 
     def test_after_kill_of_each_rank(self):
         interval = steps(self.whole)[0]
         for rank in self.KILLED or range(self.WHEELS + 2):
             with self.subTest(rank=rank):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.mark.unlink(missing_ok=True)
+                self.afresh()
                 self.run_with_fault("step", rank, interval * self.LOADED + 7, "kill")
-                self.resume()
-                self.same_as_whole()
+                self.continues()
 
     def test_a_finished_run_with_a_later_end(self):
         end = self.SCENARIO["run"]["end"]
@@ -125,23 +118,17 @@ class Vehicle(Exact, CheckpointTest):
     def test_after_a_stop_of_each_kind_of_rank(self):
         for rank, name in ((0, "rig"), (1, "tire 0"), (4, "tire 3"), (5, "terrain")):
             with self.subTest(name):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.mark.unlink(missing_ok=True)
-                done = self.run_with_fault("step", rank, 257, "stop", flags=["--set", "run.peer_timeout=5"])
-                self.assertRegex(done.stderr, rf"furrow: error: .*waited 5 s for .*{name} does not answer")
-                self.resume()
-                self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
+                self.afresh()
+                self.run_with_fault("step", rank, 257, "stop", flags=["--set", "run.peer_timeout=5"],
+                                    matches=rf"furrow: error: .*waited 5 s for .*{name} does not answer")
+                self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
     def test_after_a_signal(self):
         process = self.start_waiting("step", 0, 257)
-        process.terminate()
-        while "stopping" not in process.stderr.readline():
-            pass
-        self.mark.unlink()
-        self.ended(process, 75)
+        self.told_to_stop(process)
+        self.released(process, 75)
         self.assertIn(steps(self.run_folder)[-1], range(257, 277))
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
 
 def on_a_curb(rig, **tire):
@@ -202,8 +189,8 @@ class BeforeTheWall(CheckpointTest):
         with open(self.whole / "timeseries_wheel0.csv", newline="") as file:
             position = [float(line["position_m"]) for line in csv.DictReader(file)]
         self.assertAlmostEqual(5.5 - position[-1] - 0.4673 - 1.21, 0.0, delta=2e-3)
-        done = self.program("resume", self.whole, "--no-plots")
-        self.assertRegex(done.stderr, r"is finished: it ended at 0\.\d+ s; there is nothing to do")
+        self.program("resume", self.whole,
+                     "--no-plots", matches=r"is finished: it ended at 0\.\d+ s; there is nothing to do")
 
     def test_from_every_checkpoint_around_the_end(self):
         all_steps = steps(self.whole)
@@ -211,12 +198,8 @@ class BeforeTheWall(CheckpointTest):
         self.assertLess(end, 200)
         for step in range(end - 2, end + 1):
             with self.subTest(step=step):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.copy_of_whole()
-                for later in [s for s in all_steps if s > step]:
-                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
-                done = self.resume()
-                self.assertIn("a tire came near the end wall", done.stderr)
+                self.cut_to(step)
+                self.resume(says="a tire came near the end wall")
                 self.same_as_whole()
 
 

@@ -43,14 +43,13 @@ class Killed(CheckpointTest):
             self.furrow("report", self.run_folder)
             for plot in (*self.run_folder.glob("*.png"), *self.run_folder.glob("report.html")):
                 plot.unlink()
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual(summary(self.run_folder)["segments"][1]["from_step"], step)
 
 
     def test_a_rank_after_all_results(self):
-        done = self.run_with_fault("done", RANKS["rig"], 1, "kill", code=0)
-        self.assertIn("furrow: warning: the run had finished before this happened: rank 0 (rig) was lost", done.stderr)
+        self.run_with_fault("done", RANKS["rig"], 1, "kill", code=0,
+                            says="furrow: warning: the run had finished before this happened: rank 0 (rig) was lost")
         self.assertFalse((self.run_folder / "summary_failed.json").exists())
         self.same_as_whole()
 
@@ -61,36 +60,32 @@ for row in KILLS:
 
 class ProgramFault(CheckpointTest):
     def test_an_exception_that_no_code_expects(self):
-        done = self.run_with_fault("step", RANKS["tire"], 250, "throw", code=70)
-        self.assertIn("furrow: error: fault of the program: thrown by a test; please report it", done.stderr)
+        self.run_with_fault("step", RANKS["tire"], 250, "throw", code=70,
+                            says="furrow: error: fault of the program: thrown by a test; please report it")
         failed = read_json(self.run_folder / "summary_failed.json")["failed"]
         self.assertEqual(failed["exit_code"], 70)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
 
 class KilledAtTheStart(CheckpointTest):
     """Before MPI connects the ranks."""
 
     def test_a_rank(self):
-        self.assertIn("furrow: error: rank 1 (tire 0) was lost: killed by signal 9",
-                      self.run_with_fault("start", 1, 1, "kill").stderr)
+        self.run_with_fault("start", 1, 1, "kill", says="furrow: error: rank 1 (tire 0) was lost: killed by signal 9")
 
     def test_the_launcher(self):
         process = self.start_waiting("start", 1, 1)
         os.kill(children(process.pid)[0], signal.SIGKILL)
-        self.ended(process, 4,
-                   says="furrow: error: the ranks were lost while they were being started: mpirun was killed by signal "
-                   "9")
+        self.ended(process, 4, says="furrow: error: the ranks were lost while they were being started: mpirun was "
+                   "killed by signal 9")
         self.no_process_left()
 
 
 class Stopped(CheckpointTest):
     def test_a_rank_that_stops_is_named_and_the_run_goes_on_without_it(self):
-        done = self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"])
-        self.assertRegex(done.stderr, r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
-        self.resume()
-        self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
+        self.run_with_fault("step", 1, 250, "stop", flags=["--set", "run.peer_timeout=2"],
+                            matches=r"furrow: error: .*waited 2 s for tire 0 .*tire 0 does not answer")
+        self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
 
 class LauncherThatDoesNotEnd(CheckpointTest):
@@ -112,30 +107,24 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.assertIn(self.LOG, (self.run_folder / "run.log").read_text())
 
     def test_once_all_ranks_are_done_is_killed_and_the_run_is_done(self):
-        done = self.program("run", self.path, "--out", self.run_folder, "--no-plots", env=self.launcher(""))
-        self.assertNotIn("warning", done.stderr)
+        self.program("run", self.path, "--out", self.run_folder, "--no-plots", env=self.launcher(""), lacks="warning")
         self.hung()
         self.same_as_whole()
 
     def test_once_all_ranks_have_stopped_is_killed_and_the_run_goes_on(self):
         process = self.start_waiting("step", 0, 250, env=self.launcher(""))
-        process.terminate()
-        while "stopping" not in process.stderr.readline():
-            pass
+        self.told_to_stop(process)
         time.sleep(1)  # the signal passes through the launcher
-        self.mark.unlink()
-        self.ended(process, 75, says="furrow: stopped by a signal; partial results are in")
+        self.released(process, 75, says="furrow: stopped by a signal; partial results are in")
         self.hung()
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_whose_supervisor_was_killed_is_killed_by_who_waits_for_the_folder(self):
         process = self.start_waiting("step", 0, 250, env=self.launcher(""))
         process.kill()
         self.mark.unlink()
         process.communicate(timeout=60)
-        self.assertRegex(self.resume().stderr,
-                         r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
+        self.resume(matches=r"furrow: process \d+ \(.*launcher .*\) did not end although its ranks had; it is killed")
         self.no_process_left()
         self.same_as_whole()
 
@@ -197,8 +186,7 @@ class FullDisk(CheckpointTest):
         self.assertEqual(process.returncode, 5, err)
         self.assertRegex(err, expected)
         self.assertEqual(steps(self.run_folder)[-1], step)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_in_a_checkpoint_it_is_told_and_the_last_one_stays(self):
         # The terrain waits, so that another rank may be the first to write; a frame of the same step may end the run
@@ -221,9 +209,7 @@ class Damaged(CheckpointTest):
         self.newest = self.run / "checkpoints" / f"{STEPS:012}"
 
     def goes_on_from_the_one_before(self, words):
-        done = self.resume()
-        self.assertIn(f"furrow: warning: {self.newest}", done.stderr)
-        self.assertIn(words, done.stderr)
+        self.resume(says=(f"furrow: warning: {self.newest}", words))
         self.assertEqual(summary(self.run)["segments"][-1]["from_step"], STEPS - INTERVAL)
         self.same_as_whole()
 
@@ -264,26 +250,24 @@ class Damaged(CheckpointTest):
         other = self.folder / "other"
         self.program("run", self.path, "--out", other, "--set", "run.seed=2", "--no-plots")
         shutil.copytree(other / "checkpoints" / f"{STEPS:012}", self.newest)
-        self.assertIn("key 'run.seed': is 1 but the run was computed with 2", self.resume(code=2).stderr)
+        self.resume(code=2, says="key 'run.seed': is 1 but the run was computed with 2")
 
     def test_all_of_them(self):
         for part in (self.run / "checkpoints").glob("*/terrain.h5"):
             os.truncate(part, 100)
-        done = self.resume(code=5)
-        self.assertIn("no checkpoint is whole, nothing can be continued", done.stderr)
+        done = self.resume(code=5, says="no checkpoint is whole, nothing can be continued")
         self.assertEqual(done.stderr.count("terrain.h5: does not fit its checkpoint"), 3)
 
     def test_series_that_was_written_on(self):
         shutil.rmtree(self.newest)
         with open(self.run / "timeseries.csv", "a") as series:
             series.write("0.102,0.3,")  # a line cut short
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_series_that_was_changed(self):
         text = (self.run / "timeseries.csv").read_text()
         (self.run / "timeseries.csv").write_text(text.replace("0", "1", 1))
-        self.assertIn("timeseries.csv: does not hold the lines that the checkpoint knows", self.resume(code=5).stderr)
+        self.resume(code=5, says="timeseries.csv: does not hold the lines that the checkpoint knows")
 
     def test_series_and_summary_that_were_emptied_are_no_finished_run(self):
         for name in ("timeseries.csv", "summary.json"):
@@ -302,7 +286,7 @@ class Damaged(CheckpointTest):
     def test_a_log_that_is_no_file(self):
         (self.run / "run.log").unlink()
         os.mkfifo(self.run / "run.log")
-        self.assertIn("run.log: is not a file, expected one", self.resume(code=2).stderr)
+        self.resume(code=2, says="run.log: is not a file, expected one")
 
 
 class Folder(CheckpointTest):
@@ -312,8 +296,7 @@ class Folder(CheckpointTest):
                   (["resume", self.run_folder], ["run", self.path, "--out", self.run_folder, "--overwrite"])]
         for other in others:
             self.ended(other, 2, says="is in use by a run that has not ended")
-        self.mark.unlink()
-        self.ended(process, 0)
+        self.released(process)
         self.same_as_whole()
 
     @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "needs a user who is not root")
@@ -335,8 +318,7 @@ class Folder(CheckpointTest):
         process.communicate(timeout=10)
         self.mark.unlink()
         self.no_process_left()
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_killed_supervisor_of_ranks_that_are_being_started(self):
         """MPI may be stuck, as it is where memory is scarce: nobody waits for it."""
@@ -344,7 +326,7 @@ class Folder(CheckpointTest):
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=10)
         self.no_process_left()
-        self.assertIn("start again with furrow run --overwrite", self.resume(code=2).stderr)
+        self.resume(code=2, says="start again with furrow run --overwrite")
         self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--overwrite")
         self.same_as_whole()
 

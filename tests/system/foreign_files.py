@@ -120,18 +120,15 @@ class Reports(SystemTest):
                  "net_terrain_force_N": [100.0, 0.0, 4600.0], "surface_height_m": 0.1}
         write_json(self.run / "summary.json", {**usual, **values})
 
-    def report(self, *arguments):
-        return subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments],
+    def report(self, *arguments, **expected):
+        done = subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments],
                               capture_output=True, text=True, timeout=120,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 * ENOUGH, 2 * ENOUGH)),
                               env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        return self.expect(done, **expected)
 
     def told(self, expected, *arguments):
-        done = self.report(*arguments)
-        self.assertNotIn("Traceback", done.stderr)
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertIn(expected, done.stderr)
-        return done.stderr
+        return self.report(*arguments, code=5, says=expected, lacks="Traceback").stderr
 
     def test_wrong_types_in_the_summary_are_named(self):
         for values, expected in (({"drawbar_pull_N": 3}, "key 'drawbar_pull_N': is 3, expected an object"),
@@ -163,9 +160,7 @@ class Reports(SystemTest):
                                     ([self.folder / "empty"], "holds nothing to plot"),
                                     ([self.folder / "empty", self.run, "--out", "both"], "holds no results of a run")):
             with self.subTest(arguments):
-                done = self.furrow("report", *arguments, code=5, prints="")
-                self.assertEqual(done.stderr.count("furrow: error: "), 1, done.stderr)
-                self.assertIn(expected, done.stderr)
+                self.furrow("report", *arguments, code=5, prints="", says=expected, errors=1)
         self.summary({})
         done = furrow("report", self.run, self.run, "--out", taken, cwd=self.folder)
         self.assertEqual((done.returncode, done.stdout, done.stderr.count("furrow: error: ")), (5, "", 1), done.stderr)
@@ -207,13 +202,11 @@ class Reports(SystemTest):
     def test_frames_that_are_none(self):
         triangle = np.array([[0, 1, 2]])
         vertex = np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1]])
-        for content, expected in (({"position": vertex, "triangle": triangle + 7},
-                                   "holds no surface that could be drawn"),
-                                  ({"position": vertex * np.nan, "triangle": triangle},
-                                   "holds no surface that could be drawn"),
-                                  ({"position": vertex[:, :2], "triangle": triangle},
-                                   "has the shape (3, 2), expected N × 3"),
-                                  ({"position": vertex}, "the dataset 'triangle' is missing")):
+        for content, expected in (
+                ({"position": vertex, "triangle": triangle + 7}, "holds no surface that could be drawn"),
+                ({"position": vertex * np.nan, "triangle": triangle}, "holds no surface that could be drawn"),
+                ({"position": vertex[:, :2], "triangle": triangle}, "has the shape (3, 2), expected N × 3"),
+                ({"position": vertex}, "the dataset 'triangle' is missing")):
             with h5py.File(self.run / "frames" / "tire0_000000.h5", "w") as file:
                 file.attrs["time_s"] = 0.0
                 for name, values in content.items():

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from program import ROOT, SystemTest, main, read_json, write_json
+from program import ROOT, SystemTest, main, write_json
 
 sys.path.insert(0, str(ROOT / "tests/tire/handling"))
 import evaluate_tir  # noqa: E402  the other evaluator
@@ -27,9 +27,7 @@ STEADY = {
 
 class Handling(SystemTest):
     def run_of(self, name, *flags, scenario=STEADY):
-        path = write_json(self.folder / "scenario.json", scenario)
-        self.furrow("run", path, "--no-plots", "--out", self.folder / name, *flags)
-        return read_json(self.folder / name / "summary.json")
+        return super().run_of(name, scenario, *flags)[0]
 
     def expected(self, summary):
         """Of the other evaluator, at the slips of the run."""
@@ -56,8 +54,7 @@ class Handling(SystemTest):
                 self.assertAlmostEqual(axes["force_N"][1], said["Fy_N"], delta=0.01 * load)
                 self.assertAlmostEqual(axes["moment_Nm"][0], said["Mx_Nm"], delta=0.01 * load * 0.47)
                 self.assertAlmostEqual(axes["moment_Nm"][2], said["Mz_Nm"], delta=0.003 * load * 0.47)
-                self.assertTrue(told["accounts"]["energy"]["closes"], told["accounts"]["energy"])
-                self.assertTrue(told["accounts"]["momentum"]["closes"], told["accounts"]["momentum"])
+                self.accounts_close(told)
                 self.assertEqual(told["warnings"] if "warnings" in told else [], [])
 
     def test_runs_give_the_table_that_it_was_fitted_to_within_its_residuals(self):
@@ -95,7 +92,7 @@ class Handling(SystemTest):
         self.assertGreater(len(checkpoints), 1)
         self.run_of("cut", "--set", "run.end=0.2", "--set", "run.average_from=0.1", scenario=scenario)
         self.furrow("resume", self.folder / "cut", "--until", "0.4", "--no-plots")
-        first, second = (read_json(self.folder / name / "summary.json")["state_hash"] for name in ("whole", "cut"))
+        first, second = (self.summary(name)["state_hash"] for name in ("whole", "cut"))
         self.assertEqual(first, second)
         for name in ("whole", "cut"):
             self.assertTrue((self.folder / name / "timeseries.csv").exists())
@@ -105,18 +102,17 @@ class Handling(SystemTest):
         path = ROOT / "rigs/hmmwv_rigid.json"
         self.furrow("run", path, "--no-plots", "--out", self.folder / "car", "--set", "tire.file=hmmwv_handling.tir",
                     "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "output.frame_interval=0")
-        told = read_json(self.folder / "car/summary.json")
+        told = self.summary("car")
         self.assertTrue(told["accounts"]["momentum"]["closes"], told["accounts"]["momentum"])
 
     def test_pressed_on_a_plate_and_validated(self):
         path = write_json(self.folder / "scenario.json", STEADY)
         self.furrow("press", path, "--out", self.folder / "press", "--load", "4000")
-        told = read_json(self.folder / "press/summary.json")
+        told = self.summary("press")
         stiffness = evaluate_tir.read(TIR)["VERTICAL_STIFFNESS"]
         self.assertAlmostEqual(told["secant_stiffness_N_per_m"], stiffness, delta=1e-6 * stiffness)
         self.furrow("press", path, "--on", "cleat", "--out", self.folder / "cleat", code=2, says="expected plate")
-        done = self.furrow("validate", path)
-        self.assertIn("hmmwv_handling.tir", done.stdout)
+        self.furrow("validate", path, shows="hmmwv_handling.tir")
 
     def test_other_ground_is_refused_by_key(self):
         path = self.folder / "scenario.json"
@@ -175,15 +171,13 @@ class Handling(SystemTest):
     def test_wrong_calibrations_are_refused_by_key(self):
         good = {"format_version": 1, "calibrate": "handling", "start": "handling_start.tir", "parameters": {"PKY1": {}},
                 "targets": [{"data": "sweep_lumped.csv", "of": "fy"}]}
-        for change, said in (({"start": "hmmwv_ring.json"},
-                              "key 'start': is 'hmmwv_ring.json', expected a tire property file"),
-                             ({"parameters": {"PKY9": {}}}, "key 'parameters.PKY9'"),
-                             ({"targets": [{"data": "sweep_lumped.csv"}]}, "key 'targets[0].of': is missing"),
-                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]},
-                              "key 'targets[0].of': is 'fw', expected"),
-                             ({"targets": [{"data": "no.csv", "of": "fy"}]}, "no.csv"),
-                             ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]},
-                              "key 'targets[0].on'")):
+        for change, said in (
+                ({"start": "hmmwv_ring.json"}, "key 'start': is 'hmmwv_ring.json', expected a tire property file"),
+                ({"parameters": {"PKY9": {}}}, "key 'parameters.PKY9'"),
+                ({"targets": [{"data": "sweep_lumped.csv"}]}, "key 'targets[0].of': is missing"),
+                ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]}, "key 'targets[0].of': is 'fw', expected"),
+                ({"targets": [{"data": "no.csv", "of": "fy"}]}, "no.csv"),
+                ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]}, "key 'targets[0].on'")):
             write_json(self.folder / "fit.json", {**good, **change})
             self.furrow("calibrate", self.folder / "fit.json", "--out", self.folder / "fit", "--no-plots", code=2,
                         says=said)

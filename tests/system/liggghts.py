@@ -145,12 +145,8 @@ class BordersThatMove(CheckpointTest):
         self.assertNotEqual(self.borders(self.MOVED), self.borders(100))
         for step in (self.MOVED, self.MOVED - 100):
             with self.subTest(step):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.copy_of_whole()
-                for later in [s for s in steps(self.whole) if s > step]:
-                    shutil.rmtree(self.run_folder / "checkpoints" / f"{later:012}")
-                self.resume()
-                self.same_as_whole()
+                self.cut_to(step)
+                self.continues()
 
     def test_the_summary_tells_the_imbalance(self):
         told = summary(self.whole)
@@ -165,46 +161,38 @@ class Faults(CheckpointTest):
     SCENARIO = on_liggghts(kept("rigid"), 2)
     RANKS = {"terrain 0": 2, "terrain 1": 3}
 
-    def continues(self, **options):
-        self.resume()
-        self.same_as_whole(**options)
-
-    def again(self):
-        shutil.rmtree(self.run_folder, ignore_errors=True)
-        self.mark.unlink(missing_ok=True)
-
     def test_ranks_killed_in_a_step_a_checkpoint_and_a_frame(self):
         for point, count in (("step", 250), ("checkpoint.write", 3), ("frame", 5)):
             for name, rank in self.RANKS.items():
                 with self.subTest(f"{name}, {point}"):
-                    self.again()
-                    done = self.run_with_fault(point, rank, count, "kill")
-                    self.assertIn(f"rank {rank} ({name}) was lost: killed by signal 9", done.stderr)
+                    self.afresh()
+                    self.run_with_fault(point, rank, count, "kill",
+                                        says=f"rank {rank} ({name}) was lost: killed by signal 9")
                     self.continues()
 
     def test_one_that_stops_ends_the_run(self):
         for name, rank in self.RANKS.items():
             with self.subTest(name):
-                self.again()
-                done = self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"])
-                self.assertRegex(done.stderr, r"furrow: error: .*terrain 0 does not answer; .*one of terrain 1 to 1")
+                self.afresh()
+                self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"],
+                                    matches=r"furrow: error: .*terrain 0 does not answer; .*one of terrain 1 to 1")
                 self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])
 
     def test_a_command_that_liggghts_refuses_on_all_ranks(self):
-        done = self.run_with_fault("liggghts", "*", 250, "say fix nonsense all nonsense")
-        self.assertIn('LIGGGHTS failed: Invalid fix style: "nonsense"', done.stderr)
+        self.run_with_fault("liggghts", "*", 250, "say fix nonsense all nonsense",
+                            says='LIGGGHTS failed: Invalid fix style: "nonsense"')
         self.continues()
 
     def test_a_file_that_one_rank_misses(self):
-        done = self.run_with_fault("liggghts", "*", 250, "say include no_such_file")
-        self.assertRegex(done.stderr, "terrain 0: LIGGGHTS failed on this rank: .*no_such_file")
+        self.run_with_fault("liggghts", "*", 250, "say include no_such_file",
+                            matches="terrain 0: LIGGGHTS failed on this rank: .*no_such_file")
         self.continues()
 
     def test_another_number_of_ranks_cannot_continue(self):
         run = self.copy_of_whole()
         shutil.rmtree(run / "checkpoints" / f"{steps(run)[-1]:012}")
-        done = self.program("resume", run, "--set", "terrain.ranks=3", "--no-plots", code=2)
-        self.assertIn("key 'terrain.ranks': is 3 but the run was computed with 2", done.stderr)
+        self.program("resume", run, "--set", "terrain.ranks=3", "--no-plots", code=2,
+                     says="key 'terrain.ranks': is 3 but the run was computed with 2")
 
 
 class Refused(CheckpointTest):
@@ -215,18 +203,16 @@ class Refused(CheckpointTest):
                            ("ground_stiffness", 1e8)):
             with self.subTest(key):
                 path = write_scenario(self.folder, on_liggghts(self.SCENARIO, 1, **{key: value}), "wrong.json")
-                done = self.program("run", path, "--out", self.run_folder, code=2)
-                self.assertIn(f"key 'terrain.{key}'", done.stderr)
+                self.program("run", path, "--out", self.run_folder, code=2, says=f"key 'terrain.{key}'")
 
     def test_parts_thinner_than_grains(self):
-        done = self.program("run", self.path, "--out", self.run_folder, "--set", "terrain.ranks=20", code=2)
-        self.assertIn("key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part",
-                      done.stderr)
+        self.program("run", self.path, "--out", self.run_folder, "--set", "terrain.ranks=20", code=2,
+                     says="key 'terrain.ranks': is 20, expected 7 or fewer: of a bed of 1.4 m each would have a part")
 
     def test_what_it_does_without_is_said(self):
-        done = self.program("validate", self.path, "--set", "terrain.ranks=3", "--threads", 4, "--json")
-        self.assertIn("key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core",
-                      done.stderr)
+        done = self.program("validate", self.path, "--set", "terrain.ranks=3", "--threads", 4,
+                            "--json",
+                            says="key 'run.threads': is 4: engine 'liggghts' uses them to make the bed, then one core")
         told = json.loads(done.stdout)
         self.assertEqual(told["time"]["terrain_threads"], 1)
         self.assertGreater(told["time"]["ghosts_per_rank"], 0)
@@ -252,8 +238,8 @@ class Refused(CheckpointTest):
         shutil.copy2(FAULTY, program)
         for command in (["run", self.path, "--out", self.run_folder], ["validate", self.path],
                         ["ranks", "--slurm", self.path]):
-            done = self.furrow(*command, program=str(program), code=2, matches="key 'terrain.engine': 'liggghts' is not "
-                               "part of this program: .*libliggghts-dev")
+            done = self.furrow(*command, program=str(program), code=2, matches="key 'terrain.engine': 'liggghts' is "
+                               "not part of this program: .*libliggghts-dev")
             self.assertEqual(len(re.findall("error", done.stderr)), 1, done.stderr)
         self.assertFalse(self.run_folder.exists())
         with open(LIBRARY, "rb") as whole:

@@ -16,9 +16,7 @@ PLAIN = {name: value for name, value in os.environ.items() if not name.startswit
 
 class Package(SystemTest):
     def run_here(self, *command):
-        done = subprocess.run([*map(str, command)], cwd=self.folder, text=True, capture_output=True, env=PLAIN)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return done.stdout
+        return self.call([*map(str, command)], env=PLAIN).stdout
 
     def test_the_example_project_is_built_on_an_installed_tree_and_runs(self):
         self.run_here("cmake", "--install", BUILD, "--prefix", "first")

@@ -179,22 +179,32 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def says(self, text, says=(), matches=None):
-        """The text holds all of these words, and something that matches the pattern."""
-        for words in [says] if isinstance(says, str) else says:
-            self.assertIn(words, text)
+    def expect(self, done, code=0, says=(), lacks=(), matches=None, errors=None, shows=(), prints=None):
+        """A program has ended with this exit code. Standard error has the words `says`, not those of `lacks`, something
+        that matches the pattern, and so many errors; standard output has the words `shows`, or is `prints`.
+        @returns it"""
+        self.assertEqual(done.returncode, code, done.stderr or done.stdout[-2000:])
+        if errors is not None:
+            self.assertEqual(done.stderr.count("furrow: error: "), errors, done.stderr)
+        for check, text, words in ((self.assertIn, done.stderr, says), (self.assertNotIn, done.stderr, lacks),
+                                   (self.assertIn, done.stdout, shows)):
+            for word in [words] if isinstance(words, str) else words:
+                check(word, text)
         if matches is not None:
-            self.assertRegex(text, matches)
-
-    def furrow(self, *arguments, code=0, says=(), matches=None, prints=None, **options):
-        """Runs the program to its end. It ends with this exit code, says these words on standard error, one that
-        matches the pattern too, and prints exactly this on standard output."""
-        done = furrow(*arguments, **{"cwd": self.folder, **options})
-        self.assertEqual(done.returncode, code, (arguments, done.stderr))
-        self.says(done.stderr, says, matches)
+            self.assertRegex(done.stderr, matches)
         if prints is not None:
             self.assertEqual(done.stdout, prints)
         return done
+
+    def furrow(self, *arguments, cwd=None, env=None, program=PROGRAM, timeout=200, **expected):
+        """Runs the program to its end, which is as `expect` says."""
+        return self.expect(furrow(*arguments, cwd=cwd or self.folder, env=env, program=program, timeout=timeout),
+                           **expected)
+
+    def call(self, command, cwd=None, env=None, timeout=900, **expected):
+        """The same for any command."""
+        return self.expect(subprocess.run(command, cwd=cwd or self.folder, env=env, timeout=timeout, text=True,
+                                          errors="replace", capture_output=True, stdin=subprocess.DEVNULL), **expected)
 
     def start(self, *arguments, **options):
         """Starts the program, which ends with the test at the latest."""
@@ -202,12 +212,24 @@ class SystemTest(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
-    def ended(self, process, code, says=(), matches=None, timeout=60):
-        """Waits for a program that ends with this exit code. @returns what it said on standard error"""
-        _, err = process.communicate(timeout=timeout)
-        self.assertEqual(process.returncode, code, err)
-        self.says(err, says, matches)
+    def ended(self, process, code, timeout=60, **expected):
+        """Waits for a program to end as `expect` says. @returns what it said on standard error"""
+        out, err = process.communicate(timeout=timeout)
+        self.expect(subprocess.CompletedProcess(process.args, process.returncode, out, err), code, **expected)
         return err
+
+    def summary(self, run="out", name="summary.json"):
+        return read_json(self.folder / run / name)
+
+    def run_of(self, name, scenario, *flags, **expected):
+        """Runs a scenario into a folder of this name. @returns its summary and what was said on standard error"""
+        done = self.furrow("run", write_scenario(self.folder, scenario, f"{name}.json"), "--no-plots", "--out",
+                           self.folder / name, *flags, timeout=400, **expected)
+        return self.summary(name), done.stderr
+
+    def accounts_close(self, summary):
+        for what in ("energy", "momentum"):
+            self.assertTrue(summary["accounts"][what]["closes"], summary["accounts"][what])
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())

@@ -58,12 +58,10 @@ class Package(SystemTest):
                                lambda: run.vehicle)
 
     def test_packages_that_are_missing_are_named_at_once(self):
-        done = subprocess.run([sys.executable, "-c", "import importlib.util as u\nfind = u.find_spec\n"
-                               "u.find_spec = lambda name, *more: None if name in ('pandas', 'xarray') else find(name, "
-                               "*more)\nimport furrow"],
-                              text=True, capture_output=True,
-                              env={**os.environ, "PYTHONPATH": str(ROOT / "scripts" / "python")})
-        self.assertEqual(done.returncode, 1)
+        done = self.call([sys.executable, "-c", "import importlib.util as u\nfind = u.find_spec\n"
+                          "u.find_spec = lambda name, *more: None if name in ('pandas', 'xarray') else find(name, "
+                          "*more)\nimport furrow"], env={**os.environ, "PYTHONPATH": str(ROOT / "scripts" / "python")},
+                         code=1)
         self.assertTrue(done.stderr.endswith("ImportError: the package 'furrow' needs what is not installed: "
                                              "apt install python3-pandas python3-xarray\n"), done.stderr)
 
@@ -132,10 +130,8 @@ class Package(SystemTest):
         if not shutil.which("pvpython") or not shutil.which("xvfb-run"):
             self.skipTest("no pvpython or xvfb-run")
         folder, picture = self.run_.write_vtk(self.folder / "vtk"), self.folder / "run.png"
-        done = subprocess.run(["xvfb-run", "-a", "-s", "-noreset", "pvpython",
-                               ROOT / "scripts" / "python" / "paraview_run.py", folder,
-                               "--picture", picture], text=True, capture_output=True, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.call(["xvfb-run", "-a", "-s", "-noreset", "pvpython", ROOT / "scripts" / "python" / "paraview_run.py",
+                   folder, "--picture", picture])
         seen = matplotlib.image.imread(picture)[100:-100, 200:-200, :3]
         self.assertGreater(float(seen.std()), 0.03, "nothing but the background")
 
@@ -207,9 +203,8 @@ class Package(SystemTest):
         self.assertEqual(doctest.testmod(units).failed, 0)
         if not importlib.util.find_spec("mypy"):
             self.skipTest("no mypy")
-        done = subprocess.run(["/usr/bin/python3", "-m", "mypy", "--config-file", "mypy.ini", "--cache-dir", self.folder
-                               / "cache", "furrow"], cwd=ROOT / "scripts" / "python", text=True, capture_output=True)
-        self.assertEqual(done.returncode, 0, done.stdout)
+        self.call(["/usr/bin/python3", "-m", "mypy", "--config-file", "mypy.ini", "--cache-dir", self.folder
+                               / "cache", "furrow"], cwd=ROOT / "scripts" / "python")
 
 
 if __name__ == "__main__":

@@ -74,20 +74,41 @@ def browser():
     return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
 
 
-def opened(driver, page_file, patience=120):
+READY = "document.documentElement.dataset.ready === 'yes'"
+PLAYBACK = "document.querySelector('.playback').dataset.ready === 'yes'"
+
+
+def wait(driver, condition, patience=120):
+    """Seconds until a condition holds."""
+    begin = time.monotonic()
+    while not driver.execute_script(f"return Boolean({condition})"):
+        if time.monotonic() - begin > patience:
+            raise AssertionError(f"not within {patience} s: {condition}")
+        time.sleep(0.05)
+    return time.monotonic() - begin
+
+
+def complaints(driver):
+    return [line["message"] for line in driver.get_log("browser") if line["level"] != "INFO"]
+
+
+def opened(driver, page_file):
     """Seconds until the page is ready, and until its playback is."""
     begin = time.monotonic()
     driver.get(page_file.as_uri())
-    ready = []
-    for script in ("document.documentElement.dataset.ready === 'yes'",
-                   "document.querySelector('.playback').dataset.ready === 'yes'"):
-        while not driver.execute_script(f"return {script}"):
-            if time.monotonic() - begin > patience:
-                raise AssertionError(f"not within {patience} s: {script}")
-            time.sleep(0.05)
-        ready.append(time.monotonic() - begin)
-        driver.execute_script("document.querySelector('.playback').scrollIntoView()")
-    return ready
+    wait(driver, READY)
+    ready = time.monotonic() - begin
+    driver.execute_script("document.querySelector('.playback').scrollIntoView()")
+    wait(driver, PLAYBACK)
+    return ready, time.monotonic() - begin
+
+
+def provenance(command):
+    """Where figures come from."""
+    def printed(*words):
+        return subprocess.run(words, text=True, capture_output=True).stdout.strip()
+    return {"format_version": 1, "commit": printed("git", "-C", ROOT, "rev-parse", "--short", "HEAD"),
+            "command": command, "browser": printed("chromium", "--version"), "cores": os.cpu_count()}
 
 
 def measured(folder, frames, grains, shake=0.0):
@@ -106,7 +127,7 @@ def measured(folder, frames, grains, shake=0.0):
         renderer = driver.execute_script("const gl = document.createElement('canvas').getContext('webgl2'), about = "
                                          "gl.getExtension('WEBGL_debug_renderer_info'); return about ? "
                                          "gl.getParameter(about.UNMASKED_RENDERER_WEBGL) : ''")
-        complaints = [line["message"] for line in driver.get_log("browser") if line["level"] != "INFO"]
+        said = complaints(driver)
     finally:
         driver.quit()
     return {"frames": frames, "frames_shown": len(played["seconds"]), "grains": grains,
@@ -114,7 +135,7 @@ def measured(folder, frames, grains, shake=0.0):
             "make_page_s": round(made, 2), "page_ready_s": round(ready, 2), "playback_ready_s": round(playback, 2),
             "slider_step_s": {"median": round(statistics.median(played["seconds"]), 3),
                               "largest": round(max(played["seconds"]), 3)},
-            "longest_stall_while_playing_s": round(stall, 3), "renderer": renderer, "complaints": complaints}
+            "longest_stall_while_playing_s": round(stall, 3), "renderer": renderer, "complaints": said}
 
 
 class Long(SystemTest):
@@ -149,24 +170,21 @@ class InBrowser(SystemTest):
     def ask(self, script):
         return self.driver.execute_script(script)
 
-    def wait(self, script, seconds=60):
-        end = time.monotonic() + seconds
-        while not self.ask(f"return Boolean({script})"):
-            self.assertLess(time.monotonic(), end, script)
-            time.sleep(0.05)
+    def wait(self, script):
+        wait(self.driver, script, 60)
 
     def test_the_page_works(self):
         self.driver.get(self.page.as_uri())
-        self.wait("document.documentElement.dataset.ready === 'yes'")
+        self.wait(READY)
         self.frames_play()
         self.plots_answer()
         self.themes_change()
         self.rows_can_be_hidden()
-        self.assertEqual([line for line in self.driver.get_log("browser") if line["level"] != "INFO"], [])
+        self.assertEqual(complaints(self.driver), [])
 
     def frames_play(self):
         self.ask("document.querySelector('.playback').scrollIntoView()")
-        self.wait("document.querySelector('.playback').dataset.ready === 'yes'")
+        self.wait(PLAYBACK)
         played = json.loads(self.ask(PLAY))
         self.assertEqual(len(set(played["pictures"])), 8, played)  # every frame differs from the others
         self.assertIn("t = 0.350 s · frame 8 of 8", played["words"])
@@ -212,11 +230,8 @@ class InBrowser(SystemTest):
 
 def measure(file):
     """Writes the figures of both long pages, with where they come from."""
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
-                            text=True, capture_output=True).stdout.strip()
-    version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
-    figures = {"format_version": 1, "commit": commit, "command": "tests/system/report_browser.py --measure FILE.json",
-               "browser": version, "cores": os.cpu_count(), "machine": platform.machine(), "pages": []}
+    figures = {**provenance("tests/system/report_browser.py --measure FILE.json"), "machine": platform.machine(),
+               "pages": []}
     for frames, grains, shake in ((12, 25000, 0.0), (1000, 12000, report_page.RADIUS)):
         with tempfile.TemporaryDirectory(prefix="furrow page ") as folder:
             figures["pages"].append(measured(folder, frames, grains, shake))

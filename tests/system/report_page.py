@@ -5,6 +5,7 @@ import base64
 import json
 import pathlib
 import re
+import shutil
 import sys
 import unittest
 import zlib
@@ -12,7 +13,7 @@ import zlib
 import h5py
 import numpy as np
 
-from program import ROOT, SystemTest, furrow, main, read_json, write_json, write_scenario
+from program import ROOT, SystemTest, main, read_json, write_json, write_scenario
 
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "report")]
 import page  # noqa: E402
@@ -25,6 +26,12 @@ from plot.sweep import Sweep  # noqa: E402
 
 FRAMES, GRAINS, STEP = 5, 900, 0.05
 RADIUS = 0.02
+
+# What accounts and ranks are drawn from.
+ACCOUNTED = {"accounts": {"energy": {"closes": True, "residual_share": 1e-4, "turnover": 100.0, "residual": 0.01,
+                                     "work": {"drive_work": 90.0}}},
+             "ranks": [{"rank": 0, "node": "rig", "threads": 1, "compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0,
+                        "busy_share": 0.25}]}
 
 
 def document(path):
@@ -124,19 +131,31 @@ class Page(SystemTest):
         self.run_folder = self.folder / "run"
         self.positions = known_run(self.run_folder)
 
-    def made(self):
-        self.assertEqual(page.write(self.run_folder, [Run(self.run_folder)], lambda *_: True), ["report.html"])
-        return self.run_folder / "report.html"
+    def page_of(self, kind, folder):
+        """What `document` says of the page of a folder."""
+        self.assertEqual(page.write(folder, [kind(folder)], lambda *_: True), ["report.html"])
+        return document(folder / "report.html")
+
+    def page_of_run(self):
+        return self.page_of(Run, self.run_folder)
+
+    def study(self, table, name="study", **asked):
+        folder = self.folder / name
+        folder.mkdir(parents=True)
+        write_json(folder / "sweep.json", {"study": "slips", "plot": {}, "results": [], **asked})
+        (folder / "sweep.csv").write_text(table)
+        return folder
 
     def test_it_asks_for_nothing_from_outside_and_runs_nothing_of_the_results(self):
-        text = self.made().read_text(encoding="utf-8")
+        self.page_of_run()
+        text = (self.run_folder / "report.html").read_text(encoding="utf-8")
         self.assertIn("default-src 'none'", text)
         self.assertNotRegex(text.split("<script")[0], r"(src|href)\s*=")
         self.assertNotIn("<img", text)
         self.assertEqual(text.count("</script>"), text.count("<script"))
 
     def test_answer_expectation_and_defaults(self):
-        about, _ = document(self.made())
+        about, _ = self.page_of_run()
         words = " ".join(block["text"] for block in blocks_of(about, "text"))
         # 2.306 standard errors of 4 N, 8 degrees of freedom
         self.assertIn("110.0 ± 9.2 N at 20 % slip (95 % interval", words)
@@ -149,7 +168,7 @@ class Page(SystemTest):
         self.assertEqual(about["badges"], [{"text": "not steady", "kind": "warn"}])
 
     def test_curves_are_those_of_the_table(self):
-        about, part = document(self.made())
+        about, part = self.page_of_run()
         (pull,) = (chart for block in blocks_of(about, "charts") for chart in block["charts"]
                    if chart["title"] == "Drawbar pull")
         self.assertEqual((pull["unit"], pull["window"]), ("N", [0.1, 0.25]))
@@ -157,7 +176,7 @@ class Page(SystemTest):
         np.testing.assert_allclose(y, 100 * x, rtol=1e-4, atol=1e-6)
 
     def test_grains_and_tires_are_where_the_frames_have_them(self):
-        about, part = document(self.made())
+        about, part = self.page_of_run()
         (block,) = blocks_of(about, "playback")
         bed, numbers = block["bed"], part("numbers")
         self.assertEqual(bed["grains"], GRAINS)
@@ -206,12 +225,9 @@ class Page(SystemTest):
 
     def test_accounts_and_ranks_of_a_failed_run_are_shown(self):
         (self.run_folder / "summary.json").unlink()
-        energy = {"closes": True, "residual_share": 1e-4, "turnover": 100.0,
-                  "residual": 0.01, "work": {"drive_work": 90.0}}
+        shutil.rmtree(self.run_folder / "frames")
         write_json(self.run_folder / "summary_failed.json", {
-            "scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}, "accounts": {"energy": energy},
-            "ranks": [{"rank": 0, "node": "rig", "threads": 1, "compute_s": 1.0,
-                       "wait_s": 3.0, "cpu_s": 1.0, "busy_share": 0.25}]})
+            "scenario": "known", "failed": {"error": "too hard", "time_s": 0.2}, **ACCOUNTED})
         done = self.furrow("report", self.run_folder)
         names = {pathlib.Path(name).name for name in done.stdout.splitlines()}
         self.assertLessEqual({"energy.png", "ranks.png", "report.html"}, names, done.stderr)
@@ -240,44 +256,28 @@ class Page(SystemTest):
         self.assertEqual([line["label"] for line in pull["lines"]], ["run", "other"])
 
     def test_a_table_of_a_study_that_is_none_is_named(self):
-        study = self.folder / "study"
-        study.mkdir()
-        write_json(study / "sweep.json", {"study": "slips", "plot": {}, "results": []})
-        (study / "sweep.csv").write_text("garbage\n")
-        done = furrow("report", study, cwd=self.folder)
-        self.assertNotEqual(done.returncode, 0)
-        self.assertIn("sweep.csv has no column 'folder', expected the table that furrow sweep wrote", done.stderr)
+        self.furrow("report", self.study("garbage\n"), code=5,
+                    says="sweep.csv has no column 'folder', expected the table that furrow sweep wrote")
 
     def test_the_page_of_a_study_does_not_tell_how_long_its_runs_took(self):
         pages = []
         for wall in ("1.25", "12.5"):
-            study = self.folder / f"wall {wall}" / "study"
-            study.mkdir(parents=True)
-            write_json(study / "sweep.json", {"study": "slips", "plot": {}, "results": ["sinkage_m", "wall_s"]})
-            (study / "sweep.csv").write_text(f"folder,state,exit_code,rig.slip,sinkage_m,wall_s\n"
-                                             f"runs/1,done,0,0.2,0.021,{wall}\n")
-            self.assertEqual(page.write(study, [Sweep(study)], lambda *_: True), ["report.html"])
+            study = self.study("folder,state,exit_code,rig.slip,sinkage_m,wall_s\n"
+                               f"runs/1,done,0,0.2,0.021,{wall}\n", f"{wall}/study", results=["sinkage_m", "wall_s"])
+            about, _ = self.page_of(Sweep, study)
             pages.append((study / "report.html").read_bytes())
         self.assertEqual(*pages)
-        about, _ = document(study / "report.html")
         (table,) = blocks_of(about, "table")
         self.assertEqual(table["columns"][3:], ["rig.slip", "sinkage, mm"])
         self.assertEqual(table["rows"], [["runs/1", "done", "0", "0.2", "21"]])
 
     def test_the_page_of_a_study_says_what_it_is_about_and_its_keys_have_units(self):
-        study = self.folder / "study"
-        study.mkdir()
-        write_json(study / "sweep.json", {
-            "study": "slips", "description": "Two soils.",
-            "results": ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"],
-            "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "error": "drawbar_pull_N.sem",
-                     "lines": "terrain.cohesion"}})
-        (study / "sweep.csv").write_text("folder,state,exit_code,rig.slip,terrain.cohesion,drawbar_pull_N.mean,"
-                                         "drawbar_pull_N.sem,drawbar_pull_N.steady\n"
-                                         "runs/1,done,0,0.2,40000.0,120,4,true\n"
-                                         "runs/2,done,0,0.3,40000.0,130,5,false\n")
-        page.write(study, [Sweep(study)], lambda *_: True)
-        about, _ = document(study / "report.html")
+        results = ["drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady"]
+        study = self.study(f"folder,state,exit_code,rig.slip,terrain.cohesion,{','.join(results)}\n"
+                           "runs/1,done,0,0.2,40000.0,120,4,true\nruns/2,done,0,0.3,40000.0,130,5,false\n",
+                           description="Two soils.", results=results,
+                           plot={"x": "rig.slip", "y": results[0], "error": results[1], "lines": "terrain.cohesion"})
+        about, _ = self.page_of(Sweep, study)
         self.assertEqual([block["text"] for block in blocks_of(about, "text")],
                          ["Two soils.",
                           "1 of 2 points include a run whose pull is not steady: such a point is not to be quoted."])
@@ -298,8 +298,7 @@ class Page(SystemTest):
             "sticking_stiffness": {"lateral_N_per_m": 1.5e5, "torsional_Nm_per_rad": 2500.0}})
         (folder / "press.csv").write_text("deflection_m,force_N,unloading\n"
                                          "0,0,0\n0.01,3000,0\n0.02,7000,0\n0.01,2990,1\n0,0,1\n")
-        page.write(folder, [Press(folder)], lambda *_: True)
-        about, part = document(folder / "report.html")
+        about, part = self.page_of(Press, folder)
         rows = blocks_of(about, "table")[-1]["rows"]
         for row in (["load", "4600", "N"], ["deflection", "12.8", "mm"],
                     ["pressure", "200", "kPa"], ["statically stable", "yes", ""],
@@ -345,17 +344,13 @@ class OwnFiles(SystemTest):
     def setUp(self):
         super().setUp()
         self.run_folder, self.out = self.folder / "run", self.folder / "own"
-        known_run(self.run_folder)
-        summary = read_json(self.run_folder / "summary.json")
-        # so that there are two plots: ranks.png and scene.png
-        summary["ranks"][0] |= {"compute_s": 1.0, "wait_s": 3.0, "cpu_s": 1.0}
-        write_json(self.run_folder / "summary.json", summary)
+        known_run(self.run_folder, count=0)
+        # two plots that are quickly drawn: ranks.png and energy.png
+        write_json(self.run_folder / "summary.json", {**read_json(self.run_folder / "summary.json"), **ACCOUNTED})
         self.out.mkdir()
 
-    def report(self, *arguments, code=0, told=()):
-        done = self.furrow("report", *arguments, code=code)
-        for words in told:
-            self.assertIn(words, done.stderr)
+    def report(self, *arguments, **expected):
+        done = self.furrow("report", *arguments, **expected)
         return [pathlib.Path(line).name for line in done.stdout.splitlines()]
 
     def parts(self):
@@ -364,7 +359,7 @@ class OwnFiles(SystemTest):
     def test_a_page_in_the_folder_of_a_run_stays(self):
         (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\n")
         (self.run_folder / "report.html").write_text("mine")
-        self.report("run", told=["no report.html: furrow did not write the file of that name in this folder"])
+        self.report("run", says=["no report.html: furrow did not write the file of that name in this folder"])
         self.assertEqual((self.run_folder / "report.html").read_text(), "mine")
 
     def test_they_stay_in_any_folder_and_the_rest_can_be_made_again(self):
@@ -373,17 +368,17 @@ class OwnFiles(SystemTest):
             (self.out / name).write_text("mine")
         told = [f"no {name}: furrow did not write the file of that name in this folder"
                 for name in ("report.html", "ranks.png")]
-        made = self.report("run", "--out", "own", told=told)
-        self.assertEqual(made, ["scene.png"])
-        (self.out / "scene.png").write_text("of an earlier report")
-        self.assertEqual(self.report("run", "--out", "own", told=told), made)
-        self.assertTrue((self.out / "scene.png").read_bytes().startswith(b"\x89PNG"))
+        made = self.report("run", "--out", "own", says=told)
+        self.assertEqual(made, ["energy.png"])
+        (self.out / "energy.png").write_text("of an earlier report")
+        self.assertEqual(self.report("run", "--out", "own", says=told), made)
+        self.assertTrue((self.out / "energy.png").read_bytes().startswith(b"\x89PNG"))
         self.assertEqual([(self.out / name).read_text() for name in mine], ["mine"] * len(mine))
         self.assertEqual({path.name for path in self.out.iterdir()}, {*mine, *made, ".furrow-report"})
 
     def test_they_stay_where_runs_are_compared(self):
         (self.out / "report.html").write_text("mine")
-        self.report("run", "run", "--out", "own", code=5, told=["own/report.html: was not written"])
+        self.report("run", "run", "--out", "own", code=5, says=["own/report.html: was not written"])
         self.assertEqual([path.name for path in self.out.iterdir()], ["report.html"])
         self.assertEqual((self.out / "report.html").read_text(), "mine")
         for _ in range(2):
@@ -392,27 +387,27 @@ class OwnFiles(SystemTest):
 
     def test_where_all_names_are_taken_it_is_told(self):
         made = self.report("run", "--out", "other")
-        self.assertEqual(made, ["ranks.png", "scene.png", "report.html"])
+        self.assertEqual(made, ["ranks.png", "energy.png", "report.html"])
         for name in made:
             (self.out / name).write_text("mine")
         self.report("run", "--out", "own", code=5,
-                    told=["own: no plot was written, as other files have their names, expected another folder"])
+                    says=["own: no plot was written, as other files have their names, expected another folder"])
         self.assertEqual({path.name for path in self.out.iterdir()}, set(made))
 
     def test_links_are_neither_followed_nor_replaced(self):
         (self.folder / "precious").write_text("precious")
         self.report("run", "--out", "own")
-        (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\nscene.png\nreport.html\n")
+        (self.run_folder / ".furrow-run").write_text("furrow-run 1\nsummary.json\nenergy.png\nreport.html\n")
         for folder, arguments in ((self.run_folder, ["run"]), (self.out, ["run", "--out", "own"])):
             with self.subTest(folder.name):
-                for name, to in (("scene.png", "precious"), ("report.html", "nowhere")):
+                for name, to in (("energy.png", "precious"), ("report.html", "nowhere")):
                     (folder / name).unlink(missing_ok=True)
                     (folder / name).symlink_to(self.folder / to)
-                made = self.report(*arguments, told=[f"no {name}: the file of that name in this folder is a link, "
-                                                     "which furrow does not follow" for name in ("scene.png",
-                                                                                                 "report.html")])
+                made = self.report(*arguments, says=[
+                    f"no {name}: the file of that name in this folder is a link, which furrow does not follow"
+                    for name in ("energy.png", "report.html")])
                 self.assertEqual(made, ["ranks.png"])
-                self.assertTrue((folder / "scene.png").is_symlink() and (folder / "report.html").is_symlink())
+                self.assertTrue((folder / "energy.png").is_symlink() and (folder / "report.html").is_symlink())
                 self.assertEqual((self.folder / "precious").read_text(), "precious")
                 self.assertFalse((self.folder / "nowhere").exists())
         self.assertEqual(self.parts(), [])
@@ -427,22 +422,22 @@ class OwnFiles(SystemTest):
 
     def test_a_list_that_was_cut_short_or_is_a_link(self):
         listed = self.out / ".furrow-run"
-        listed.write_text("furrow-run 1\nold.png\nfurrow-run 1\nrun.log\nscene.p")
-        self.assertTrue(own_files.may_write(self.out, "scene.png"))
-        self.assertEqual(listed.read_text(), "furrow-run 1\nold.png\nfurrow-run 1\nrun.log\nscene.png\n")
-        self.assertEqual(own_files.names_in(listed), ["run.log", "scene.png"])
+        listed.write_text("furrow-run 1\nold.png\nfurrow-run 1\nrun.log\nenergy.p")
+        self.assertTrue(own_files.may_write(self.out, "energy.png"))
+        self.assertEqual(listed.read_text(), "furrow-run 1\nold.png\nfurrow-run 1\nrun.log\nenergy.png\n")
+        self.assertEqual(own_files.names_in(listed), ["run.log", "energy.png"])
         listed.write_text("")  # killed before its first line
-        self.assertTrue(own_files.may_write(self.out, "scene.png"))
-        self.assertEqual(listed.read_text(), "furrow-run 1\nscene.png\n")
+        self.assertTrue(own_files.may_write(self.out, "energy.png"))
+        self.assertEqual(listed.read_text(), "furrow-run 1\nenergy.png\n")
         listed.unlink()
         (self.folder / "precious").write_text("precious\n")
         (self.out / ".furrow-report").symlink_to(self.folder / "precious")
         with self.assertRaises(OSError):
-            own_files.may_write(self.out, "scene.png")
+            own_files.may_write(self.out, "energy.png")
         self.assertEqual((self.folder / "precious").read_text(), "precious\n")
 
     def test_a_file_that_cannot_be_written_leaves_the_earlier_one(self):
-        picture = self.out / "scene.png"
+        picture = self.out / "energy.png"
         picture.write_bytes(b"earlier")
         with self.assertRaises(TypeError):
             own_files.write_whole(picture, None)

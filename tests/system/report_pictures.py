@@ -10,36 +10,20 @@ page and its playback are ready, and what the browser complained about.
 """
 import io
 import json
-import os
 import pathlib
-import subprocess
 import sys
 import time
 
 from PIL import Image
 
-from program import ROOT
-from report_browser import browser
+from report_browser import PLAYBACK, READY, browser, complaints, provenance, wait
 
 WIDTH, MOST_BYTES = 900, 100_000  # of a picture: pixels, bytes
-PATIENCE = 120  # s
-READY = "document.documentElement.dataset.ready === 'yes'"
-PLAYBACK = "document.querySelector('.playback').dataset.ready === 'yes'"
 LATE = """
 const slider = document.querySelector('.playback input[type=range]');
 slider.value = Math.round(0.85 * slider.max);
 slider.dispatchEvent(new Event('input'));
 """
-
-
-def wait(driver, condition):
-    """Seconds until a condition holds."""
-    begin = time.monotonic()
-    while not driver.execute_script(f"return Boolean({condition})"):
-        if time.monotonic() - begin > PATIENCE:
-            sys.exit(f"not within {PATIENCE} s: {condition}")
-        time.sleep(0.02)
-    return time.monotonic() - begin
 
 
 def keep(driver, file):
@@ -74,7 +58,7 @@ def show(driver, name, page, results, out):
     else:
         driver.execute_script("document.body.dataset.theme = 'dark'")
     keep(driver, out / f"{name}_dark.jpg")
-    figures["complaints"] = [line["message"] for line in driver.get_log("browser") if line["level"] != "INFO"]
+    figures["complaints"] = complaints(driver)
     return figures
 
 
@@ -92,12 +76,9 @@ def main():
             found[name] = show(driver, name, place / "report.html" if results else place, results, out)
     finally:
         driver.quit()
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
-                            text=True, capture_output=True).stdout.strip()
-    version = subprocess.run(["chromium", "--version"], text=True, capture_output=True).stdout.strip()
-    print(json.dumps({"format_version": 1, "commit": commit,
-                      "command": " ".join(["tests/system/report_pictures.py", *sys.argv[1:]]),
-                      "browser": version, "cores": os.cpu_count(), "pages": found}, indent=2))
+    command = " ".join(["tests/system/report_pictures.py", *sys.argv[1:]])
+    print(json.dumps({**provenance(command), "pages": found}, indent=2))
+
 
 
 if __name__ == "__main__":

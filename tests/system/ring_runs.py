@@ -28,11 +28,6 @@ STAND = {**ROLLING, "rig": {"type": "drawbar", "slip": 0.0, "angular_speed": 0, 
 
 
 class RingRuns(SystemTest):
-    def run_of(self, name, scenario, *flags):
-        path = write_scenario(self.folder, scenario, f"{name}.json")
-        done = self.furrow("run", path, "--no-plots", "--out", self.folder / name, *flags, timeout=400)
-        return read_json(self.folder / name / "summary.json"), done.stderr
-
     def test_at_rest_on_hard_ground_it_is_deflected_as_by_press(self):
         """On a ground that hardly gives way: 5e7 N/m³ takes up 7 % of the deflection, 2e8 N/m³ 2 %. Of 120 segments the
         middles lie 0.16 mm above the nodes, 1.2 % of the deflection."""
@@ -45,7 +40,7 @@ class RingRuns(SystemTest):
         slides, _ = self.run_of("slides", {**hard, "tire": {**ring, "friction": 0.0}})
         self.furrow("press", path, "--out", self.folder / "press", "--deflection", "0.03",
                     "--load", told["vertical_load_N"])
-        pressed = read_json(self.folder / "press/summary.json")["deflection_m"]
+        pressed = self.summary("press")["deflection_m"]
         self.assertAlmostEqual(slides["tire_deflection_m"] / pressed, 1.0, delta=0.01)
         # Segments of the footprint come straight down: friction changes nothing.
         self.assertAlmostEqual(told["tire_deflection_m"] / slides["tire_deflection_m"], 1.0, delta=1e-3)
@@ -92,8 +87,7 @@ class RingRuns(SystemTest):
         scenario["tire"] = RING
         summary, _ = self.run_of("out", scenario, "--set", "output.frame_interval=0", "--set", "run.end=0.9", "--set",
                                  "run.average_from=0.7")
-        self.assertTrue(summary["accounts"]["energy"]["closes"])
-        self.assertTrue(summary["accounts"]["momentum"]["closes"])
+        self.accounts_close(summary)
         self.assertEqual(len(summary["wheels"]), 4)
 
     def test_study_and_report(self):

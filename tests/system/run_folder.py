@@ -35,10 +35,8 @@ class Overwrite(SystemTest):
         self.path = write_scenario(self.folder, RUN)
         self.out = self.folder / "out"
 
-    def run_it(self, *arguments, code=0, cwd=None):
-        done = furrow("run", *arguments, cwd=cwd or self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+    def run_it(self, *arguments, **expected):
+        return self.furrow("run", *arguments, **expected)
 
     def put_mine(self, names=MINE):
         for name in names:
@@ -88,16 +86,14 @@ class Overwrite(SystemTest):
         before = {name: path.read_bytes() for name, path in files(self.out).items()}
         link = self.folder / "link.json"
         link.symlink_to(self.out / "scenario.json")
-        done = self.run_it(link, "--out", "out", "--overwrite", "--set", "terrain.bed=none.csv", code=2)
-        self.assertIn("none.csv", done.stderr)
+        self.run_it(link, "--out", "out", "--overwrite", "--set", "terrain.bed=none.csv", code=2, says="none.csv")
         self.assertEqual({name: path.read_bytes() for name, path in files(self.out).items()}, before)
 
     def test_a_way_through_a_folder_that_is_not_there_is_refused(self):
         inner = self.folder / "inner"
         inner.mkdir()
-        done = self.run_it(self.path, "--out", "nonex/../../w/x", code=2, cwd=inner)
-        self.assertRegex(done.stderr,
-                         "^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
+        self.run_it(self.path, "--out", "nonex/../../w/x", code=2, cwd=inner,
+                    matches="^furrow: error: nonex/../../w/x: key '--out': leads through 'nonex', which does not exist")
         self.assertEqual((self.names(), list(inner.iterdir())), (["inner", "small.json"], []))
 
     def test_a_study_is_refused_where_no_study_was(self):
@@ -139,8 +135,7 @@ class Gone(CheckpointTest):
         shutil.copytree(self.whole, self.run_folder)
         (self.run_folder / "checkpoints" / "notes.txt").write_text("mine")
         before = {name: path.read_bytes() for name, path in files(self.run_folder).items() if name != ".furrow-run"}
-        done = self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"])
-        self.assertIn("the run had not begun to step; ", done.stderr)
+        self.run_with_fault("frame", 1, 1, "kill", flags=["--overwrite"], says="the run had not begun to step; ")
         self.assertEqual({name: path.read_bytes() for name, path in files(self.run_folder).items()
                           if name != ".furrow-run"}, before)
 
@@ -152,8 +147,7 @@ class Gone(CheckpointTest):
                            "furrow: error: .*out: was moved, removed or emptied while the run was under way")
         self.assertNotIn("resume", err)
         self.assertFalse(self.run_folder.exists())
-        self.resume(run=elsewhere)
-        self.same_as_whole(elsewhere)
+        self.continues(elsewhere)
 
     def test_removed(self):
         process = self.start_waiting("step", 0, 220)
@@ -177,8 +171,7 @@ class Gone(CheckpointTest):
         elsewhere.mkdir()
         (elsewhere / "rig.h5").write_text("mine")
         (self.run_folder / "checkpoints" / ".000000000300.part").symlink_to(elsewhere)
-        self.mark.unlink()
-        self.ended(process, 0, says="the checkpoint at t = 0.06 s could not be written")
+        self.released(process, says="the checkpoint at t = 0.06 s could not be written")
         self.assertEqual({path.name: path.read_text() for path in elsewhere.iterdir()}, {"rig.h5": "mine"})
         self.assertEqual(steps(self.run_folder), [100, 200, 400, 500][-3:])
 
@@ -190,8 +183,7 @@ class Gone(CheckpointTest):
         part.mkdir()
         for path in (part / "rig.h5", part / "tire0.h5", self.run_folder / ".results.h5.0123456789abcdef.part"):
             path.write_text("half")
-        self.mark.unlink()
-        self.ended(process, 0)
+        self.released(process)
         self.same_as_whole(self.run_folder)
 
     def test_a_link_in_the_place_of_a_folder_of_results_is_refused(self):
@@ -237,8 +229,7 @@ class Gone(CheckpointTest):
             with self.subTest(change=change, name=name):
                 process = self.start_waiting("step", 0, 220)
                 change(self.run_folder / name)
-                self.mark.unlink()
-                self.ended(process, 0,
+                self.released(process,
                            says=f"{name} was removed or changed while the run was under way, and is written again")
                 self.same_as_whole()
                 shutil.rmtree(self.run_folder)
@@ -270,8 +261,7 @@ class Gone(CheckpointTest):
             os.chmod(self.run_folder / name, 0o755)
         for path in self.folder.rglob("*"):
             os.chown(path, 0, 0)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
 
 class Killed(CheckpointTest):
@@ -291,8 +281,7 @@ class Killed(CheckpointTest):
             self.mark.unlink()
             process.communicate(timeout=30)
             command = ["resume", self.run_folder, "--no-plots"]
-        self.resume()
-        self.same_as_whole()
+        self.continues()
         self.assertEqual(len(summary(self.run_folder)["segments"]), CYCLES + 1)
 
     def test_whoever_waits_in_vain_is_told_for_whom(self):

@@ -4,7 +4,6 @@ import csv
 import os
 import shutil
 import signal
-import subprocess
 
 from program import (PROGRAM, ROOT, SystemTest, changed, children, furrow, main, ranks, read_json, survivors, wait_for,
                      write_json, write_scenario)
@@ -73,7 +72,7 @@ class Run(SystemTest):
         for number, flags in enumerate((["--threads", "1"], ["--threads", "2"],
                                         ["--set", "run.seed=2"], [*sides, "1"], [*sides, "2"])):
             self.furrow("run", path, "--out", f"out{number}", *flags)
-            hashes.append(read_json(self.folder / f"out{number}" / "summary.json")["state_hash"])
+            hashes.append(self.summary(f"out{number}")["state_hash"])
         self.assertEqual(hashes[0], hashes[1])
         self.assertEqual(hashes[3], hashes[4])
         self.assertEqual(len({hashes[0], hashes[2], hashes[3]}), 3)
@@ -92,9 +91,7 @@ class Run(SystemTest):
         path = write_scenario(self.folder)
         command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
                    PROGRAM, "run", str(path)]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout, "results/small-001\n")
+        done = self.call(command, prints="results/small-001\n")
         self.assertTrue((self.folder / "results" / "small-001" / "summary.json").exists())
         self.assertEqual(done.stderr.count(" simulated s, "), 1, done.stderr)
 
@@ -102,7 +99,7 @@ class Run(SystemTest):
         self.furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
                     "--set", "terrain.layers=3", "--set", "run.step=2e-4")
         masses = [200, 320, 450, 700]
-        summary = read_json(self.folder / "out" / "summary.json")
+        summary = self.summary()
         self.assertEqual(len(summary["ranks"]), 6)
         self.assertNotIn("vertical_load_N", summary)
         for wheel, (mass, entry) in enumerate(zip(masses, summary["wheels"], strict=True)):

@@ -19,13 +19,11 @@ class TerrainRanks(CheckpointTest):
     def killed(self, point, count, step):
         for name, rank in RANKS.items():
             with self.subTest(f"{point} of {name}"):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.mark.unlink(missing_ok=True)
-                done = self.run_with_fault(point, rank, count, "kill")
-                self.assertIn(f"furrow: error: rank {rank} ({name}) was lost: killed by signal 9", done.stderr)
+                self.afresh()
+                self.run_with_fault(point, rank, count, "kill",
+                                    says=f"furrow: error: rank {rank} ({name}) was lost: killed by signal 9")
                 self.assertEqual(steps(self.run_folder)[-1], step)
-                self.resume()
-                self.same_as_whole()
+                self.continues()
 
     def test_killed_in_a_step(self):
         self.killed("step", 250, 200)
@@ -39,21 +37,17 @@ class TerrainRanks(CheckpointTest):
     def test_one_that_stops_is_named(self):
         for name, rank in list(RANKS.items())[1:]:
             with self.subTest(name):
-                shutil.rmtree(self.run_folder, ignore_errors=True)
-                self.mark.unlink(missing_ok=True)
-                done = self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"])
-                self.assertRegex(done.stderr, rf"furrow: error: .*waited 2 s for .*{name} does not answer")
-        self.resume()
-        self.same_as_whole(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
+                self.afresh()
+                self.run_with_fault("step", rank, 250, "stop", flags=["--set", "run.peer_timeout=2"],
+                                    matches=rf"furrow: error: .*waited 2 s for .*{name} does not answer")
+        self.continues(leave_out=["scenario.json", "checkpoints/*/manifest.json"])  # they hold the key
 
     def test_stopped_by_a_signal_they_all_save_at_the_same_step(self):
         process = self.start_waiting("step", 3, 250)
         process.terminate()
-        self.mark.unlink()
-        self.ended(process, 75)
+        self.released(process, 75)
         self.assertGreater(steps(self.run_folder)[-1], 2 * INTERVAL)
-        self.resume()
-        self.same_as_whole()
+        self.continues()
 
     def test_series_and_frames_do_not_depend_on_their_number(self):
         for ranks in (1, 2):
@@ -81,13 +75,13 @@ class TerrainRanks(CheckpointTest):
         run = self.copy_of_whole()
         manifests = sorted(run.glob("checkpoints/*/manifest.json"))
         shutil.rmtree(manifests[-1].parent)
-        done = self.program("resume", run, "--set", "terrain.ranks=2", "--no-plots", code=2)
-        self.assertIn("key 'terrain.ranks': is 2 but the run was computed with 3", done.stderr)
+        self.program("resume", run, "--set", "terrain.ranks=2", "--no-plots", code=2,
+                     says="key 'terrain.ranks': is 2 but the run was computed with 3")
 
     def test_more_than_the_engine_can_use_are_refused(self):
         path = write_scenario(self.folder, changed(terrain={"ranks": 2}), "grains.json")
-        done = self.program("run", path, "--out", self.run_folder, code=2)
-        self.assertIn("key 'terrain.ranks': is 2, expected 1: engine 'dem' runs on one rank", done.stderr)
+        self.program("run", path, "--out", self.run_folder, code=2,
+                     says="key 'terrain.ranks': is 2, expected 1: engine 'dem' runs on one rank")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import math
 import re
 import subprocess
 
-from program import ROOT, SystemTest, furrow, main, read_json, rows_of, write_json
+from program import ROOT, SystemTest, furrow, main, rows_of, write_json
 
 HARD = {
     "format_version": 1,
@@ -127,7 +127,7 @@ class Pressure(TireTest):
         (self.folder / "out").rename(self.folder / "whole")
         self.ends_well({**settings, "run.end": 0.03})
         self.furrow("resume", self.folder / "out", "--until", "0.06", "--no-plots", timeout=400)
-        resumed = read_json(self.folder / "out/summary.json")
+        resumed = self.summary()
         self.assertEqual(resumed["state_hash"], whole["state_hash"])
 
     def test_a_rigid_tire_does_not_mind(self):
@@ -158,7 +158,7 @@ class OtherTires(TireTest):
                   "tire.elements_width": 12, "rig.carrier_mass": mass}
         done = self.begin(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
         self.assertEqual(done.returncode, 0, done.stderr)
-        press = read_json(self.folder / "out/summary.json")
+        press = self.summary()
         self.assertLess(press["loading_unloading_difference"], 1e-3)
         self.assertTrue(stiffness[0] < press["secant_stiffness_N_per_m"] < stiffness[1], press)
         (self.folder / "out").rename(self.folder / "press")

@@ -1,26 +1,21 @@
 #!/usr/bin/python3
 """Whole vehicles as users run them: the shipped scenarios begin, the tables say what vehicle, driver and wheels do, and
 what is wrong is told in one line."""
-import csv
 
 import h5py
 
-from program import ROOT, SystemTest, main, read_json, write_json
+from program import ROOT, SystemTest, main, read_json, rows_of, write_json
 
 QUICK = ["--set", "tire.rigid=true", "--set", "output.frame_interval=0", "--no-plots"]
 
 
 class Vehicles(SystemTest):
-    def run_it(self, name, *flags, code=0):
-        done = self.furrow("run", ROOT / "rigs" / name, "--out", self.folder / "out", *flags, timeout=600, code=code)
-        return done
+    def run_it(self, name, *flags, **expected):
+        return self.furrow("run", ROOT / "rigs" / name, "--out", self.folder / "out", *flags, timeout=600, **expected)
 
     def table(self, subject):
-        with open(self.folder / "out" / f"timeseries_{subject}.csv", newline="") as file:
-            return [{key: float(value) for key, value in line.items()} for line in csv.DictReader(file)]
-
-    def summary(self):
-        return read_json(self.folder / "out" / "summary.json")
+        rows = rows_of(self.folder / "out" / f"timeseries_{subject}.csv")
+        return [{key: float(value) for key, value in line.items()} for line in rows]
 
     def test_the_car_on_hard_ground_is_let_down_stands_and_drives_off(self):
         done = self.run_it("hmmwv_rigid.json", *QUICK, "--set", "run.end=0.9", "--set", "run.average_from=0.7")
@@ -55,8 +50,7 @@ class Vehicles(SystemTest):
             self.assertGreater(wheel[drives]["iso_force_x_N"], 100)
             self.assertLess(abs(wheel[drives]["suspension_travel_m"]), 0.05)
         self.assertIn("vehicle", summary["subjects"])
-        self.assertTrue(summary["accounts"]["energy"]["closes"])
-        self.assertTrue(summary["accounts"]["momentum"]["closes"])
+        self.accounts_close(summary)
         self.assertLess(summary["accounts"]["energy"]["residual_share"], 0.01)
 
     def test_brakes_hold_the_car_on_a_slope(self):
@@ -81,10 +75,10 @@ class Vehicles(SystemTest):
         for axle in top_heavy["axles"]:
             axle["wheel"]["tire"] = str(ROOT / "tire/data" / axle["wheel"]["tire"])
         write_json(self.folder / "top_heavy.json", top_heavy)
-        told = self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json",
-                           "--set", "rig.driver=null", "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65",
-                           "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "run.average_from=0.5")
-        self.assertIn("s, before 2 s: the vehicle has turned over", told.stderr)
+        self.run_it("hmmwv_rigid.json", *QUICK, "--set", f"rig.vehicle={self.folder}/top_heavy.json",
+                    "--set", "rig.driver=null", "--set", "rig.heading=1.5707963", "--set", "rig.slope=0.65",
+                    "--set", "run.step=5e-4", "--set", "run.end=2", "--set", "run.average_from=0.5",
+                    says="s, before 2 s: the vehicle has turned over")
         self.assertEqual(self.summary()["end_reason"], "overturned")
         self.assertLess(self.summary()["end_time_s"], 1.9)
 
@@ -133,8 +127,7 @@ class Vehicles(SystemTest):
                  if read_json(path).get("rig", {}).get("type") == "vehicle"]
         self.assertGreaterEqual(len(names), 3)
         for name in names:
-            done = self.furrow("validate", ROOT / "rigs" / name)
-            self.assertIn("vehicle ", done.stdout)
+            self.furrow("validate", ROOT / "rigs" / name, shows="vehicle ")
             self.furrow("ranks", ROOT / "rigs" / name)
 
     def test_what_is_wrong_is_told_in_one_line_before_anything_is_written(self):

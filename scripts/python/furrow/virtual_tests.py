@@ -34,67 +34,43 @@ class Tests:
         return f"<{type(self).__name__} in {self.directory}>"
 
 
+def _table(name: str, about: str) -> cached_property[pd.DataFrame]:
+    """A table of the folder, read when it is first used. Raises Missing when the test was not run."""
+    def read(tests: Tests) -> pd.DataFrame:
+        return tests.table(name)
+    read.__doc__ = about
+    return cached_property(read)
+
+
 class Soil(Tests):
     """Virtual soil tests. `summary["standard_error"]` holds the errors of the figures."""
 
     FIGURES = "soil.json"
 
-    @cached_property
-    def plate(self) -> pd.DataFrame:
-        """Pressure against sinkage of each plate. Raises Missing when the test was not run, as the others do."""
-        return self.table("plate")
-
-    @cached_property
-    def shear(self) -> pd.DataFrame:
-        """Shear stress against displacement under each normal stress."""
-        return self.table("shear")
-
-    @cached_property
-    def cone(self) -> pd.DataFrame:
-        """Resistance of a cone against its depth."""
-        return self.table("cone")
-
-    @cached_property
-    def repose(self) -> pd.DataFrame:
-        """The slope that is left when a wall is taken away."""
-        return self.table("repose")
+    plate = _table("plate", "Pressure against sinkage of each plate.")
+    shear = _table("shear", "Shear stress against displacement under each normal stress.")
+    cone = _table("cone", "Resistance of a cone against its depth.")
+    repose = _table("repose", "The slope that is left when a wall is taken away.")
 
 
 class Press(Tests):
     """A tire pressed on a plate or a cleat."""
 
-    @cached_property
-    def curve(self) -> pd.DataFrame:
-        """Force against deflection, loading and unloading."""
-        return self.table("press")
-
-    @cached_property
-    def footprint(self) -> pd.DataFrame:
-        """Contact pressure over the footprint."""
-        return self.table("footprint")
+    curve = _table("press", "Force against deflection, loading and unloading.")
+    footprint = _table("footprint", "Contact pressure over the footprint.")
 
 
 class Modes(Tests):
     """Natural frequencies of a tire on a rim at rest."""
 
-    @cached_property
-    def frequencies(self) -> pd.DataFrame:
-        """Frequencies by circumferential order and number."""
-        return self.table("modes")
-
-    @cached_property
-    def shapes(self) -> pd.DataFrame:
-        """Amplitudes of the nodes of a section in each mode, their real and imaginary parts."""
-        return self.table("shapes")
+    frequencies = _table("modes", "Frequencies by circumferential order and number.")
+    shapes = _table("shapes", "Amplitudes of the nodes of a section in each mode, their real and imaginary parts.")
 
 
 class Kinematics(Tests):
     """Suspensions of a vehicle against travel and steering."""
 
-    @cached_property
-    def curves(self) -> pd.DataFrame:
-        """Camber, toe, rates and more of each wheel, by motion."""
-        return self.table("kinematics")
+    curves = _table("kinematics", "Camber, toe, rates and more of each wheel, by motion.")
 
 
 class Calibration(Tests):
@@ -108,10 +84,7 @@ class Calibration(Tests):
         """A row for each parameter: value, standard_error, interval_95, unit, at_bound."""
         return pd.DataFrame.from_dict(self.summary["parameters"], orient="index")
 
-    @cached_property
-    def fit(self) -> pd.DataFrame:
-        """Data, their standard errors and the model at every point of every target."""
-        return self.table("fit")
+    fit = _table("fit", "Data, their standard errors and the model at every point of every target.")
 
     @property
     def warnings(self) -> list[str]:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tables and plots of what bulk.py and trajectories.py left: table.py OUT [TO]
 
-TO (default: this folder) receives bulk.csv, bulk.json, law_and_step.csv, trajectories.json and the plots. Columns hold
+TO (default: this folder) receives bulk.csv, law_and_step.csv, trajectories.json and the plots. Columns hold
 values with half their 95 % confidence interval (Student's t). Beds, plate: means over seeds, differences seed by seed,
 for both started from the same positions. Shear: the line τ = c + σ tan φ through all tests, intervals from the scatter
 about it; only tests that both have.
@@ -206,8 +206,6 @@ def main():
         parser.error(f"{folder}: no such folder, expected what bulk.py left")
     table = [row for part in (bed_rows, plate_rows, shear_rows) for row in part(folder) if row]
     rows = [{k: row[k] for k in COLUMNS} for row in table]
-    (to / "bulk.json").write_text(json.dumps({"made": origin(folder), "rows": rows}, indent=0, ensure_ascii=False)
-                                  + "\n")
     driver.write(to.resolve() / "bulk.csv", rows, origin(folder))
     compared = [row for row in rows if row["liggghts"] is not None]
     outside = [row for row in compared if abs(row["difference"]) > row["difference_ci95"]]

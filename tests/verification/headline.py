@@ -39,7 +39,7 @@ def main():
                                                "help": "folder for the beds; kept"}).parse_args().results
     with tempfile.TemporaryDirectory(prefix="furrow_headline_") as holder:
         folder = results or pathlib.Path(holder) / "beds"
-        driver.furrow("run", SCENARIO, "--seeds", BEDS, "--out", folder, "--no-plots")
+        driver.furrow("run", SCENARIO, "--seeds", BEDS, "--out", folder, "--no-plots", progress=True)
         summary = driver.summary(folder)
     if summary["not_steady"]:
         print(f"not steady: {', '.join(summary['not_steady'])}")

@@ -44,29 +44,45 @@ def strike(case, started, number):
 
 
 def strike_all(case, started):
-    for pid in processes.living(str(case.work)):
+    everyone = list(processes.living(str(case.work)))
+    case.rng.shuffle(everyone)
+    for pid in everyone:
         case.send(started, pid, signal.SIGKILL)
+
+
+def struck(case, number):
+    """One of its processes gets a signal, and the run is continued."""
+    started, alive = begin(case)
+    if alive:
+        strike(case, started, number)
+    case.finish_and_continue(started)
 
 
 @action
 def kill(case):
-    started, alive = begin(case)
-    if alive:
-        strike(case, started, signal.SIGKILL)
-    case.finish(started)
-    case.until_done()
+    struck(case, signal.SIGKILL)
+
+
+@action
+def term(case):
+    struck(case, signal.SIGTERM)
+
+
+@action
+def other_signal(case):
+    """One that is not asked for: a terminal that is closed, a pipe that ends, a stray one."""
+    number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGPIPE, signal.SIGALRM,
+                              signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU])
+    case.notes["signal"] = number.name
+    struck(case, number)
 
 
 @action
 def kill_all(case):
     """As when the machine goes down, but for what the disk had not got yet."""
     started, _ = begin(case)
-    everyone = list(processes.living(str(case.work)))
-    case.rng.shuffle(everyone)
-    for pid in everyone:
-        case.send(started, pid, signal.SIGKILL)
-    case.finish(started)
-    case.until_done()
+    strike_all(case, started)
+    case.finish_and_continue(started)
 
 
 @action
@@ -82,30 +98,7 @@ def kill_and_kill(case):
             return case.until_done()
         started, ends = case.start(case.again), {0, 2}  # it may find the folder taken by those that are ending
         alive = case.wait(started, case.rng.uniform(0.1, 1.0))
-    case.finish(started, ends)
-    case.until_done()
-
-
-@action
-def other_signal(case):
-    """One that is not asked for: a terminal that is closed, a pipe that ends, a stray one."""
-    started, alive = begin(case)
-    if alive:
-        number = case.rng.choice([signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGPIPE, signal.SIGALRM,
-                                  signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU])
-        case.notes["signal"] = number.name
-        strike(case, started, number)
-    case.finish(started)
-    case.until_done()
-
-
-@action
-def term(case):
-    started, alive = begin(case)
-    if alive:
-        strike(case, started, signal.SIGTERM)
-    case.finish(started)
-    case.until_done()
+    case.finish_and_continue(started, ends)
 
 
 @action
@@ -154,8 +147,7 @@ def fill_disk(ballast):
 
 @action
 def disk_full(case):
-    """A small disk that is filled at the moment; without root, or where nothing can be mounted, a limit of file
-    sizes."""
+    """A small disk that is filled at the moment; without root, or where nothing can be mounted, limited file sizes."""
     if not small_disk(case):
         return file_limit(case)
     started, _ = begin(case)
@@ -181,8 +173,7 @@ def disk_full_for_moments(case):
         ballast.unlink()
         case.notes["times"] += 1
         alive = case.wait(started, case.rng.uniform(0.01, 0.1))
-    case.finish(started)
-    case.until_done()
+    case.finish_and_continue(started)
 
 
 @action
@@ -191,8 +182,7 @@ def file_limit(case):
     size = int(2 ** case.rng.uniform(10, 22))
     case.notes["limit_bytes"] = size
     started, _ = begin(case, limits=[(resource.RLIMIT_FSIZE, size)])
-    case.finish(started)
-    case.until_done()
+    case.finish_and_continue(started)
 
 
 @action
@@ -210,8 +200,7 @@ def memory_limit(case):
                 resource.prlimit(pid, resource.RLIMIT_AS, (size, size))
             except ProcessLookupError:
                 pass
-    case.finish(started)
-    case.until_done()
+    case.finish_and_continue(started)
 
 
 @action
@@ -239,8 +228,7 @@ def second_user(case):
         code = case.finish(case.start(words), {0, 2})
         if code == 0 and not started.ended():
             raise Deviation(f"{words[0]} was let into a folder that is taken")
-    case.finish(started, {0} if alive else DOCUMENTED)
-    case.until_done()
+    case.finish_and_continue(started, {0} if alive else DOCUMENTED)
 
 
 @action

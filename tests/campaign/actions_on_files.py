@@ -17,19 +17,17 @@ def moved(case):
     elsewhere = case.work / "elsewhere"
     if not case.out.exists():
         case.notes["in_time"] = False
-        case.finish(started)
-        return case.until_done()
+        return case.finish_and_continue(started)
     case.out.rename(elsewhere)
-    wait_for_end = case.rng.random() < 0.5
-    code = None
-    if wait_for_end:
-        code = case.finish(started)
+    ended = case.rng.random() < 0.5
+    if ended:
+        case.finish(started)
     else:
         time.sleep(case.rng.uniform(0.0, 0.5))
     if case.out.exists():
         raise Deviation(f"the moved folder was made anew with {sorted(path.name for path in case.out.iterdir())}")
     elsewhere.rename(case.out)
-    if code is None:
+    if not ended:
         case.finish(started)
     case.until_done()
 

@@ -1,5 +1,6 @@
 """One case of the campaign: a scenario, an action and a moment drawn from its seed, then continuing until done, and the
 comparison with the run that nothing disturbed."""
+import json
 import os
 import pathlib
 import re
@@ -20,7 +21,6 @@ BUSY_PATIENCE = 30.0  # s that a folder may stay taken by processes that are end
 # What a message must hold: an error, a stop, or the failure of a run of a study, with words that follow.
 MESSAGE = re.compile(r"furrow: (error: \S.{5,}|.*stopped by a signal|stopping|.*FAILED with exit code \d+: "
                      r"[^;\s].{4,})")
-
 NEWEST_DIFFERS = re.compile(r"checkpoints: the newest is \d+ and (\d+|none)$")
 LOST_CHECKPOINT = re.compile(r"the checkpoint at t = \S+ s could not be written: \S")
 
@@ -159,9 +159,12 @@ class Case:
                 raise Deviation(f"{words[0]} is refused for {BUSY_PATIENCE} s by {sorted(busy.values())}")
             time.sleep(0.2)
 
+    def finish_and_continue(self, started, expected=DOCUMENTED):
+        self.finish(started, expected)
+        self.until_done()
+
     def nothing_repeated(self, had, finished):
         """The work until the newest checkpoint that there was is not done again."""
-        import json
         for run, step in had.items():
             if finished or not (run / "summary.json").exists():
                 continue
@@ -182,8 +185,8 @@ class Case:
 
     def told_as_lost(self, difference):
         """Whether it is of the newest checkpoint of a run, and the program has said that it could not write one."""
-        said = [step["said"] for step in self.steps] + [log.read_text(errors="replace")
-                                                        for log in self.out.rglob("*.log")]
+        said = [step["said"] for step in self.steps]
+        said += [log.read_text(errors="replace") for log in self.out.rglob("*.log")]
         return NEWEST_DIFFERS.search(difference) and any(LOST_CHECKPOINT.search(text) for text in said)
 
     def end(self, keep=None):

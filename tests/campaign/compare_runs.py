@@ -10,7 +10,6 @@ Python module is missing.
 import argparse
 import csv
 import fnmatch
-import io
 import json
 import pathlib
 import sys
@@ -20,24 +19,20 @@ try:
     import numpy as np
 except ImportError as missing:
     sys.stderr.write(f"compare_runs.py: the Python module {missing.name} is missing, expected python3-h5py and "
-                     f"python3-numpy of the "
-                     "system: run it with /usr/bin/python3\n")
+                     "python3-numpy of the system: run it with /usr/bin/python3\n")
     sys.exit(2)
 
-# What a run that was disturbed and continued need not have in common with one that was not, and why.
-MAY_DIFFER = [
-    ("run.log", "what was said, and when"), ("runs/*.log", "likewise, of a run of a study"),
-    ("seed*.log", "likewise, of a bed"), ("profile.json", "wall times, of the part of a run that was asked for them"),
-    (".furrow-run", "the list of files made so far; a study and a run that was stopped make them in another order"),
-    ("ranks.png", "wall times of the ranks"),
-    ("report.html", "wall times in the sections Ranks and Provenance; the page of a study holds none and is compared"),
-]
+MAY_DIFFER = {  # what a run that was disturbed and continued need not have in common with one that was not
+    "run.log", "runs/*.log", "seed*.log",  # what was said, and when
+    "profile.json", "ranks.png",  # wall times
+    ".furrow-run",  # the list of files made so far; a study and a run that was stopped make them in another order
+    "report.html",  # wall times in the sections Ranks and Provenance; the page of a study holds none and is compared
+}
 STUDY = "sweep.csv"  # beside the page of a study
 # A run that was stopped has checkpoints at other steps and so keeps others: those of the same step are compared, and
 # the newest must be of the same step.
-CHECKPOINT = "checkpoints/*"
 SUMMARY_WALL = {"wall_s", "settle_wall_s", "wall_s_per_simulated_s", "ranks", "segments", "cpu"}
-# the parts' contents are compared themselves
+# of a checkpoint; the parts' contents are compared themselves
 MANIFEST_WALL = {"write_s", "segments", "checksum", "parts", "bytes", "cpu"}
 STATE_WALL = ("state/run:cost:", "state/setup:settle_wall_s")  # of a checkpoint's parts; their checksums say the same
 TABLE_WALL = {"wall_s"}  # columns of sweep.csv
@@ -53,11 +48,15 @@ def tail_matches(path, pattern):
 def may_differ(path, files):
     """@param files of either folder"""
     of_study = path.split("/")[-1] == "report.html" and path.removesuffix("report.html") + STUDY in files
-    return not of_study and any(tail_matches(path, pattern) for pattern, _ in MAY_DIFFER)
+    return not of_study and any(tail_matches(path, pattern) for pattern in MAY_DIFFER)
 
 
 def files_of(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir() or path.is_symlink()}
+
+
+def only_in(first):
+    return f"only in the {'first' if first else 'second'}"
 
 
 def checkpoint_of(path):
@@ -73,7 +72,7 @@ def json_differences(a, b, at=""):
     if isinstance(a, dict) and isinstance(b, dict):
         for key in {**a, **b}:
             if key not in a or key not in b:
-                yield f"{at}{key}: only in the {'second' if key not in a else 'first'}"
+                yield f"{at}{key}: {only_in(key in a)}"
             else:
                 yield from json_differences(a[key], b[key], f"{at}{key}.")
     elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
@@ -83,17 +82,17 @@ def json_differences(a, b, at=""):
         yield f"{at.rstrip('.')}: {str(a)[:60]} and {str(b)[:60]}"
 
 
+def without(row, keys):
+    return {key: value for key, value in row.items() if key not in keys}
+
+
 def json_file(leave_out):
-    def compare(a, b):
-        texts = [json.loads(path.read_text()) for path in (a, b)]
-        return list(json_differences(*[{k: v for k, v in text.items() if k not in leave_out} for text in texts]))
-    return compare
+    return lambda a, b: list(json_differences(*(without(json.loads(path.read_text()), leave_out) for path in (a, b))))
 
 
 def sweep_table(a, b):
-    rows = [list(csv.DictReader(io.StringIO(path.read_text()))) for path in (a, b)]
-    return list(json_differences(*[[{k: v for k, v in row.items() if k not in TABLE_WALL} for row in table]
-                                   for table in rows]))
+    rows = [list(csv.DictReader(path.read_text().splitlines())) for path in (a, b)]
+    return list(json_differences(*([without(row, TABLE_WALL) for row in table] for table in rows)))
 
 
 def same_values(x, y):
@@ -130,15 +129,17 @@ def attribute_of(thing, name):
 def links_of(file):
     """{path: whether the link stays in the file}"""
     found = {}
-    file.id.links.visit(lambda name, info: found.update({name.decode(errors="surrogateescape"): info.type
-                                                         == h5py.h5l.TYPE_HARD}), info=True)
+
+    def take(name, info):
+        found[name.decode(errors="surrogateescape")] = info.type == h5py.h5l.TYPE_HARD
+    file.id.links.visit(take, info=True)
     return found
 
 
 def h5_contents(file):
     """{path: the object}, groups too; a link that leads out of the file is no result."""
-    return {"/": file} | {path: file[path] if inside else file.get(path, getlink=True) for path,
-                          inside in links_of(file).items()}
+    return {"/": file} | {path: file[path] if inside else file.get(path, getlink=True)
+                          for path, inside in links_of(file).items()}
 
 
 def same_bytes(a, b):
@@ -157,7 +158,7 @@ def h5_file(leave_out=()):
             names.discard("checksum")
         for name in sorted(names):
             if name not in x.attrs or name not in y.attrs:
-                yield f"attribute {path}@{name}: only in the {'second' if name not in x.attrs else 'first'}"
+                yield f"attribute {path}@{name}: {only_in(name in x.attrs)}"
             elif not same_values(attribute_of(x, name), attribute_of(y, name)):
                 yield f"attribute {path}@{name}: {shown(attribute_of(x, name), attribute_of(y, name))}"
 
@@ -172,7 +173,7 @@ def h5_file(leave_out=()):
                     continue
                 x, y = left.get(path), right.get(path)
                 if x is None or y is None:
-                    found.append(f"{path}: only in the {'second' if x is None else 'first'}")
+                    found.append(f"{path}: {only_in(x is not None)}")
                 elif isinstance(x, h5py.Dataset) and isinstance(y, h5py.Dataset):
                     if not same_values(x[()], y[()]):
                         found.append(f"dataset {path}: {shown(x[()], y[()])}")
@@ -233,8 +234,8 @@ def differences(a, b, leave_out=()):
     a_files, b_files = files_of(a), files_of(b)
     found, single = checkpoint_differences(a_files, b_files)
     for path in sorted(a_files | b_files):
-        if may_differ(path, a_files | b_files) or path in single or any(tail_matches(path, pattern)
-                                                                        for pattern in leave_out):
+        intended = any(tail_matches(path, pattern) for pattern in leave_out)
+        if intended or path in single or may_differ(path, a_files | b_files):
             continue
         if path not in a_files or path not in b_files:
             found.append(f"{path}: only in {a if path in a_files else b}")

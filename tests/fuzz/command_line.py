@@ -22,21 +22,18 @@ import sys
 import tempfile
 import time
 
+from seeds import SMALL
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 CODES = {0, 2, 3, 4, 5, 6, 75}
 PATIENCE = 10.0  # s of the processor until a case is asked to stop: the same on a busy machine
-# s by the clock, without those in which it waits for a processor, until a case is asked to stop, and as long
+# s by the clock, without those in which it waits for a processor, until a case is asked to stop, and as long again
+# until it is a finding
 HANGS = 600.0
-#                  again until it is a finding
 LOOKED_AT = 0.2  # s by the clock between two looks at the processor time
 FRESH_CACHE = 50  # cases
 
-SMALL = {
-    "rig": {"slip": 0.3, "ramp": 0.01}, "tire": {"file": "hmmwv_layered.json", "rigid": True},
-    "terrain": {"radius": 0.03, "cohesion": 80e3, "layers": 2, "length": 1.4, "width": 0.4},
-    "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
-}
 COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil",
             "press", "modes", "kc", "sweep", "calibrate", "report", "events", "list", "new", "bench",
             "bench grains", "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
@@ -171,7 +168,8 @@ def answer_within(process, patience, by_clock):
         try:
             return process.communicate(timeout=LOOKED_AT)
         except subprocess.TimeoutExpired:
-            if time.monotonic() - begin > by_clock + starved(process.pid) or used + patience < processor_time(process.pid) < float("inf"):
+            late = time.monotonic() - begin > by_clock + starved(process.pid)
+            if late or used + patience < processor_time(process.pid) < float("inf"):
                 return None
 
 

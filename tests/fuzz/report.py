@@ -57,6 +57,16 @@ PRESS = {"scenario": "small", "tire": "x", "obstacle": "plate", "deflection_m": 
          "secant_stiffness_N_per_m": 1e5, "sticking_stiffness": {"lateral_N_per_m": 1e5},
          "footprint": {"force_N": 1e3, "length_m": 0.1, "width_m": 0.1, "mean_pressure_Pa": 1e5}}
 MODES = {"tire": "x", "details": "y", "pressure_Pa": 1e5, "mass_kg": 10.0, "stable": True}
+SHAPES = [f"{name}{part}" for name in ("tangential", "axial", "radial") for part in ("", "_imaginary")]
+TESTS = [  # the file of a virtual test, its contents, and its tables
+    ("soil.json", SOIL, {"plate.csv": ["seed", "width_m", "sinkage_m", "pressure_Pa"],
+                         "cone.csv": ["seed", "depth_m", "force_N"]}),
+    ("summary.json", PRESS, {"press.csv": ["deflection_m", "force_N", "unloading"],
+                             "footprint.csv": ["x_m", "y_m", "pressure_Pa"]}),
+    ("summary.json", MODES, {"modes.csv": ["order", "number", "frequency_Hz"],
+                             "section.csv": ["y_m", "radius_m", "y_to_m", "radius_to_m", "from", "to"],
+                             "shapes.csv": ["order", "number", "node", "y_m", "radius_m", *SHAPES]}),
+]
 KINEMATICS = {"vehicle": "car", "at_rest": {"wheels": [{"name": "front left", "travel_m": 0.01}]}}
 
 
@@ -135,8 +145,8 @@ def csv(chance, columns, rows=40):
     for k in range(rows):
         lines.append(",".join(f"{0.002 * k if c == 0 else chance.uniform(-1, 1):g}" for c in range(len(columns))))
     if chance.random() < 0.3:
-        lines[chance.randrange(len(lines))] = chance.choice(["", ",", "x",
-                                                             "nan,nan", lines[0], "1" * 500, lines[-1][:-3]])
+        lines[chance.randrange(len(lines))] = chance.choice(["", ",", "x", "nan,nan", lines[0], "1" * 500,
+                                                             lines[-1][:-3]])
     return "\n".join(lines[:chance.choice([len(lines), len(lines), 0, 1, 2])]) + "\n"
 
 
@@ -177,34 +187,19 @@ def make_vehicle(chance, folder):
     make_grounds(chance, folder, 4)
 
 
-def make_soil(chance, folder):
-    (folder / "soil.json").write_text(json.dumps(changed(chance, SOIL)))
-    for name, columns in (("plate.csv", ["seed", "width_m", "sinkage_m", "pressure_Pa"]),
-                          ("cone.csv", ["seed", "depth_m", "force_N"])):
+def make_test(chance, folder):
+    file, document, tables = chance.choice(TESTS)
+    (folder / file).write_text(json.dumps(changed(chance, document)))
+    for name, columns in tables.items():
         (folder / name).write_text(csv(chance, columns))
-
-
-def make_press(chance, folder):
-    (folder / "summary.json").write_text(json.dumps(changed(chance, PRESS)))
-    (folder / "press.csv").write_text(csv(chance, ["deflection_m", "force_N", "unloading"]))
-    (folder / "footprint.csv").write_text(csv(chance, ["x_m", "y_m", "pressure_Pa"]))
-
-
-def make_modes(chance, folder):
-    (folder / "summary.json").write_text(json.dumps(changed(chance, MODES)))
-    (folder / "modes.csv").write_text(csv(chance, ["order", "number", "frequency_Hz"]))
-    (folder / "section.csv").write_text(csv(chance, ["y_m", "radius_m", "y_to_m", "radius_to_m", "from", "to"]))
-    names = [f"{name}{part}" for name in ("tangential", "axial", "radial") for part in ("", "_imaginary")]
-    (folder / "shapes.csv").write_text(csv(chance, ["order", "number", "node", "y_m", "radius_m", *names]))
 
 
 def make_kinematics(chance, folder):
     (folder / "summary.json").write_text(json.dumps(changed(chance, KINEMATICS)))
     columns = ["steering", "travel_m", "camber_rad", "toe_rad", "steer_rad", "roll_center_m", "wheel_rate_N_per_m"]
     lines = csv(chance, columns).splitlines()
-    names = ["motion,wheel"] + [f"{chance.choice(['parallel', 'opposite', 'steering'])},front "
-                                f"{chance.choice(['left', 'right'])}"
-                                for _ in lines[1:]]
+    motions, sides = ("parallel", "opposite", "steering"), ("left", "right")
+    names = ["motion,wheel"] + [f"{chance.choice(motions)},front {chance.choice(sides)}" for _ in lines[1:]]
     (folder / "kinematics.csv").write_text("".join(f"{name},{line}\n" for name, line in zip(names, lines)))
 
 
@@ -213,15 +208,15 @@ def run_case(seed, k):
     chance = random.Random(f"{seed}:{k}")
     with tempfile.TemporaryDirectory(prefix="furrow report ") as name:
         folder = pathlib.Path(name)
-        make = chance.choices([make_run, make_vehicle, make_soil, make_press, make_kinematics, make_modes],
-                              [8, 3, 1, 1, 1, 1])[0]
+        make = chance.choices([make_run, make_vehicle, make_test, make_kinematics], [8, 3, 3, 1])[0]
         make(chance, folder)
         if chance.random() < 0.05:
             victim = chance.choice([path for path in folder.rglob("*") if path.is_file()])
             victim.write_bytes(victim.read_bytes()[:chance.randrange(2000)])
         sys.argv = ["report.py", str(folder)]
         out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings(), np.errstate(all="ignore"):
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings(), \
+                np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             code = report.main()
             report.matplotlib.pyplot.close("all")

@@ -44,8 +44,8 @@ def public_layout(tire):
     contact = tire["contact"]
 
     def material(given):
-        values = {theirs: given[ours] for theirs,
-                  ours in (("E", "young_modulus"), ("nu", "poisson_ratio"), ("G", "shear_modulus")) if ours in given}
+        names_here = {"E": "young_modulus", "nu": "poisson_ratio", "G": "shear_modulus"}
+        values = {theirs: given[ours] for theirs, ours in names_here.items() if ours in given}
         if any(isinstance(value, list) for value in values.values()):
             return {"Type": "Orthotropic", "Density": given["density"],
                     **{key: value if isinstance(value, list) else [value] * 3 for key, value in values.items()}}
@@ -112,7 +112,8 @@ def texts(target, root):
     if target == "handling":
         return [(root / "tire" / "data" / name).read_text() for name in ("handling_start.tir", "sweep_lumped.csv")]
     if target == "run_list":
-        return (["furrow-run 1\nsummary.json\nframes/\nframes/tire0_%06d.h5\ncheckpoints/\ncheckpoints/%012d/\ncheckpoints/%012d/rig.h5\n"])
+        return ["furrow-run 1\nsummary.json\nframes/\nframes/tire0_%06d.h5\ncheckpoints/\ncheckpoints/%012d/\n"
+                "checkpoints/%012d/rig.h5\n"]
     found = {
         "scenario": lambda: [d for d in documents(root, "rigs/*.json") if "properties" not in d and "scenario" not in d]
         + [SMALL, GROUND],

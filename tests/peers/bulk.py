@@ -7,10 +7,10 @@ Appends one JSON line per run to OUT/<test>.jsonl and skips what is there: it ca
 two engines run side by side (table.py makes the tables). Seeds differ in the random start. Material: common.py.
 
 bed    1200 grains fall between rough walls y = ±10 r, periodic along x, floor rough; 0.6 s; cohesion 0 and 80 kPa.
-plate  2500 grains on 36 r × 36 r, periodic, settled in the engine; a box of triangles 10 r wide goes in by 4 r at 0.2
-m/s. shear  650 grains on 24 r × 14 r, periodic, between plates of grains: direct shear under 20, 50, 100 kPa, on the
-plateau at
-       three speeds one after the other, with two steps, cohesion 0 and 80 kPa. More engines: furrow_switched,
+plate  2500 grains on 36 r × 36 r, periodic, settled in the engine; a box of triangles 10 r wide goes in by 4 r at
+       0.2 m/s.
+shear  650 grains on 24 r × 14 r, periodic, between plates of grains: direct shear under 20, 50, 100 kPa, on the plateau
+       at three speeds one after the other, with two steps, cohesion 0 and 80 kPa. More engines: furrow_switched,
        furrow_spring, furrow_damper, with LIGGGHTS's tangential law or a part of it in the engine; liggghts_sjkr, with
        LIGGGHTS's own cohesion in the place of the constant pull, which must differ.
 """
@@ -22,8 +22,8 @@ import time
 
 import numpy
 
-from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres,
-                    record_program, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, BASE, FREE, LID, MASS, RADIUS, random_spheres, record_program, run_furrow,
+                    run_liggghts)
 from packing import measure
 
 STEP = 4e-5  # s
@@ -52,30 +52,33 @@ class Rows:
         print(json.dumps(row), flush=True)
 
 
-def bed(a, rows):
-    length, width, count, steps = 20 * R, 20 * R, 1200, 15000
-    height = space_for(count, length * width)
+def cases(a, rows, test):
+    """(key of a row, folder of the run, starting time) of every seed, cohesion and engine that has no row yet."""
     for seed in range(1, a.seeds + 1):
-        x = random_spheres(count, length, width, 1.5 * R, 1.5 * R + height, seed, (True, False))
         for cohesion in (0.0, 80e3):
             for engine in a.engines:
                 key = {"engine": engine, "seed": seed, "cohesion_Pa": cohesion}
-                if rows.has(key):
-                    continue
-                begun, folder = time.monotonic(), a.out / f"runs/bed-{engine}-{seed}-{cohesion:g}"
-                if engine == "furrow":
-                    job = {"test": "fall", "length": length, "width": width, "periodic_y": False, "step": STEP,
-                           "steps": steps, "every": steps, "cohesion": cohesion}
-                    frames, series = run_furrow(folder, job, [FREE] * count, x)
-                else:
-                    box = {"length": length, "width": width, "height": height + 10 * R, "periodic_y": False}
-                    frames, _ = run_liggghts(folder, "deck_settle.in",
-                                             [FREE] * count, x, box, cohesion, step=STEP, steps=steps)
-                values = measure(frames[-1], length, width, (True, False))
-                if engine == "furrow":
-                    values["floor_force_over_overlaps"] = float(series["floor_N"][-1]) / (values["floor_pressure_Pa"]
-                                                                                          * length * width)
-                rows.add(key, values, begun)
+                if not rows.has(key):
+                    yield key, a.out / f"runs/{test}-{engine}-{seed}-{cohesion:g}", time.monotonic()
+
+
+def bed(a, rows):
+    length, width, count, steps = 20 * R, 20 * R, 1200, 15000
+    height, kinds = space_for(count, length * width), [FREE] * count
+    for key, folder, begun in cases(a, rows, "bed"):
+        x = random_spheres(count, length, width, 1.5 * R, 1.5 * R + height, key["seed"], (True, False))
+        cell, share = {"length": length, "width": width, "periodic_y": False}, None
+        if key["engine"] == "furrow":
+            job = {"test": "fall", "step": STEP, "steps": steps, "every": steps, "cohesion": key["cohesion_Pa"], **cell}
+            frames, series = run_furrow(folder, job, kinds, x)
+            share = float(series["floor_N"][-1])
+        else:
+            frames, _ = run_liggghts(folder, "deck_settle.in", kinds, x, {"height": height + 10 * R, **cell},
+                                     key["cohesion_Pa"], step=STEP, steps=steps)
+        values = measure(frames[-1], length, width, (True, False))
+        if share is not None:
+            values["floor_force_over_overlaps"] = share / (values["floor_pressure_Pa"] * length * width)
+        rows.add(key, values, begun)
 
 
 def write_box(file, middle, side, low, height):
@@ -96,50 +99,45 @@ def write_box(file, middle, side, low, height):
         out.write("endsolid plate\n")
 
 
+def settled_grains(a, side, key, common):
+    """Those of a seed and cohesion, settled in the engine, which both engines press."""
+    count, folder = 2500, a.out / f"runs/plate-bed-{key['seed']}-{key['cohesion_Pa']:g}"
+    kept, height = folder / "settled.npy", space_for(count, side * side)
+    if not kept.exists():
+        x = random_spheres(count, side, side, 1.5 * R, 1.5 * R + height, key["seed"])
+        job = {"test": "fall", "steps": 15000, "every": 15000, **common}
+        numpy.save(kept, run_furrow(folder / key["engine"], job, [FREE] * count, x)[0][-1])
+    y = numpy.load(kept)
+    y[:, 0] %= side
+    y[:, 1] = (y[:, 1] / side + 0.5) % 1.0 * side - 0.5 * side
+    return y
+
+
 def plate(a, rows):
-    side, count, speed, sinkage = 36 * R, 2500, 0.2, 4 * R
+    side, speed, sinkage = 36 * R, 0.2, 4 * R
     plate_side, plate_height, samples, rest = 10 * R, 7 * R, 50, 1000
     every = round(sinkage / speed / STEP / samples)
-    height = space_for(count, side * side)
-    for seed in range(1, a.seeds + 1):
-        x = random_spheres(count, side, side, 1.5 * R, 1.5 * R + height, seed)
-        for cohesion in (0.0, 80e3):
-            common = {"length": side, "width": side, "step": STEP, "cohesion": cohesion}
-            settled = a.out / f"runs/plate-bed-{seed}-{cohesion:g}"
-            for engine in a.engines:
-                key = {"engine": engine, "seed": seed, "cohesion_Pa": cohesion}
-                if rows.has(key):
-                    continue
-                begun, folder = time.monotonic(), a.out / f"runs/plate-{engine}-{seed}-{cohesion:g}"
-                kept = settled / "settled.npy"
-                if not kept.exists():
-                    job = {"test": "fall", "steps": 15000, "every": 15000, **common}
-                    frames, _ = run_furrow(settled / engine, job, [FREE] * count, x)
-                    numpy.save(kept, frames[-1])
-                y = numpy.load(kept)
-                y[:, 0] %= side
-                y[:, 1] = (y[:, 1] / side + 0.5) % 1.0 * side - 0.5 * side
-                near = (abs(y[:, 0] - 0.5 * side) < 0.5 * plate_side + R) & (abs(y[:, 1]) < 0.5 * plate_side + R)
-                low = float(y[near, 2].max() + R)
-                if engine == "furrow":
-                    job = {"test": "plate", "plate_side": plate_side, "plate_height": plate_height,
-                           "plate_z": low, "speed": speed,
-                           "rest_steps": rest, "steps": every * samples, "every": every, **common}
-                    _, series = run_furrow(folder, job, [FREE] * count, y, half_step_start=False)
-                    force = series["force_z_N"]
-                else:
-                    folder.mkdir(parents=True, exist_ok=True)
-                    write_box(folder / "plate.stl", 0.5 * side, plate_side, low, plate_height)
-                    box = {"length": side, "width": side, "height": low + plate_height + 5 * R}
-                    rest_here = -(-rest // every) * every  # the samples of ave/time start at multiples of `every`
-                    _, series = run_liggghts(folder, "deck_plate.in", [FREE] * count,
-                                             y, box, cohesion, step=STEP, speed=speed,
-                                             rest=f"run {rest_here}", every=every, steps=every * samples)
-                    force = series[-samples:, 3]
-                pressure = numpy.asarray(force) / plate_side**2
-                values = {"sinkage_m": [round((k + 0.5) * every * STEP * speed, 7) for k in range(samples)],
-                          "pressure_Pa": [round(float(p), 1) for p in pressure]}
-                rows.add(key, values, begun)
+    for key, folder, begun in cases(a, rows, "plate"):
+        common = {"length": side, "width": side, "step": STEP, "cohesion": key["cohesion_Pa"]}
+        y = settled_grains(a, side, key, common)
+        kinds = [FREE] * len(y)
+        near = (abs(y[:, 0] - 0.5 * side) < 0.5 * plate_side + R) & (abs(y[:, 1]) < 0.5 * plate_side + R)
+        low = float(y[near, 2].max() + R)
+        if key["engine"] == "furrow":
+            job = {"test": "plate", "plate_side": plate_side, "plate_height": plate_height, "plate_z": low,
+                   "speed": speed, "rest_steps": rest, "steps": every * samples, "every": every, **common}
+            force = run_furrow(folder, job, kinds, y, half_step_start=False)[1]["force_z_N"]
+        else:
+            folder.mkdir(parents=True, exist_ok=True)
+            write_box(folder / "plate.stl", 0.5 * side, plate_side, low, plate_height)
+            box = {"length": side, "width": side, "height": low + plate_height + 5 * R}
+            rest_here = -(-rest // every) * every  # the samples of ave/time start at multiples of `every`
+            _, series = run_liggghts(folder, "deck_plate.in", kinds, y, box, key["cohesion_Pa"], step=STEP, speed=speed,
+                                     rest=f"run {rest_here}", every=every, steps=every * samples)
+            force = series[-samples:, 3]
+        pressure = numpy.asarray(force) / plate_side**2
+        rows.add(key, {"sinkage_m": [round((k + 0.5) * every * STEP * speed, 7) for k in range(samples)],
+                       "pressure_Pa": [round(float(p), 1) for p in pressure]}, begun)
 
 
 SHEAR_CELL = (24 * R, 14 * R)
@@ -200,8 +198,7 @@ def one_shear(a, key, kinds, x):
     if key["engine"].startswith("furrow"):
         law = VARIANTS.get(key["engine"], {})
         job = {"test": "shear", "length": length, "width": width, "cohesion": key["cohesion_Pa"],
-               "pressure": key["pressure_Pa"],
-               "lid_damping": damping, "stages": stages, **phases}
+               "pressure": key["pressure_Pa"], "lid_damping": damping, "stages": stages, **phases}
         _, series = run_furrow(folder, job, kinds, x, **law)
         tau, sigma, rise = series["shear_N"] / area, series["normal_N"] / area, series["lid_m"]
     else:
@@ -209,9 +206,8 @@ def one_shear(a, key, kinds, x):
         lines, speed = [], 0.0
         for s in stages:
             push = MASS * (s["speed"] - speed) / (s["ramp_steps"] * step)
-            lines += ["unfix lid_x", f"fix lid_x lid setforce {push!r} 0.0 NULL",
-                      f"run {s['ramp_steps']}", "unfix lid_x",
-                      "fix lid_x lid setforce 0.0 0.0 NULL", f"run {s['steps'] - s['ramp_steps']}"]
+            for force, steps in ((push, s["ramp_steps"]), (0.0, s["steps"] - s["ramp_steps"])):
+                lines += ["unfix lid_x", f"fix lid_x lid setforce {force!r} 0.0 NULL", f"run {steps}"]
             speed = s["speed"]
         kind = {"sjkr": SJKR} if key["engine"] == "liggghts_sjkr" else {"cohesion": key["cohesion_Pa"]}
         _, series = run_liggghts(folder, "deck_shear.in", kinds, x, box, **kind, load=key["pressure_Pa"] * area,
@@ -223,7 +219,8 @@ def one_shear(a, key, kinds, x):
         part = slice(begun + s["steps"] // every // 4, begun + s["steps"] // every)
         begun += s["steps"] // every
         if n > 0:
-            out[f"tau_{s['speed']:g}_Pa"], out[f"sigma_{s['speed']:g}_Pa"] = float(tau[part].mean()), float(sigma[part].mean())
+            out |= {f"{name}_{s['speed']:g}_Pa": float(values[part].mean())
+                    for name, values in (("tau", tau), ("sigma", sigma))}
     return {**out, "rise_m": float(rise[-1] - rise[0]), "tau_curve_Pa": [round(float(t)) for t in tau]}
 
 

@@ -14,6 +14,7 @@ import numpy
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests" / "studies")]
+import driver  # noqa: E402, F401
 import provenance  # noqa: E402
 
 RADIUS, DENSITY = 0.006, 2500.0  # m, kg/m³
@@ -60,36 +61,30 @@ def liggghts():
     return shutil.which("liggghts")
 
 
+def nearest(d, size, periodic):
+    """Distances to nearest images along x and y."""
+    for a in range(2):
+        if periodic[a]:
+            d[..., a] -= size[a] * numpy.round(d[..., a] / size[a])
+    return d
+
+
 def random_spheres(count, length, width, low, high, seed, periodic=(True, True)):
     """Centres of spheres at random without overlap [random sequential addition], m."""
     generator = numpy.random.default_rng(seed)
-    size = numpy.array([length, width, high - low])
-    gap = 2.001 * RADIUS
-    cells = numpy.maximum(1, (size / gap).astype(int))
-    grid, placed = {}, []
-    wrap = numpy.array([length if periodic[0] else 0.0, width if periodic[1] else 0.0, 0.0])
+    size, gap = numpy.array([length, width, high - low]), 2.001 * RADIUS
+    placed, n = numpy.empty((count, 3)), 0
     for _ in range(4000 * count):
         p = generator.random(3) * size
         for a in range(3):
-            if wrap[a] == 0.0:
+            if a == 2 or not periodic[a]:
                 p[a] = RADIUS * 1.001 + p[a] * (1.0 - 2.002 * RADIUS / size[a])
-        home = tuple(numpy.minimum((p / size * cells).astype(int), cells - 1))
-        clear = True
-        for shift in numpy.ndindex(3, 3, 3):
-            key = tuple((home[a] + shift[a] - 1) % cells[a] if wrap[a] else home[a] + shift[a] - 1 for a in range(3))
-            for q in grid.get(key, ()):
-                d = p - q
-                d -= numpy.where(wrap > 0.0, wrap * numpy.round(d / numpy.where(wrap > 0.0, wrap, 1.0)), 0.0)
-                if d @ d < gap * gap:
-                    clear = False
-                    break
-            if not clear:
-                break
-        if clear:
-            grid.setdefault(home, []).append(p)
-            placed.append(p)
-            if len(placed) == count:
-                return numpy.array(placed) + [0.0, -0.5 * width, low]
+        d = nearest(placed[:n] - p, size, periodic)
+        if not (numpy.einsum("ka,ka->k", d, d) < gap * gap).any():
+            placed[n] = p
+            n += 1
+            if n == count:
+                return placed + [0.0, -0.5 * width, low]
     raise RuntimeError("the spheres do not fit: make the space higher")
 
 
@@ -110,9 +105,8 @@ def run_furrow(folder, job, kinds, x, switches=None, **more):
     folder.mkdir(parents=True, exist_ok=True)
     write_start(folder / "start.csv", kinds, x)
     full = {**MATERIAL, "start": str(folder / "start.csv"), "periodic_x": True, "periodic_y": True, "cohesion": 0.0,
-            "wall_friction": MATERIAL["friction"], "precision": "mixed",
-            "half_step_start": True, "damper_mass": "sliding",
-            "switches": switches or 0, **job, **more}
+            "wall_friction": MATERIAL["friction"], "precision": "mixed", "half_step_start": True,
+            "damper_mass": "sliding", "switches": switches or 0, **job, **more}
     (folder / "job.json").write_text(json.dumps(full))
     name = "peer_grains" if switches is None else "peer_grains_switched"
     environment = dict(os.environ, OMP_NUM_THREADS="1", OMP_WAIT_POLICY="passive")
@@ -136,10 +130,10 @@ def run_liggghts(folder, deck, kinds, x, box, cohesion=0.0, sjkr=0.0, clear=True
     room = [0.0 if box.get(f"periodic_{a}", True) else RADIUS for a in "xy"]
     with open(folder / "start.data", "w") as out:
         out.write(f"spheres\n\n{len(x)} atoms\n2 atom types\n\n{-room[0]!r} {length + room[0]!r} xlo xhi\n"
-                  f"{-0.5 * width - room[1]!r} {0.5 * width + room[1]!r} ylo yhi\n{-RADIUS!r} {box['height']!r} zlo "
-                  f"zhi\n\nAtoms\n\n")
-        out.writelines(f"{n} 1 {2 * RADIUS!r} {DENSITY!r} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n" for n,
-                       p in enumerate(x, 1))
+                  f"{-0.5 * width - room[1]!r} {0.5 * width + room[1]!r} ylo yhi\n"
+                  f"{-RADIUS!r} {box['height']!r} zlo zhi\n\nAtoms\n\n")
+        out.writelines(f"{n} 1 {2 * RADIUS!r} {DENSITY!r} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n"
+                       for n, p in enumerate(x, 1))
     common = {**MATERIAL, "wall_friction": MATERIAL["friction"], **values}
     side = {a: "p" if box.get(f"periodic_{a}", True) else "f" for a in "xy"}
     law = "model hertz tangential history"
@@ -148,9 +142,9 @@ def run_liggghts(folder, deck, kinds, x, box, cohesion=0.0, sjkr=0.0, clear=True
                     for k, v in enumerate(ends))
     head = (HERE / "deck_common.in").read_text().format(
         side_x=side["x"], side_y=side["y"], law=law, walls=walls, last_plate=max(1, n_base + n_lid),
-        first_lid=n_base + 1,
-        first_free=n_base + n_lid + 1, clear="contact_distance_factor 1.5" if clear else "",
-        last=len(x), pull="fix pull all external pf/callback 1 1" if cohesion else "",
+        first_lid=n_base + 1, first_free=n_base + n_lid + 1, last=len(x),
+        clear="contact_distance_factor 1.5" if clear else "",
+        pull="fix pull all external pf/callback 1 1" if cohesion else "",
         pair_law=law + (" cohesion sjkr" if sjkr else ""),
         sjkr=f"fix m5 all property/global cohesionEnergyDensity peratomtypepair 2 {sjkr!r} 0 0 0" if sjkr else "",
         **common)

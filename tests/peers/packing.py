@@ -3,33 +3,13 @@ import math
 
 import numpy
 
-from common import E_STAR, MASS, GRAVITY, RADIUS
+from common import E_STAR, GRAVITY, MASS, RADIUS, nearest
 
 
 def pairs(x, length, width, periodic=(True, True), reach=2.0 * RADIUS):
     """Index pairs of spheres nearer than `reach`, and their distance vectors (nearest image)."""
-    size = numpy.array([length, width, x[:, 2].max() + 4.0 * RADIUS])
-    cells = numpy.maximum(1, (size / reach).astype(int))
-    low = numpy.array([0.0, -0.5 * width, -2.0 * RADIUS])
-    at = ((x - low) / size * cells).astype(int)
-    for a in range(3):
-        at[:, a] = at[:, a] % cells[a] if a < 2 and periodic[a] else numpy.clip(at[:, a], 0, cells[a] - 1)
-    grid = {}
-    for g, c in enumerate(map(tuple, at)):
-        grid.setdefault(c, []).append(g)
-    found = []
-    for c, mine in grid.items():
-        for shift in numpy.ndindex(3, 3, 3):
-            other = tuple((c[a] + shift[a] - 1) % cells[a] if a < 2 and periodic[a]
-                          else c[a] + shift[a] - 1 for a in range(3))
-            found += [(i, j) for i in mine for j in grid.get(other, ()) if i < j]
-    if not found:
-        return numpy.empty((0, 2), int), numpy.empty((0, 3))
-    index = numpy.array(sorted(set(found)))
-    d = x[index[:, 0]] - x[index[:, 1]]
-    for a, side in ((0, length), (1, width)):
-        if periodic[a]:
-            d[:, a] -= side * numpy.round(d[:, a] / side)
+    index = numpy.argwhere(numpy.triu(numpy.ones((len(x), len(x)), bool), 1))
+    d = nearest(x[index[:, 0]] - x[index[:, 1]], (length, width), periodic)
     near = (d * d).sum(axis=1) < reach * reach
     return index[near], d[near]
 

@@ -13,7 +13,8 @@ try:
     import numpy
 
     from bulk import write_box
-    from common import ALL_SWITCHES, FREE, RADIUS, liggghts, program, random_spheres, run_furrow, run_liggghts
+    from common import (ALL_SWITCHES, FREE, RADIUS, liggghts, nearest, program, random_spheres, run_furrow,
+                        run_liggghts)
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
@@ -36,8 +37,7 @@ def falling(folder, x, **more):
     box = {"length": SIDE, "width": SIDE, "height": 2.0 * HEIGHT}
     theirs, _ = run_liggghts(folder / "liggghts", "deck_fall.in", KINDS, x, box, step=STEP, steps=steps, every=every,
                              **{"wall_friction": 0.0, **more})
-    d = mine - theirs
-    d[..., :2] -= SIDE * numpy.round(d[..., :2] / SIDE)
+    d = nearest(mine - theirs, (SIDE, SIDE), (True, True))
     most, contacts = float(numpy.sqrt((d[-1] ** 2).sum(axis=-1)).max()), int(series["contacts"].max())
     print(f"falling, {more}: {most:.2g} m apart after {END} s, {contacts} contacts")
     return most < MOST and contacts > GRAINS // 3

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tables and plots of what bulk.py and trajectories.py left: table.py OUT [TO]
 
-TO (default: this folder) receives bulk.csv, bulk.json, law_and_step.csv, trajectories.json and the plots. Columns hold
+TO (default: this folder) receives bulk.csv, law_and_step.csv, trajectories.json and the plots. Columns hold
 values with half their 95 % confidence interval (Student's t). Beds, plate: means over seeds, differences seed by seed,
 for both started from the same positions. Shear: the line τ = c + σ tan φ through all tests, intervals from the scatter
 about it; only tests that both have.
@@ -9,21 +9,16 @@ about it; only tests that both have.
 import json
 import math
 import pathlib
-import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy
 
-from common import RADIUS, origin, provenance, read_series
-from plot import style  # found by what common adds to the path
+from common import RADIUS, driver, origin, provenance, read_series
+from plot import style
 from plot.student import half_interval, student
 
 ENGINES = ("furrow", "liggghts")
-COLUMNS = ["test", "quantity", "unit", "furrow", "furrow_ci95", "liggghts",
-           "liggghts_ci95", "difference", "difference_ci95", "seeds"]
+COLUMNS = ["test", "quantity", "unit", "furrow", "furrow_ci95", "liggghts", "liggghts_ci95", "difference",
+           "difference_ci95", "seeds"]
 SPEEDS = (0.15, 0.4, 1.0)  # m/s
 LOOKS = {"furrow": (style.BLUE, "o", "-", "Furrow"), "liggghts": (style.ORANGE, "s", "--", "LIGGGHTS 3.8")}
 
@@ -128,10 +123,9 @@ def law_and_step(folder, to):
         for engine, step in sorted({(r["engine"], r["step_s"]) for r in rows}):
             mine = [r for r in rows if (r["engine"], r["step_s"]) == (engine, step)]
             values = [[r[f"tau_{v:g}_Pa"] / 1e3 for r in mine] for v in SPEEDS] + [[-1e3 * r["rise_m"] for r in mine]]
-            line = f"{engine},{1e6 * step:g},{len(mine)}," + ",".join(f"{numpy.mean(v):.3g},{half_interval(v):.2g}"
-                                                                      for v in values)
-            print(line)
-            out.write(line + "\n")
+            cells = ",".join(f"{numpy.mean(v):.3g},{half_interval(v):.2g}" for v in values)
+            print(f"{engine},{1e6 * step:g},{len(mine)},{cells}")
+            out.write(f"{engine},{1e6 * step:g},{len(mine)},{cells}\n")
 
 
 def plot_trajectories(folder, to):
@@ -140,7 +134,7 @@ def plot_trajectories(folder, to):
              "tangential law of LIGGGHTS": (style.BLUE, "-"), "the same with cohesion 80 kPa": (style.SKY, "-"),
              "but not: springs end with contact": (style.PURPLE, "--"), "but not: damper of m*": (style.RED, "--"),
              "the engine as it is": (style.ORANGE, "-"), "mixed against double precision": ("black", ":")}
-    figure, axis = plt.subplots(figsize=(7.5, 4.6))
+    figure, axis = driver.subplots(figsize=(7.5, 4.6))
     for name, (colour, line) in shown.items():
         if f"mean: {name}" in series:
             axis.semilogy(series["time_s"], numpy.maximum(series[f"mean: {name}"], 1e-18),
@@ -153,7 +147,7 @@ def plot_trajectories(folder, to):
 
 def plot_plate(folder, to):
     rows = rows_of(folder, "plate")
-    figure, axis = plt.subplots(figsize=(6.4, 4.2))
+    figure, axis = driver.subplots(figsize=(6.4, 4.2))
     for cohesion in sorted({r["cohesion_Pa"] for r in rows}):
         for e in ENGINES:
             mine = [r for r in rows if r["engine"] == e and r["cohesion_Pa"] == cohesion]
@@ -173,7 +167,7 @@ def plot_plate(folder, to):
 
 def plot_shear(folder, to):
     rows = rows_of(folder, "shear")
-    figure, axes = plt.subplots(2, 3, figsize=(10.0, 6.6), sharex=True, sharey=True)
+    figure, axes = driver.subplots(2, 3, figsize=(10.0, 6.6), sharex=True, sharey=True)
     for line_of_axes, step in zip(axes, (4e-5, 2e-5)):
         for axis, speed in zip(line_of_axes, SPEEDS):
             for e in ENGINES:
@@ -200,42 +194,35 @@ def plot_shear(folder, to):
 
 def save(figure, to, name, dpi=90):
     figure.savefig(to / f"{name}.png", dpi=dpi)
-    plt.close(figure)
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1])
+    parser = driver.options(__doc__)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("to", type=pathlib.Path, nargs="?", default=pathlib.Path(__file__).resolve().parent)
+    arguments = parser.parse_args()
+    folder, to = arguments.out, arguments.to
     if not folder.is_dir():
-        sys.exit(f"table.py: {folder}: no such folder, expected what bulk.py left")
-    to = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).resolve().parent
+        parser.error(f"{folder}: no such folder, expected what bulk.py left")
     table = [row for part in (bed_rows, plate_rows, shear_rows) for row in part(folder) if row]
     rows = [{k: row[k] for k in COLUMNS} for row in table]
-    (to / "bulk.json").write_text(json.dumps({"made": origin(folder), "rows": rows}, indent=0, ensure_ascii=False)
-                                  + "\n")
-    with open(to / "bulk.csv", "w") as out:
-        provenance.write_header(out, origin(folder))
-        out.write(",".join(COLUMNS) + "\n")
-        for row in table:
-            out.write(",".join("" if row[k] is None else f'"{row[k]}"'
-                               if isinstance(row[k], str) else f"{row[k]:.4g}" for k in COLUMNS) + "\n")
-    compared, outside = [row for row in table if row["liggghts"] is not None], 0
+    driver.write(to.resolve() / "bulk.csv", rows, origin(folder))
+    compared = [row for row in rows if row["liggghts"] is not None]
+    outside = [row for row in compared if abs(row["difference"]) > row["difference_ci95"]]
     for row in compared:
-        differs = abs(row["difference"]) > row["difference_ci95"]
-        outside += differs
-        print(f"| {row['test']} | {row['quantity']}, {row['unit']} | {row['furrow']:.4g} ± {row['furrow_ci95']:.2g} | "
-              f"{row['liggghts']:.4g} ± {row['liggghts_ci95']:.2g} | {row['difference']:+.3g} ± "
-              f"{row['difference_ci95']:.2g}"
-              f"{' *' if differs else ''} | {row['seeds']} |")
-    print(f"{outside} of {len(compared)} differences outside their 95 % interval")
+        cells = " | ".join(f"{row[name]:{form}} ± {row[f'{name}_ci95']:.2g}" for name, form in (
+            ("furrow", ".4g"), ("liggghts", ".4g"), ("difference", "+.3g")))
+        print(f"| {row['test']} | {row['quantity']}, {row['unit']} | {cells}{' *' if row in outside else ''} | "
+              f"{row['seeds']} |")
+    print(f"{len(outside)} of {len(compared)} differences outside their 95 % interval")
     law_and_step(folder, to)
     if (folder / "trajectories.csv").exists():
         plot_trajectories(folder, to)
         facts = json.loads((folder / "trajectories.json").read_text())
         (to / "trajectories.json").write_text(json.dumps({"made": origin(folder), **facts}, indent=1) + "\n")
-    if rows_of(folder, "plate"):
-        plot_plate(folder, to)
-    if rows_of(folder, "shear"):
-        plot_shear(folder, to)
+    for test, plot in (("plate", plot_plate), ("shear", plot_shear)):
+        if rows_of(folder, test):
+            plot(folder, to)
 
 
 if __name__ == "__main__":

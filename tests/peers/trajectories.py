@@ -17,8 +17,8 @@ import pathlib
 
 import numpy
 
-from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name,
-                    program, random_spheres, record_program, run_furrow, run_liggghts)
+from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, nearest, program, random_spheres,
+                    record_program, run_furrow, run_liggghts)
 
 SIDE = 20 * RADIUS  # m, periodic
 FILL = 0.28  # share of the space that the spheres take at the start
@@ -27,8 +27,7 @@ MARKS = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4]  # m
 
 def distance(a, b):
     """Between the same grains, nearest image, m: time × grain."""
-    d = a - b
-    d[..., :2] -= SIDE * numpy.round(d[..., :2] / SIDE)
+    d = nearest(a - b, (SIDE, SIDE), (True, True))
     return numpy.sqrt((d * d).sum(axis=-1))
 
 
@@ -52,40 +51,36 @@ def main():
            "precision": "double", "wall_friction": 0.0}
     box = {"length": SIDE, "width": SIDE, "height": 2.0 * height}
 
-    def furrow(name, **more):
-        frames, series = run_furrow(a.out / "runs" / folder_name(name), job, kinds, x, **more)
-        return frames, series
+    def own(name, **more):
+        return run_furrow(a.out / "runs" / folder_name(name), job, kinds, x, **more)
+
+    def theirs(name, **more):
+        """With the tangential law of LIGGGHTS."""
+        return own(name, **{"switches": ALL_SWITCHES, "damper_mass": "full", **more})[0]
 
     def peer(name, x=x, **more):
-        return run_liggghts(a.out / "runs" / folder_name(name), "deck_fall.in",
-                            kinds, x, box, step=a.step, steps=steps, every=every,
-                            **{"wall_friction": 0.0, **more})[0]
+        return run_liggghts(a.out / "runs" / folder_name(name), "deck_fall.in", kinds, x, box, step=a.step,
+                            steps=steps, every=every, **{"wall_friction": 0.0, **more})[0]
 
-    liggghts, smooth, rough_floor = peer("liggghts"), peer("liggghts smooth",
-                                                           friction=0.0), peer("liggghts floor", wall_friction=0.9)
-    moved = x + [0.3 * SIDE, 0.0, 0.0]
+    liggghts, (as_it_is, series) = peer("liggghts"), own("own")
+    whole, mixed, away = theirs("theirs"), own("mixed", precision="mixed")[0], [0.3 * SIDE, 0.0, 0.0]
+    moved = x + away
     moved[:, 0] %= SIDE
-    shifted = peer("liggghts shifted", x=moved) - [0.3 * SIDE, 0.0, 0.0]
-    stale = peer("liggghts stale", clear=False)
-    theirs = {"switches": ALL_SWITCHES, "damper_mass": "full"}
-    cases = {
-        "LIGGGHTS, bed shifted sideways": (shifted, liggghts),
-        "no friction": (furrow("smooth", friction=0.0)[0], smooth),
-        "tangential law of LIGGGHTS": (furrow("theirs", **theirs)[0], liggghts),
-    }
+    shifted = peer("liggghts shifted", x=moved) - away
+    cases = {"LIGGGHTS, bed shifted sideways": (shifted, liggghts),
+             "no friction": (own("smooth", friction=0.0)[0], peer("liggghts smooth", friction=0.0)),
+             "tangential law of LIGGGHTS": (whole, liggghts)}
     if program("liggghts_with_pull"):
-        cohesive, sticky = furrow("theirs cohesive", cohesion=80e3,
-                                  **theirs)[0], peer("liggghts cohesive", cohesion=80e3)
-        cases["the same with cohesion 80 kPa"] = (cohesive, sticky)
+        cases["the same with cohesion 80 kPa"] = (theirs("theirs cohesive", cohesion=80e3),
+                                                  peer("liggghts cohesive", cohesion=80e3))
     for name, bit in SWITCHES.items():
-        cases["but not: " + name] = (furrow(name, **{**theirs, "switches": ALL_SWITCHES - bit})[0], liggghts)
-    cases["but not: damper of m*"] = (furrow("damper", **{**theirs, "damper_mass": "sliding"})[0], liggghts)
-    cases["but not: springs end with contact"] = (cases["tangential law of LIGGGHTS"][0], stale)
-    cases["but not: frictionless floor"] = (furrow("floor", **{**theirs, "wall_friction": 0.9})[0], rough_floor)
-    own, series = furrow("own")
-    cases["the engine as it is"] = (own, liggghts)
-    cases["the engine, mixed precision"] = (furrow("mixed", precision="mixed")[0], liggghts)
-    cases["mixed against double precision"] = (cases["the engine, mixed precision"][0], own)
+        cases["but not: " + name] = (theirs(name, switches=ALL_SWITCHES - bit), liggghts)
+    cases |= {"but not: damper of m*": (theirs("damper", damper_mass="sliding"), liggghts),
+              "but not: springs end with contact": (whole, peer("liggghts stale", clear=False)),
+              "but not: frictionless floor": (theirs("floor", wall_friction=0.9),
+                                              peer("liggghts floor", wall_friction=0.9)),
+              "the engine as it is": (as_it_is, liggghts), "the engine, mixed precision": (mixed, liggghts),
+              "mixed against double precision": (mixed, as_it_is)}
 
     time = a.step * every * numpy.arange(len(liggghts))
     columns, summary = {"time_s": time}, {}

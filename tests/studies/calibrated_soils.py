@@ -39,7 +39,7 @@ def main():
     for soil in soils:
         out = RESULTS / f"calibrated_{soil}"
         out.parent.mkdir(parents=True, exist_ok=True)
-        driver.furrow("calibrate", f"rigs/calibrate_{soil}.json", "--out", out)
+        driver.furrow("calibrate", f"rigs/calibrate_{soil}.json", "--out", out, progress=True)
         result = read_json(out / "calibration.json")
         driver.write(f"calibrated_{soil}.csv", evaluations(out, [target["name"] for target in result["targets"]]), made)
         fitted = read_json(out / result["result"])

@@ -35,14 +35,16 @@ def settings(*groups):
     return [flag for key, value in merged.items() for flag in ("--set", f"{key}={json.dumps(value)}")]
 
 
-def furrow(*words, program=None, before=(), **environment):
+def furrow(*words, program=None, before=(), progress=False, **environment):
     """What the program prints. Where it fails, the script ends with its last words.
-    @param before words of a command that starts it"""
+    @param before words of a command that starts it
+    @param progress whether what it prints on its way is shown"""
     command = [*map(str, before), str(program or provenance.program()), *map(str, words)]
-    done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True,
+                          stderr=None if progress else subprocess.PIPE,
                           env={**os.environ, "FURROW_HOME": str(ROOT), **environment})
     if done.returncode != 0:
-        sys.exit(f"{' '.join(command[:3])} ended with {done.returncode}: {done.stderr[-2000:]}")
+        sys.exit(f"{' '.join(command[:3])} ended with {done.returncode}: {(done.stderr or '')[-2000:]}")
     return done.stdout
 
 

@@ -88,7 +88,7 @@ def main():
     runs = driver.options(__doc__, runs={"action": "store_true"}).parse_args().runs
     name, study = ("ring_runs", "calibrate_ring_runs") if runs else ("ring_protocol", "calibrate_ring")
     made = provenance.made_here()
-    driver.furrow("calibrate", f"rigs/{study}.json", "--out", RESULTS / name)  # continues what was begun
+    driver.furrow("calibrate", f"rigs/{study}.json", "--out", RESULTS / name, progress=True)  # continues it
     result = read_json(RESULTS / name / "calibration.json")
     if runs:
         stiffness = driver.summary(press(name, result))["sticking_stiffness"]["longitudinal_N_per_m"]

@@ -13,6 +13,7 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
+import driver  # noqa: E402
 import provenance  # noqa: E402
 
 # Stands in for the program: counts its runs, and takes the settings for the scenario's digest.
@@ -111,6 +112,20 @@ class RunStudy(unittest.TestCase):
         self.assertEqual(made["processor"], "a processor, 2.5 GHz")
         self.assertEqual(made["commit"], provenance.commit())
         self.assertTrue(made["command"].startswith("run_study.py "), made["command"])
+
+
+    def test_results_are_kept_until_their_words_their_scenario_or_the_program_change(self):
+        os.environ["FURROW"] = str(self.folder / "furrow")
+        self.addCleanup(os.environ.pop, "FURROW")
+
+        def runs(*words, **more):
+            out = driver.kept(self.folder / "kept", "press", *words, **more)
+            return len((out / "runs").read_text().split()) if out else 0
+        self.assertEqual(runs("--on", "plate", finished_only=True), 0)
+        self.assertEqual([runs("--on", "plate"), runs("--on", "plate"), runs("--on", "cleat")], [1, 1, 2])
+        self.assertEqual([runs(scenario={"rig": slip}) for slip in (1, 1, 2)], [3, 3, 4])
+        self.build(2)
+        self.assertEqual(runs(scenario={"rig": 2}), 5)
 
 
 class Tables(unittest.TestCase):

@@ -17,7 +17,7 @@ FIGURES = (("cohesion_kPa", "cohesion_Pa", 1e-3), ("friction_angle_deg", "fricti
 
 def measured(out, figures, *words):
     """What `furrow soil` finds: columns with their standard errors."""
-    driver.furrow("soil", *words, "--out", out, "--overwrite")
+    driver.furrow("soil", *words, "--out", out, "--overwrite", progress=True)
     soil, row = read_json(out / "soil.json"), {}
     for column, key, factor in figures:
         row[column] = f"{factor * soil[key]:.4g}"

@@ -59,23 +59,25 @@ class Failed(Exception):
 
 
 class Maker:
+    """Makes the cases: a method each, which takes the case's name."""
+
     def __init__(self, arguments):
-        self.source = Path(arguments.source).resolve()
-        self.out = Path(arguments.out).resolve()
-        self.program = Path(arguments.program).resolve() if arguments.program else self.source / "build" / "furrow"
-        self.rigs = Path(arguments.scenarios).resolve() if arguments.scenarios else self.source / "rigs"
+        self.source, self.out = arguments.source.resolve(), arguments.out.resolve()
+        self.program = (arguments.program or self.source / "build" / "furrow").resolve()
+        self.rigs = (arguments.scenarios or self.source / "rigs").resolve()
         self.environment = dict(os.environ, FURROW_HOME=str(self.source), XDG_CACHE_HOME=str(self.out / "cache"),
                                 OMP_NUM_THREADS="1", PYTHONDONTWRITEBYTECODE="1")
         self.log = None
+        self.cases = {**dict.fromkeys(RUNS, self.run), "resumed": self.resumed, "passes": self.passes,
+                      "extra_press": self.press, "extra_soil": self.soil, **dict.fromkeys(BENCHES, self.bench)}
 
-    def start(self, words, stdout):
-        return subprocess.Popen([str(self.program), *map(str, words)], cwd=self.out, env=self.environment,
-                                stdin=subprocess.DEVNULL, stdout=stdout, stderr=self.log)
+    def start(self, *words, stdout=None):
+        return subprocess.Popen([self.program, *map(str, words)], cwd=self.out, env=self.environment,
+                                stdin=subprocess.DEVNULL, stdout=stdout or self.log, stderr=self.log)
 
-    def furrow(self, *words, stdout=None, expected=0):
-        rc = self.start(words, stdout or self.log).wait()
-        if rc != expected:
-            raise Failed(f"exit code {rc}, expected {expected}: furrow {' '.join(map(str, words))}")
+    def furrow(self, *words, stdout=None):
+        if code := self.start(*words, stdout=stdout).wait():
+            raise Failed(f"exit code {code}, expected 0: furrow {' '.join(map(str, words))}")
 
     def run(self, name):
         scenario, more = RUNS[name]
@@ -83,7 +85,7 @@ class Maker:
 
     def resumed(self, name):
         folder = self.out / name
-        process = self.start(["run", self.rigs / "first_look.json", "--no-plots", "--out", folder], self.log)
+        process = self.start("run", self.rigs / "first_look.json", "--no-plots", "--out", folder)
         deadline = time.time() + 120
         while process.poll() is None and time.time() < deadline and len(list(folder.glob("frames*/*"))) < 20:
             time.sleep(0.005)
@@ -102,9 +104,8 @@ class Maker:
         self.furrow("sweep", study, "--out", self.out / name)
 
     def bench(self, name):
-        folder = self.out / name
-        folder.mkdir()
-        with open(folder / "bench.json", "w") as out:
+        (self.out / name).mkdir()
+        with open(self.out / name / "bench.json", "w") as out:
             self.furrow("bench", *BENCHES[name], stdout=out)
 
     def press(self, name):
@@ -115,70 +116,50 @@ class Maker:
         self.furrow("soil", self.rigs / "drawbar_pull_small.json", "--out", self.out / name, "--quick",
                     "--only", "shear")
 
-
-def cases(maker):
-    table = {name: maker.run for name in RUNS}
-    table["resumed"] = maker.resumed
-    table["passes"] = maker.passes
-    table["extra_press"] = maker.press
-    table["extra_soil"] = maker.soil
-    table.update({name: maker.bench for name in BENCHES})
-    return table
+    def make(self, name):
+        """The entry of times.json of a case, whose old output is replaced."""
+        shutil.rmtree(self.out / name, ignore_errors=True)
+        begin, entry = time.time(), {}
+        with open(self.out / f"{name}.log", "w") as self.log:
+            try:
+                self.cases[name](name)
+            except Failed as error:
+                entry["problem"] = str(error)
+        outcome = f"FAILED: {entry['problem']}" if entry else "ok"
+        print(f"{name:24s} {time.time() - begin:7.1f} s  {outcome}", flush=True)
+        return {"wall_s": round(time.time() - begin, 2), **entry}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("source")
-    parser.add_argument("out")
+    parser.add_argument("source", type=Path)
+    parser.add_argument("out", type=Path)
     parser.add_argument("--cases", help="these only, with commas between; their old output is replaced")
-    parser.add_argument("--program", help="default: SOURCE_DIR/build/furrow")
-    parser.add_argument("--scenarios", help="folder of the scenarios; default: SOURCE_DIR/rigs")
+    parser.add_argument("--program", type=Path, help="default: SOURCE_DIR/build/furrow")
+    parser.add_argument("--scenarios", type=Path, help="folder of the scenarios; default: SOURCE_DIR/rigs")
     arguments = parser.parse_args()
     maker = Maker(arguments)
-    table = cases(maker)
-    chosen = arguments.cases.split(",") if arguments.cases else list(table)
-    if unknown := [name for name in chosen if name not in table]:
-        parser.error(f"unknown cases {unknown}, expected some of {', '.join(table)}")
+    out, chosen = maker.out, arguments.cases.split(",") if arguments.cases else list(maker.cases)
+    if unknown := [name for name in chosen if name not in maker.cases]:
+        parser.error(f"unknown cases {unknown}, expected some of {', '.join(maker.cases)}")
     if not os.access(maker.program, os.X_OK):
         parser.error(f"{maker.program} is no program")
-    out = maker.out
     if out.exists() and any(out.iterdir()):
         if not (out / MARK).exists():
             parser.error(f"{out} is not empty and no output of run_cases.py")
         if not arguments.cases:
             shutil.rmtree(out)
     out.mkdir(parents=True, exist_ok=True)
-    times = json.loads((out / MARK).read_text()) if (out / MARK).exists() else {"cases": {}}
-    times["program"] = str(maker.program)
-    times["made"] = {"commit": provenance.commit(maker.source), "compiler": provenance.compiler_of(maker.program),
-                     "processor": provenance.processor()}
-    (out / MARK).write_text(json.dumps(times, indent=2) + "\n")
-
-    failed = []
-    begin_all = time.time()
+    times = {"cases": {}, **provenance.read_json(out / MARK), "program": str(maker.program), "made": {
+        "commit": provenance.commit(maker.source), "compiler": provenance.compiler_of(maker.program),
+        "processor": provenance.processor()}}
     for name in chosen:
-        shutil.rmtree(out / name, ignore_errors=True)
-        with open(out / f"{name}.log", "w") as maker.log:
-            begin, problem = time.time(), ""
-            try:
-                table[name](name)
-            except Failed as error:
-                problem = str(error)
-            wall = time.time() - begin
-        entry = {"wall_s": round(wall, 2)}
-        if problem:
-            entry["problem"] = problem
-            failed.append(name)
-        times["cases"][name] = entry
+        times["cases"][name] = maker.make(name)
+        times["total_s"] = round(sum(entry["wall_s"] for entry in times["cases"].values()), 1)
         (out / MARK).write_text(json.dumps(times, indent=2) + "\n")
-        print(f"{name:24s} {wall:7.1f} s  {problem and 'FAILED: ' + problem or 'ok'}", flush=True)
-    times["total_s"] = round(sum(entry["wall_s"] for entry in times["cases"].values()), 1)
-    (out / MARK).write_text(json.dumps(times, indent=2) + "\n")
-    print(f"{'total':24s} {time.time() - begin_all:7.1f} s")
-    if failed:
-        print(f"FAILED: {', '.join(failed)}; see {out}/<case>.log", file=sys.stderr)
-    return 1 if failed else 0
+    if failed := [name for name in chosen if "problem" in times["cases"][name]]:
+        sys.exit(f"FAILED: {', '.join(failed)}; see {out}/<case>.log")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -125,7 +125,8 @@ TEST(HertzTanhLaw, impulse_limit_caps_friction_at_three_tenths) {
   const double v_t = 1e-4;
   const auto pair = HertzTanhLaw::force<false>(few.pair<HertzTanhLaw>(), 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
   EXPECT_NEAR(pair.tangential.y, -0.3 * m / 7.0 * v_t / 4e-5, 1e-15);
-  const auto wall = HertzTanhLaw::force<false>(few.floor<HertzTanhLaw>(), 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
+  const auto wall =
+      HertzTanhLaw::force<false>(few.floor<HertzTanhLaw>(), 4e-5, touching(4.34e-4, {0, v_t, 0}), history);
   EXPECT_NEAR(wall.tangential.y, -0.3 * 2.0 * m / 7.0 * v_t / 4e-5, 1e-15);
 }
 

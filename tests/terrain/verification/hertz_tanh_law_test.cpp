@@ -137,8 +137,7 @@ TEST(HertzTanhLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
   few.gravity = kStandardGravity;
   const double speed = 0.4, c = few.options.friction_velocity_scale;
   const double load = mass_of(few) * few.gravity;
-  terrain::dem::GrainSolver s =
-      few.make({{0.1, 0, kRadius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0)}});
+  terrain::dem::GrainSolver s = few.make({{0.1, 0, kRadius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0)}});
   terrain::dem::set_velocity(s, 0, {speed, 0, 0});
   // The arm is r − δ; δ/r is 1.3e-3.
   Worst path("hertz_tanh, sliding sphere", "speed along the way", 1e-3, "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");

@@ -139,7 +139,8 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   solver.grains().velocity[0] = terrain::dem::quad(turn * Vec3(before.tangential, 0.0, -before.normal));
   solver.grains().spin[0] = terrain::dem::quad(turn * Vec3(0.0, before.spin, 0.0));
 
-  const double hertz = hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, params.grain.mass, before.normal).duration;
+  const double hertz =
+      hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, params.grain.mass, before.normal).duration;
   const double dt = hertz / steps;
   Rebound out;
   double speed = -before.normal;

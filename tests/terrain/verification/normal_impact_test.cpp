@@ -47,7 +47,8 @@ Rebound pair_impact(double radius, double density, const Elastic& material, doub
   solver.place({terrain::dem::quad(middle - radius * along), terrain::dem::quad(middle + radius * along)});
   terrain::dem::set_velocity(solver, 0, speed * along);
   terrain::dem::set_velocity(solver, 1, -speed * along);
-  const double dt = hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / kSteps;
+  const double dt =
+      hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / kSteps;
   Rebound out;
   int touched = 0;
   for (int step = 0; step < 2 * kSteps; ++step) {

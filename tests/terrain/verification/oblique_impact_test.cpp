@@ -212,7 +212,8 @@ Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double
   terrain::dem::set_velocity(solver, 1, {-speed, 0.0, 0.0});
   terrain::dem::set_spin(solver, 0, {0.0, spin_1, 0.0});
   terrain::dem::set_spin(solver, 1, {0.0, spin_2, 0.0});
-  const double dt = hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / steps;
+  const double dt =
+      hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / steps;
   bool touched = false;
   for (int step = 0; step < 20 * steps; ++step) {
     solver.step(dt);

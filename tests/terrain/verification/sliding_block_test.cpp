@@ -127,7 +127,8 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
       s.step(dt);
       const Vec3 force = mass / dt * (terrain::dem::velocity(s, 0) - way);
       if (step % 50 != 0) continue;
-      const double spring = k.of<terrain::dem::MindlinLaw>().shear_stiffness * std::sqrt(overlap) * step * dt * way.norm();
+      const double spring =
+          k.of<terrain::dem::MindlinLaw>().shear_stiffness * std::sqrt(overlap) * step * dt * way.norm();
       worst.add(-force.dot(way) / way.norm(), spring, 0.0, brief(step * dt * speed) + " m");
     }
   }

@@ -10,14 +10,13 @@ with one difference put back at a time; the engine as it is. OUT/trajectories.cs
 between the same grains per case, m. OUT/trajectories.json: when the mean passes 1e-12 … 1e-4 m, when grains first
 touch, what is left at the end.
 """
-import argparse
 import csv
 import json
 import pathlib
 
 import numpy
 
-from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, folder_name, nearest, program, random_spheres,
+from common import (ALL_SWITCHES, FREE, RADIUS, SWITCHES, driver, folder_name, nearest, program, random_spheres,
                     record_program, run_furrow, run_liggghts)
 
 SIDE = 20 * RADIUS  # m, periodic
@@ -31,26 +30,8 @@ def distance(a, b):
     return numpy.sqrt((d * d).sum(axis=-1))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--grains", type=int, default=2000)
-    parser.add_argument("--end", type=float, default=0.2, help="s")
-    parser.add_argument("--step", type=float, default=2e-5, help="s")
-    parser.add_argument("--frames", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    a = parser.parse_args()
-    a.out.mkdir(parents=True, exist_ok=True)
-    record_program(a.out)
-    height = a.grains * 4.0 / 3.0 * numpy.pi * RADIUS**3 / (FILL * SIDE * SIDE)
-    x = random_spheres(a.grains, SIDE, SIDE, 1.5 * RADIUS, 1.5 * RADIUS + height, a.seed)
-    kinds = [FREE] * a.grains
-    steps = round(a.end / a.step)
-    every = max(1, steps // a.frames)
-    job = {"test": "fall", "length": SIDE, "width": SIDE, "step": a.step, "steps": steps, "every": every,
-           "precision": "double", "wall_friction": 0.0}
-    box = {"length": SIDE, "width": SIDE, "height": 2.0 * height}
-
+def compared(a, kinds, x, job, box):
+    """({case: (frames, frames beside them)}, the series of the engine as it is)"""
     def own(name, **more):
         return run_furrow(a.out / "runs" / folder_name(name), job, kinds, x, **more)
 
@@ -60,7 +41,7 @@ def main():
 
     def peer(name, x=x, **more):
         return run_liggghts(a.out / "runs" / folder_name(name), "deck_fall.in", kinds, x, box, step=a.step,
-                            steps=steps, every=every, **{"wall_friction": 0.0, **more})[0]
+                            steps=job["steps"], every=job["every"], **{"wall_friction": 0.0, **more})[0]
 
     liggghts, (as_it_is, series) = peer("liggghts"), own("own")
     whole, mixed, away = theirs("theirs"), own("mixed", precision="mixed")[0], [0.3 * SIDE, 0.0, 0.0]
@@ -81,8 +62,26 @@ def main():
                                               peer("liggghts floor", wall_friction=0.9)),
               "the engine as it is": (as_it_is, liggghts), "the engine, mixed precision": (mixed, liggghts),
               "mixed against double precision": (mixed, as_it_is)}
+    return cases, series
 
-    time = a.step * every * numpy.arange(len(liggghts))
+
+def main():
+    a = driver.options(__doc__, grains={"type": int, "default": 2000}, frames={"type": int, "default": 200},
+                       end={"type": float, "default": 0.2, "help": "s"}, seed={"type": int, "default": 1},
+                       step={"type": float, "default": 2e-5, "help": "s"})
+    a.add_argument("out", type=pathlib.Path)
+    a = a.parse_args()
+    a.out.mkdir(parents=True, exist_ok=True)
+    record_program(a.out)
+    height = a.grains * 4.0 / 3.0 * numpy.pi * RADIUS**3 / (FILL * SIDE * SIDE)
+    x = random_spheres(a.grains, SIDE, SIDE, 1.5 * RADIUS, 1.5 * RADIUS + height, a.seed)
+    steps, cell = round(a.end / a.step), {"length": SIDE, "width": SIDE}
+    every = max(1, steps // a.frames)
+    job = {"test": "fall", "step": a.step, "steps": steps, "every": every, "precision": "double", "wall_friction": 0.0,
+           **cell}
+    cases, series = compared(a, [FREE] * a.grains, x, job, {"height": 2.0 * height, **cell})
+
+    time = a.step * every * numpy.arange(len(cases["the engine as it is"][0]))
     columns, summary = {"time_s": time}, {}
     for name, (mine, other) in cases.items():
         d = distance(mine, other)
@@ -96,10 +95,8 @@ def main():
         csv.writer(out, lineterminator="\n").writerow(columns)
         for row in zip(*columns.values()):
             out.write(",".join(f"{v:.4g}" for v in row) + "\n")
-    touching = series["contacts"]
-    facts = {"grains": a.grains, "step_s": a.step, "seed": a.seed,
-             "first_contacts_s": float(series["time_s"][next(k for k, c in enumerate(touching) if c > 0)]),
-             "cases": summary}
+    facts = {"grains": a.grains, "step_s": a.step, "seed": a.seed, "cases": summary,
+             "first_contacts_s": float(series["time_s"][numpy.argmax(series["contacts"] > 0)])}
     (a.out / "trajectories.json").write_text(json.dumps(facts, indent=1) + "\n")
 
 

@@ -109,6 +109,7 @@ def kept(out, command, *words, scenario=None, finished_only=False, made_at=None)
         file = out.parent / f"{out.name}.json"
         file.write_text(json.dumps(scenario), encoding="utf-8")
         words.insert(0, str(file))
+    (out / RECORD).unlink(missing_ok=True)
     furrow(command, *words, "--out", out, "--overwrite", "--quiet", *(["--no-plots"] if command == "run" else []))
     provenance.record_run(out, made_at, made_of=made_of)
     print(f"{out.parent.name}: {out.name}", file=sys.stderr, flush=True)

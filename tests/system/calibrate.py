@@ -33,9 +33,8 @@ class Calibrate(SystemTest):
         study = {"calibrate": "ring", "start": "soft_ring.json",
                  "parameters": {"sidewall_1": {"lower": 1e5, "upper": 1e7}, "air_share": {"lower": 0.1, "upper": 1}},
                  "targets": [{"data": self.curve("plate", "--on", "plate"), "name": "plate", "on": "plate"},
-                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"),
-                              "name": "cleat", "on": "cleat",
-                              "cleat_width": 0.051, "weight": 2}],
+                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"), "name": "cleat",
+                              "on": "cleat", "cleat_width": 0.051, "weight": 2}],
                  "held_out": [{"data": "plate/press.csv", "name": "again", "on": "plate"}], "starts": 3, **more}
         write_json(self.folder / name, study)
         return name

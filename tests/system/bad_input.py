@@ -225,9 +225,8 @@ BEDS = [
     ("in_each_other", "0.1,0,0.1\n0.11,0,0.1",
      "key 'line 3': the grain at (0.11, 0, 0.1) m is 0.01 m from that of line 2, expected at least 0.054 m"),
     ("no_grain", "", "bed.csv: holds no grain"),
-    ("in_the_sky", "0.1,0,0.1\n0.3,0,5000",
-     "key 'line 3': the grain stands at (0.3, 0, 5000) m, 5000 m above all that is below it, "
-     "expected at most 3 m, 100 radii"),
+    ("in_the_sky", "0.1,0,0.1\n0.3,0,5000", "key 'line 3': the grain stands at (0.3, 0, 5000) m, 5000 m above all that "
+     "is below it, expected at most 3 m, 100 radii"),
     ("terminal_codes", "\x1b[31m,0,0.1", "key 'line 2': '\\x1b[31m,0,0.1', expected three finite numbers, m"),
     ("one_long_line", "0" * 100000, "key 'line 2': is longer than 1023 bytes, expected a CSV file of positions"),
 ]

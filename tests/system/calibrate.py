@@ -33,9 +33,8 @@ class Calibrate(SystemTest):
         study = {"calibrate": "ring", "start": "soft_ring.json",
                  "parameters": {"sidewall_1": {"lower": 1e5, "upper": 1e7}, "air_share": {"lower": 0.1, "upper": 1}},
                  "targets": [{"data": self.curve("plate", "--on", "plate"), "name": "plate", "on": "plate"},
-                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"),
-                              "name": "cleat", "on": "cleat",
-                              "cleat_width": 0.051, "weight": 2}],
+                             {"data": self.curve("cleat", "--on", "cleat", "--cleat-width", "0.051"), "name": "cleat",
+                              "on": "cleat", "cleat_width": 0.051, "weight": 2}],
                  "held_out": [{"data": "plate/press.csv", "name": "again", "on": "plate"}], "starts": 3, **more}
         write_json(self.folder / name, study)
         return name
@@ -166,10 +165,9 @@ class Calibrate(SystemTest):
             write_json(self.folder / "wrong.json", document)
             self.furrow("calibrate", "wrong.json", code=2, says=expected, prints="")
             self.assertEqual(set(self.names()), before | {"wrong.json"}, expected)
-        done = furrow("calibrate", ROOT / "rigs" / "study_slip.json", cwd=self.folder)
-        self.assertIn("is a study, expected a calibration ('furrow sweep' takes studies)", done.stderr)
-        done = furrow("calibrate", ROOT / "rigs" / "first_look.json", cwd=self.folder)
-        self.assertIn("is a scenario, expected a calibration ('furrow run' takes scenarios)", done.stderr)
+        for name, words in (("study_slip", "is a study, expected a calibration ('furrow sweep' takes studies)"),
+                            ("first_look", "is a scenario, expected a calibration ('furrow run' takes scenarios)")):
+            self.furrow("calibrate", ROOT / "rigs" / f"{name}.json", code=2, says=words)
         # A tire that no pressure of the study can hold.
         document = {**read_json(self.folder / "study.json"), "starts": 2}
         document["targets"][0]["pressure"] = 5e7

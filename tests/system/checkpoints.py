@@ -104,8 +104,7 @@ class Resume(CheckpointTest):
             done = subprocess.run([*user, FAULTY, "resume", run, "--no-plots"], capture_output=True, text=True,
                                   env={**os.environ, "HOME": str(self.folder)})
             os.chmod(run / closed, mode)
-            self.assertIn(words, done.stderr)
-            self.assertNotIn("--overwrite", done.stderr)
+            self.expect(done, done.returncode, says=words, lacks="--overwrite")
 
     def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(self):
         run = self.copy_of_whole()

@@ -113,9 +113,8 @@ class QueuedAgainBySlurm(ClusterTest):
 # A wheel at each corner of the bed, each under a load of its own, two of them on either rank of the terrain.
 FOUR_WHEELS = on_liggghts(changed(
     rig={"touchdown_damping": 0, "wheels": [{"start": start, "lateral": lateral, "carrier_mass": mass} for start,
-                                            lateral, mass in
-                                            ((0.55, -0.23, 300), (0.55, 0.23, 350),
-                                             (1.65, -0.23, 400), (1.65, 0.23, 450))]},
+                                            lateral, mass in ((0.55, -0.23, 300), (0.55, 0.23, 350), (1.65, -0.23, 400),
+                                                              (1.65, 0.23, 450))]},
     terrain={"layers": 3, "length": 2.4, "width": 0.95},
     run={"step": 2e-4, "end": 0.08, "average_from": 0.02, "peer_timeout": 60},
     output={"series_interval": 1e-3, "frame_interval": 0.01}, checkpoint={"interval": 0.01, "keep": 1000}), 2)

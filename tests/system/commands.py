@@ -175,13 +175,12 @@ class Commands(SystemTest):
                               (["--vehicle", "rover.json", "--load", "5"], "excludes")):
             self.furrow("new", "mine", *options, code=2, says=said)
             self.assertEqual(self.names(), [])
-        done = furrow("new", "my drum", "--tire", "rigid_drum.json", cwd=self.folder)
-        self.assertIn("run it with: furrow run 'my drum.json'", done.stderr)
+        self.furrow("new", "my drum", "--tire", "rigid_drum.json", says="run it with: furrow run 'my drum.json'")
         self.assertIn("set tire.rigid if the wheel is rigid",
                       furrow("validate", "my drum.json", cwd=self.folder).stderr)
         (self.folder / "my drum.json").unlink()
-        done = furrow("new", "rover", "--vehicle", "rover.json", cwd=self.folder)
-        self.assertIn("NAME': is 'rover.json': beside that scenario", done.stderr)
+        self.furrow("new", "rover", "--vehicle", "rover.json", code=2,
+                    says="NAME': is 'rover.json': beside that scenario")
         for name in ("", "-", ".", "no_such_folder/x"):
             self.furrow("new", name, code=5 if "/" in name else 2)
         self.assertEqual(self.names(), [])

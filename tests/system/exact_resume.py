@@ -19,6 +19,12 @@ def kept(name):
     return {**scenario, "checkpoint": {**scenario["checkpoint"], "keep": 1000}}
 
 
+# A run of 400 steps, with a checkpoint and a frame every 50, that keeps all of them.
+QUICK = {"format_version": 1, "run": {"step": 2e-4, "end": 0.08, "average_from": 0.04, "peer_timeout": 20},
+         "output": {"series_interval": 0.002, "frame_interval": 0.01}, "checkpoint": {"interval": 0.01, "keep": 1000}}
+HARD_GROUND = {"engine": "rigid", "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6, "ground_damping": 5e3}
+
+
 class Exact:
     """Frames and checkpoints fall on the same steps. `LOADED`: that the terrain pushes at the frame of this number."""
     WHEELS = 1
@@ -87,29 +93,24 @@ class SeveralWheels(Exact, CheckpointTest):
 class EmpiricalSoil(Exact, CheckpointTest):
     """A flexible tire presses, shears and lets rebound the nodes of the soil."""
     SCENARIO = {
-        "format_version": 1,
-        "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28,
-                "ramp": 0.01, "carrier_mass": 450, "touchdown_damping": 0},
+        **QUICK,
+        "rig": {"type": "drawbar", "slip": 0.3, "angular_speed": 4.28, "ramp": 0.01, "carrier_mass": 450,
+                "touchdown_damping": 0},
         "tire": SHELL,
         "terrain": {"engine": "scm", "material": "dry_sand.json", "length": 1.4, "width": 0.5, "grid_spacing": 0.02},
-        "run": {"step": 2e-4, "end": 0.06, "average_from": 0.02, "peer_timeout": 20},
-        "output": {"series_interval": 1e-3, "frame_interval": 0.01},
-        "checkpoint": {"interval": 0.01, "keep": 1000},
+        "run": {**QUICK["run"], "end": 0.06, "average_from": 0.02},
     }
 
 
 class Vehicle(Exact, CheckpointTest):
     """It lands, shifts and turns its wheels at the checkpoints."""
     SCENARIO = {
-        "format_version": 1,
+        **QUICK,
         "rig": {"type": "vehicle", "vehicle": "hmmwv.json", "drop_height": 0.005,
                 "driver": {"inputs": {"throttle": [[0, 0], [0.02, 1]], "gear": [[0, 1], [0.045, 2]],
                                       "steering": [[0, 0], [0.05, 0.5]]}}},
         "tire": {"rigid": True, "elements_circumference": 40},
-        "terrain": {"engine": "rigid", "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6, "ground_damping": 5e3},
-        "run": {"step": 2e-4, "end": 0.08, "average_from": 0.04, "peer_timeout": 20},
-        "output": {"series_interval": 0.002, "frame_interval": 0.01},
-        "checkpoint": {"interval": 0.01, "keep": 1000},
+        "terrain": HARD_GROUND,
     }
     WHEELS = 4
     KILLED = (0, 1, 4, 5)  # rig, a front and a rear tire, terrain
@@ -133,17 +134,9 @@ class Vehicle(Exact, CheckpointTest):
 
 def on_a_curb(rig, **tire):
     """A quick run over a curb that keeps all its checkpoints."""
-    return {
-        "format_version": 1,
-        "rig": {"speed": 4.0, "ramp": 0.01, "rim_mass": 15, "rim_spin_inertia": 0.7, **rig},
-        "tire": {"file": "hmmwv_lumped.json", **tire},
-        "terrain": {"engine": "rigid", "profile": [[0.2, 0], [0.2, 0.02]],
-                    "ground_stiffness": 2e7, "ground_shear_stiffness": 5e6,
-                    "ground_damping": 5e3},
-        "run": {"step": 2e-4, "end": 0.08, "average_from": 0.04, "peer_timeout": 20},
-        "output": {"series_interval": 0.002, "frame_interval": 0.01},
-        "checkpoint": {"interval": 0.01, "keep": 1000},
-    }
+    return {**QUICK, "rig": {"speed": 4.0, "ramp": 0.01, "rim_mass": 15, "rim_spin_inertia": 0.7, **rig},
+            "tire": {"file": "hmmwv_lumped.json", **tire},
+            "terrain": {**HARD_GROUND, "profile": [[0.2, 0], [0.2, 0.02]]}}
 
 
 class QuarterCar(Exact, CheckpointTest):

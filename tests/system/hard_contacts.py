@@ -9,9 +9,8 @@ DISC = {
     "format_version": 1, "template": "ancf_shell", "name": "disc", "radius": 0.058,
     "rim_radius": 0.058, "rim_width": 0.05, "pressure": 1e3,
     "structural_damping": 1e-3, "elements_circumference": 60,
-    "contact": {"young_modulus": 5e7, "poisson_ratio": 0.3, "friction": 0.4,
-                "restitution": 0.2, "normal_stiffness": 1e6,
-                "normal_damping": 10},
+    "contact": {"young_modulus": 5e7, "poisson_ratio": 0.3, "friction": 0.4, "restitution": 0.2,
+                "normal_stiffness": 1e6, "normal_damping": 10},
     "materials": {"steel": {"density": 1000, "young_modulus": 1e8, "poisson_ratio": 0.3}},
     "sections": {name: {"elements_per_side": 1, "layers": [{"thickness": 2e-3, "angle_deg": 0, "material": "steel"}]}
                  for name in ("bead", "sidewall", "tread")},
@@ -19,14 +18,12 @@ DISC = {
 }
 WHEEL = {
     "format_version": 1,
-    "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8.0, "ramp": 0.05,
-            "carrier_mass": 2.0, "chassis_mass": 0.1, "set_toe_mass": 0.1,
-            "rim_mass": 0.4, "rim_spin_inertia": 1e-3, "rim_diametral_inertia": 1e-3,
-            "touchdown_damping": 20, "touchdown_time": 0.05},
+    "rig": {"type": "drawbar", "slip": 0.5, "angular_speed": 8.0, "ramp": 0.05, "carrier_mass": 2.0,
+            "chassis_mass": 0.1, "set_toe_mass": 0.1, "rim_mass": 0.4, "rim_spin_inertia": 1e-3,
+            "rim_diametral_inertia": 1e-3, "touchdown_damping": 20, "touchdown_time": 0.05},
     "tire": {"file": "disc.json", "rigid": True},
-    "terrain": {"radius": 0.0035, "density": 2420, "young_modulus": 5e6,
-                "friction": 0.5, "rolling_friction": 0.1, "layers": 8,
-                "length": 0.32, "width": 0.1},
+    "terrain": {"radius": 0.0035, "density": 2420, "young_modulus": 5e6, "friction": 0.5, "rolling_friction": 0.1,
+                "layers": 8, "length": 0.32, "width": 0.1},
     "run": {"step": 7.8e-5, "end": 0.12, "average_from": 0.06},
     "output": {"frame_interval": 0},
 }

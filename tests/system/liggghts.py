@@ -53,7 +53,8 @@ class SeveralWheels(Exact, CheckpointTest):
 class SameNumbers(CheckpointTest):
     """As those of engine dem in double precision without sleep. Chaos multiplies round-off: the comparison is of the
     tenth of a second after which it is still small."""
-    SCENARIO = on_dem(kept("rigid"))
+    ON, RANKS = kept("rigid"), (1, 2, 3, 4)
+    SCENARIO = on_dem(ON)
     COLUMNS = ("force_x_N", "force_y_N", "force_z_N", "spindle_torque_Nm", "terrain_kinetic_energy_J",
                "terrain_potential_energy_J", "terrain_elastic_energy_J", "soil_dissipation_J")
 
@@ -72,33 +73,14 @@ class SameNumbers(CheckpointTest):
         self.assertLess(summary(run)["accounts"]["momentum"]["residual_share"], 1e-11)
         return worst
 
-    def test_on_1_2_3_and_4_ranks(self):
-        for ranks in (1, 2, 3, 4):
+    def test_on_every_number_of_ranks(self):
+        for ranks in self.RANKS:
             with self.subTest(ranks):
-                self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), ranks)), 1e-9)
+                self.assertLess(self.differs_from_whole_by(on_liggghts(self.ON, ranks)), 1e-9)
 
 
-class SameNumbersOfOtherSoils(SameNumbers):
-    """Sizes, rolling resistance, cohesion and periodic sides."""
-    TERRAIN = {"size_spread": 0.2, "rolling_friction": 0.1, "cohesion": 2e4, "sides": "periodic"}
-    SCENARIO = on_dem({**kept("rigid"), "terrain": {**kept("rigid")["terrain"], **TERRAIN}})
-
-    def test_on_1_2_3_and_4_ranks(self):
-        for ranks in (1, 3):
-            with self.subTest(ranks):
-                self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), ranks, **self.TERRAIN)), 1e-9)
-
-
-class SameNumbersOfTheReportsLaw(SameNumbers):
-    TERRAIN = {"law": "hertz_tanh"}
-    SCENARIO = on_dem({**kept("rigid"), "terrain": {**kept("rigid")["terrain"], **TERRAIN}})
-
-    def test_on_1_2_3_and_4_ranks(self):
-        self.assertLess(self.differs_from_whole_by(on_liggghts(kept("rigid"), 2, **self.TERRAIN)), 1e-9)
-
-
-RING = {"file": "hmmwv_ring.json", "rigid": False, "elements_circumference": 60}
-PLANAR = {"file": "aligator_planar.json", "rigid": False}
+def soil(**terrain):
+    return {**kept("rigid"), "terrain": {**kept("rigid")["terrain"], **terrain}}
 
 
 def under(tire, **terrain):
@@ -106,19 +88,26 @@ def under(tire, **terrain):
                   terrain={**SMALL_BED, **terrain})
 
 
-class SameNumbersUnderARing(SameNumbers):
-    SCENARIO = on_dem(under(RING))
+class SameNumbersOfOtherSoils(SameNumbers):
+    """Sizes, rolling resistance, cohesion and periodic sides."""
+    ON, RANKS = soil(size_spread=0.2, rolling_friction=0.1, cohesion=2e4, sides="periodic"), (1, 3)
+    SCENARIO = on_dem(ON)
 
-    def test_on_1_2_3_and_4_ranks(self):
-        self.assertLess(self.differs_from_whole_by(on_liggghts(under(RING), 2)), 1e-9)
+
+class SameNumbersOfTheReportsLaw(SameNumbers):
+    ON, RANKS = soil(law="hertz_tanh"), (2,)
+    SCENARIO = on_dem(ON)
+
+
+class SameNumbersUnderARing(SameNumbers):
+    ON, RANKS = under({"file": "hmmwv_ring.json", "rigid": False, "elements_circumference": 60}), (2,)
+    SCENARIO = on_dem(ON)
 
 
 class SameNumbersUnderAPlanarTire(SameNumbers):
     """It is 1 m wide."""
-    SCENARIO = on_dem(under(PLANAR, length=1.6, width=1.1))
-
-    def test_on_1_2_3_and_4_ranks(self):
-        self.assertLess(self.differs_from_whole_by(on_liggghts(under(PLANAR, length=1.6, width=1.1), 2)), 1e-9)
+    ON, RANKS = under({"file": "aligator_planar.json", "rigid": False}, length=1.6, width=1.1), (2,)
+    SCENARIO = on_dem(ON)
 
 
 class BordersThatMove(CheckpointTest):

@@ -23,9 +23,8 @@ class Modes(SystemTest):
         self.assertEqual(done.stdout.strip(), "out")
         self.assertRegex(done.stderr, r"furrow: lowest frequency [\d.]+ Hz, of order \d\n")
         self.assertEqual({path.name for path in out.iterdir()} - {".furrow-run"},
-                         {"modes.csv", "section.csv", "shapes.csv", "summary.json",
-                          "frequencies.png", "mode_shapes.png",
-                          "mode_sections.png", "report.html"})
+                         {"modes.csv", "section.csv", "shapes.csv", "summary.json", "frequencies.png",
+                          "mode_shapes.png", "mode_sections.png", "report.html"})
         summary = read_json(out / "summary.json")
         self.assertEqual([(mode["order"], mode["number"]) for mode in summary["modes"]],
                          [(order, number) for order in range(4) for number in (1, 2)])

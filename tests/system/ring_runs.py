@@ -8,9 +8,8 @@ RING = {"file": "hmmwv_ring.json", "elements_circumference": 120}
 # A few kilometres per hour, let down quickly.
 ROLLING = {
     "format_version": 1,
-    "rig": {"type": "drawbar", "slip": 0.1, "angular_speed": 4.28, "ramp": 0.05,
-            "carrier_mass": 450, "touchdown_damping": 12e3,
-            "touchdown_time": 0.3},
+    "rig": {"type": "drawbar", "slip": 0.1, "angular_speed": 4.28, "ramp": 0.05, "carrier_mass": 450,
+            "touchdown_damping": 12e3, "touchdown_time": 0.3},
     "tire": RING,
     "run": {"step": 1e-4, "end": 0.6, "average_from": 0.4},
     "output": {"series_interval": 2e-3, "frame_interval": 0.1},

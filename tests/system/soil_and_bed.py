@@ -22,8 +22,7 @@ class WithCache(SystemTest):
         self.env = {"XDG_CACHE_HOME": str(self.folder / "cache")}
 
     def run_json(self, *arguments):
-        done = furrow(*arguments, cwd=self.work, env=self.env)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.furrow(*arguments, cwd=self.work, env=self.env)
         return json.loads(done.stdout), done.stderr
 
 
@@ -109,8 +108,7 @@ class Soil(WithCache):
         write_json(self.work / "mine.json", {"format_version": 1, "terrain": soil["terrain"]})
         empirical = write_scenario(self.work, changed(terrain=None)
                                    | {"terrain": {"engine": "scm", "material": "mine.json"}}, "scm.json")
-        done = furrow("validate", empirical, cwd=self.work)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.furrow("validate", empirical, cwd=self.work)
         for test in ("plate", "shear", "cone"):
             self.assertEqual(soil[test]["speed_m_s"], 0.3)
             self.assertGreater(soil[test]["box"]["grains"], 50)
@@ -166,10 +164,9 @@ class Soil(WithCache):
 
     def test_what_was_measured_is_printed_where_the_disk_is_full(self):
         disk = self.small_disk(self.work / "disk", "16k")
-        done = furrow("soil", write_scenario(self.work), "--quick", "--only",
-                      "repose", "--out", "disk/out", cwd=self.work, env=self.env)
-        self.assertEqual(done.returncode, 5, done.stderr)
-        self.assertRegex(done.stderr, r"furrow: error: disk/out/.*: cannot .*: No space left on device")
+        done = self.furrow("soil", write_scenario(self.work), "--quick", "--only", "repose", "--out", "disk/out",
+                           cwd=self.work, env=self.env, code=5,
+                           matches=r"furrow: error: disk/out/.*: cannot .*: No space left on device")
         self.assertIn("repose", json.loads(done.stdout))
         self.assertEqual(list(disk.iterdir()), [])
 

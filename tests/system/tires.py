@@ -7,7 +7,7 @@ import math
 import re
 import subprocess
 
-from program import ROOT, SystemTest, furrow, main, rows_of, write_json
+from program import ROOT, SystemTest, main, rows_of, write_json
 
 HARD = {
     "format_version": 1,
@@ -27,10 +27,10 @@ GRAINS = {"terrain.engine": "dem", "terrain.radius": 0.03, "terrain.cohesion": 2
 
 
 class TireTest(SystemTest):
-    def begin(self, settings, command="run", more=()):
+    def begin(self, settings, *more, command="run", **expected):
         path = write_json(self.folder / "tire.json", HARD)
         flags = [flag for key, value in settings.items() for flag in ("--set", f"{key}={json.dumps(value)}")]
-        return furrow(command, path, "--out", self.folder / "out", *flags, *more, cwd=self.folder, timeout=400)
+        return self.furrow(command, path, "--out", self.folder / "out", *flags, *more, timeout=400, **expected)
 
     def series(self, name="out"):
         """Columns of the series; every number in it is finite."""
@@ -41,23 +41,18 @@ class TireTest(SystemTest):
         return columns
 
     def ends_well(self, settings):
-        done = self.begin(settings, more=["--no-plots"])
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.begin(settings, "--no-plots")
         text = (self.folder / "out/summary.json").read_text()
         self.assertNotIn("NaN", text)
         return json.loads(text), self.series()
 
     def stops(self, settings, expected):
         """Exit code 3, one error that matches, no summary, no number that is not finite."""
-        done = self.begin(settings, more=["--no-plots"])
-        self.assertEqual(done.returncode, 3, done.stderr)
-        errors = [line for line in done.stderr.splitlines() if "error:" in line]
-        self.assertEqual(len(errors), 1, done.stderr)
-        self.assertRegex(errors[0], expected)
+        done = self.begin(settings, "--no-plots", code=3, errors=1, matches=f"error: .*{expected}")
         self.assertFalse((self.folder / "out/summary.json").exists())
         if (self.folder / "out/timeseries.csv").exists():
             self.series()
-        return errors[0]
+        return next(line for line in done.stderr.splitlines() if "error: " in line)
 
 
 class Drop(TireTest):
@@ -145,9 +140,8 @@ class Pressure(TireTest):
                                   ([], "tire.pressure", r"a list of 1 to 10000 \[t, p\] in s and Pa"),
                                   ("soft", "tire.pressure", "expected a number")):
             with self.subTest(table):
-                done = self.begin({"tire.pressure": table})
-                self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertRegex(done.stderr, rf"furrow: error: .*tire.json: key '{key}': .*{words}")
+                self.begin({"tire.pressure": table}, code=2,
+                           matches=rf"furrow: error: .*tire.json: key '{key}': .*{words}")
 
 
 class OtherTires(TireTest):
@@ -156,8 +150,7 @@ class OtherTires(TireTest):
     def check(self, file, mass, stiffness):
         coarse = {"tire.file": file, "tire.elements_circumference": 40,
                   "tire.elements_width": 12, "rig.carrier_mass": mass}
-        done = self.begin(coarse, "press", ["--deflection", "0.035", "--points", "4", "--load", str(9.81 * mass)])
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.begin(coarse, "--deflection", "0.035", "--points", "4", "--load", 9.81 * mass, command="press")
         press = self.summary()
         self.assertLess(press["loading_unloading_difference"], 1e-3)
         self.assertTrue(stiffness[0] < press["secant_stiffness_N_per_m"] < stiffness[1], press)
@@ -181,13 +174,12 @@ class OtherTires(TireTest):
 class Profile(SystemTest):
     """scripts/tire_profile.py: a meridian from a drawing."""
 
-    def rows(self, text):
-        return subprocess.run([ROOT / "scripts" / "tire_profile.py", "-"],
-                              input=text, text=True, capture_output=True, check=False)
+    def rows(self, text, **expected):
+        done = subprocess.run([ROOT / "scripts" / "tire_profile.py", "-"], input=text, text=True, capture_output=True)
+        return self.expect(done, **expected)
 
     def test_mirrors_the_points_and_measures_along_them(self):
         done = self.rows("height_m, axial_m\n0,0.03\n0.04,0.03\n0.04,0\n")
-        self.assertEqual(done.returncode, 0, done.stderr)
         rows = json.loads("{" + done.stdout + "}")["profile"]
         self.assertEqual(rows, [[0.0, 0.0, -0.03], [round(2 / 7, 9), 0.04, -0.03],
                                 [0.5, 0.04, 0.0], [round(5 / 7, 9), 0.04, 0.03], [1.0, 0.0, 0.03]])
@@ -198,9 +190,7 @@ class Profile(SystemTest):
                            ("height_m,axial_m\n0,0.1\n0,0.1\n", "line 3"),
                            ("height_m,axial_m\n0,nan\n", "line 2"), ("", "first line"),
                            ("height_m,axial_m\n0,0.1\n0.1,0.1\n0.1,0.05\n", "crown")):
-            done = self.rows(text)
-            self.assertEqual(done.returncode, 1, text)
-            self.assertIn(word, done.stderr)
+            done = self.rows(text, code=1, says=word)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
 

@@ -59,9 +59,8 @@ WRONG = {
         ("driveline.differentials[1].outputs", ["front left"], "has 1 shafts, expected two"),
         ("driveline.shafts[12]", {"name": "pump", "inertia": 0.1, "axis": [1, 0, 0]},
          "… key 'driveline.shafts[12].name': 'pump' reaches no wheel, expected a train of gears to one"),
-        ("driveline.wheels[3]", ...,
-         "… key 'driveline.differentials[2].outputs': 'rear right' drives nothing, expected a shaft that a wheel, a "
-         "gear or a differential"),
+        ("driveline.wheels[3]", ..., "… key 'driveline.differentials[2].outputs': 'rear right' drives nothing, "
+         "expected a shaft that a wheel, a gear or a differential"),
         ("driveline.gears[3]", {"name": "bypass", "in": "front box", "out": "front drive", "ratio": 5},
          "'bypass' closes a loop of gears, expected a train without loops"),
         ("driveline.wheels[3].side", "left",
@@ -84,9 +83,8 @@ WRONG = {
         ("axles[0].steering.left_travel", -0.5,
          "is -0.5 m, the travel of the rack that full steering asks for, expected at most 0.1 m in magnitude: "
          "steering -1 asks for 0.5 m, but the linkage of axle 'front' ends at 0.1 m, steering -0.2"),
-        ("axles[0].suspension.spring.rate", 38.8,
-         "… there is no equilibrium near the drawn posture; it weighs 5511 N, and the springs of axle 'front' push "
-         "with 4.22 N as drawn"),
+        ("axles[0].suspension.spring.rate", 38.8, "… there is no equilibrium near the drawn posture; it weighs 5511 N, "
+         "and the springs of axle 'front' push with 4.22 N as drawn"),
         ("axles[0].suspension.spring", ..., "… vehicle 'Buggy'"),
     ],
     "rover.json": [

@@ -113,8 +113,7 @@ def starts(run):
     return {"id": "starts", "title": "Starts",
             "blocks": [blocks.table(["start", "sum of squares", "iterations", "ended", "at"], rows),
                        blocks.text("Singular values of the Jacobian over the deviation of the residuals, parameters on "
-                                   "their scales: "
-                                   + ", ".join(text_of(value, ".3g") for value in singular))]}
+                                   "their scales: " + ", ".join(text_of(value, ".3g") for value in singular))]}
 
 
 def fill(page, arrays, run, sections):

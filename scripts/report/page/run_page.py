@@ -26,9 +26,8 @@ PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_ve
               "contacts_mean", "active_share_mean", "substeps_added", "substeps_refined_share", "substeps_most_parts")
 ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", "tire_residual_J", "rig_residual_J")),
             ("Work", ("drive_work_J", "tow_work_J", "guide_work_J", "wall_work_J")),
-            ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J",
-                        "rolling_loss_J", "opening_loss_J",
-                        "tire_viscous_loss_J", "damper_loss_J")),
+            ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J", "rolling_loss_J",
+                        "opening_loss_J", "tire_viscous_loss_J", "damper_loss_J")),
             ("Momentum that does not close",
              ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
 
@@ -47,8 +46,7 @@ def window_of(run):
 
 def all_rigid(run):
     """Whether no tire deflects: what its mesh, a polygon, leaves of a deflection is not shown."""
-    tires = run.scenario.get("tires") or [run.scenario.get("tire")]
-    return isinstance(tires, list) and all(isinstance(tire, dict) and tire.get("rigid") is True for tire in tires)
+    return all(tire.get("rigid") for tire in run.scenario.get("tires") or [run.scenario.get("tire") or {}])
 
 
 def pull_words(run, pull):

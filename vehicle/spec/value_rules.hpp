@@ -1,8 +1,7 @@
-// Ranges of numbers that files of vehicles and drivers hold, each with the same words wherever it is broken.
+// Rules for the entries of lists in files of vehicles and drivers, each with the same words wherever it is broken.
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,11 +13,7 @@
 namespace furrow::vehicle {
 
 // Each @throws Error(bad_input) naming file, key, value and what was expected.
-void check_positive(const JsonReader& reader, const std::string& key, double value,
-                    double most = std::numeric_limits<double>::infinity());
-void check_not_negative(const JsonReader& reader, const std::string& key, double value,
-                        double most = std::numeric_limits<double>::infinity());
-void check_within(const JsonReader& reader, const std::string& key, double value, double least, double most);
+void check_positive(const JsonReader& reader, const std::string& key, double value);
 /// Of the parts of a list, each with a `name`. @throws Error(bad_input) naming the second of two that are alike
 template <class Part>
 void check_names_once(const JsonReader& reader, const char* list, const std::vector<Part>& parts) {

@@ -80,7 +80,7 @@ TEST(Gear, differential_splits_the_torque_exactly_and_planetary_by_willis) {
   system.add_rate_row({"motor", {{box, 1.0}}, {}}, torque(100.0));
   const int differential = vehicle::add_differential(system, "differential", box, left, right);
   const double k = 2.5;
-  const int set = vehicle::add_planetary(system, "planetary", sun, ring, right, k);
+  const int set = system.add_rate_row({"planetary", {{sun, 1.0}, {ring, k}, {right, -(1.0 + k)}}, {}}, held(0.0));
   system.assemble(0.0);
   EXPECT_EQ(system.redundant_count(), 0);
   const double h = 1e-3;

@@ -63,7 +63,6 @@ class Gearbox {
 
   int gear() const { return state_.gear; }
   bool shifting() const { return state_.phase != ShiftPhase::none; }
-  int gear_count() const { return static_cast<int>(ratios_.size()); }
   double output_torque(const System& system) const;  // mean over the last step, N m
   double loss(const System& system) const;           // what shifts have taken since the start, J
 

@@ -20,12 +20,6 @@ int add_gear(System& system, const std::string& name, int in, int out, double ra
   return system.add_rate_row({name, {{out, 1.0}, {in, -ratio}}, {}}, held());
 }
 
-int add_planetary(System& system, const std::string& name, int sun, int ring, int carrier, double k) {
-  if (!(k > 0.0) || !std::isfinite(k))
-    throw physics_error("planetary gear '" + name + "': its ratio of teeth must be positive");
-  return system.add_rate_row({name, {{sun, 1.0}, {ring, k}, {carrier, -(1.0 + k)}}, {}}, held());
-}
-
 int add_differential(System& system, const std::string& name, int box, int first, int second, double share) {
   if (!(share > 0.0 && share < 1.0))
     throw physics_error("differential '" + name + "': its share of torque must lie between 0 and 1");

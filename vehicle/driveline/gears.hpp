@@ -11,10 +11,6 @@ namespace furrow::vehicle {
 /// u_out = ratio · u_in, so the output carries 1/ratio of the input's torque. @throws Error(physics) for ratio 0
 int add_gear(System& system, const std::string& name, int in, int out, double ratio);
 
-/// Planetary set by Willis' equation: u_sun + k u_ring = (1 + k) u_carrier, k = teeth of the ring over teeth of the
-/// sun. Torques: sun : ring : carrier = 1 : k : −(1 + k). @throws Error(physics) for k ≤ 0
-int add_planetary(System& system, const std::string& name, int sun, int ring, int carrier, double k);
-
 /// Open differential: u_box = share u_first + (1 − share) u_second; `share` of the box's torque goes to `first`.
 /// @throws Error(physics) unless 0 < share < 1
 int add_differential(System& system, const std::string& name, int box, int first, int second, double share = 0.5);

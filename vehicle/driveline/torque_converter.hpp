@@ -36,8 +36,6 @@ class TorqueConverter {
  public:
   /// @throws Error(physics) for a capacity that is not positive or a blend out of range
   TorqueConverter(System& system, const std::string& name, int impeller, int turbine, const ConverterOptions& options);
-  double impeller_torque(const System& system) const { return -system.rate_state(rows_[0]).torque; }
-  double turbine_torque(const System& system) const { return system.rate_state(rows_[1]).torque; }
   /// Taken by the fluid since the start, J.
   double heat(const System& system) const {
     return -system.rate_state(rows_[0]).work - system.rate_state(rows_[1]).work;

@@ -25,7 +25,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/outcome.hpp"
-#include "vehicle/multibody/actuator.hpp"
 #include "vehicle/multibody/body.hpp"
 #include "vehicle/multibody/force_element.hpp"
 #include "vehicle/multibody/joint.hpp"
@@ -54,14 +53,6 @@ class System {
   int add_line_element(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b, ForceLaw law);
   /// Keeps the energies of an element whose law gives its elastic part.
   void track_energy(int element);
-  /// In the free coordinate of a joint; the force is the law's, or what set_actuator() says where there is none.
-  int add_joint_actuator(const std::string& name, int joint, ActuatorLaw law = nullptr);
-  /// Along the line between two points, W, m; positive pushes them apart. @pre the points differ
-  int add_line_actuator(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
-                        ActuatorLaw law = nullptr);
-  /// A torque about an axis fixed in A (W now); positive turns B positively relative to A.
-  int add_torque_actuator(const std::string& name, int a, int b, const Vec3& axis, ActuatorLaw law = nullptr);
-  void set_actuator(int actuator, double force);
 
   // Shafts and rows in speeds: see shaft.hpp and rate_row.hpp.
   /// `axis` in W now; `speed` absolute, about the axis, rad/s. @throws Error(physics) for inertia ≤ 0
@@ -118,10 +109,6 @@ class System {
     return elements_[element].last_force;
   }
 
-  const ActuatorState& actuator(int index) const {
-    FURROW_ASSERT(in_range(index, actuators_.size()), index, actuators_.size());
-    return actuators_[index].state;
-  }
   /// @pre track_energy() was called
   ElementEnergy element_energy(int element) const;
   const Shaft& shaft(int index) const {
@@ -192,11 +179,9 @@ class System {
   void element_forces(double h, bool implicit);
   double base_speed() const;  // m/s or rad/s
   Row line_row(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) const;
-  int add_actuator(const std::string& name, const Row& row, ActuatorLaw law);
   double row_rate(const Row& row, const RowJacobian& J) const;
-  void actuator_forces(double h, bool first_half);
-  void finish_work(double h, bool first_half);  // of actuators and tracked elements
-  void turn_rotors();                           // carriers feel what their rotors' turn with them takes
+  void finish_work(bool first_half);  // of tracked elements and rows in speeds
+  void turn_rotors();                 // carriers feel what their rotors' turn with them takes
   Outcome solve_half(bool first_half, double h, double end_time);
   bool rates_done(double& before, int iteration);
   bool dampers_done(double scale, double& before, int iteration);
@@ -221,7 +206,6 @@ class System {
   std::vector<Joint> joints_;
   std::vector<Motor> motors_;
   std::vector<ForceElement> elements_;
-  std::vector<Actuator> actuators_;
   RateSet rates_;
   std::vector<Row> constraint_rows_;  // of joints and motors
   std::vector<int> row_motor_;        // motor that drives the row, or −1

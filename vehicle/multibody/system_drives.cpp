@@ -1,4 +1,4 @@
-// Actuators, energies of force elements, shafts and rows in speeds within a system.
+// Energies of force elements, shafts and rows in speeds within a system.
 #include <algorithm>
 #include <cmath>
 
@@ -17,41 +17,6 @@ constexpr double kDamperFloor = 1e-14;      // of the largest speed
 constexpr int kDamperPatience = 8;          // iterations after which dampers may be as near as round-off lets them
 
 }  // namespace
-
-int System::add_actuator(const std::string& name, const Row& row, ActuatorLaw law) {
-  actuators_.push_back({name, row, std::move(law), ActuatorState{}});
-  return static_cast<int>(actuators_.size()) - 1;
-}
-
-int System::add_joint_actuator(const std::string& name, int joint, ActuatorLaw law) {
-  FURROW_ASSERT(in_range(joint, joints_.size()), name, joint, joints_.size());
-  return add_actuator(name, free_coordinate(joints_[joint]), std::move(law));
-}
-
-int System::add_line_actuator(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b,
-                              ActuatorLaw law) {
-  return add_actuator(name, line_row(name, a, b, point_a, point_b), std::move(law));
-}
-
-int System::add_torque_actuator(const std::string& name, int a, int b, const Vec3& axis, ActuatorLaw law) {
-  FURROW_ASSERT(a >= kGround && a < body_count() && b >= kGround && b < body_count(), name, a, b, body_count());
-  FURROW_ASSERT(a != b, name, a);
-  Row row;
-  row.kind = RowKind::angle;
-  row.a = a;
-  row.b = b;
-  const Mat3 axes = axes_about(axis);
-  row.hinge_a = pose(a).R->transpose() * axes.col(2);
-  row.axis_a = pose(a).R->transpose() * axes.col(0);
-  row.axis_b = pose(b).R->transpose() * axes.col(0);
-  return add_actuator(name, row, std::move(law));
-}
-
-void System::set_actuator(int index, double force) {
-  FURROW_ASSERT(in_range(index, actuators_.size()), index, actuators_.size());
-  FURROW_ASSERT(std::isfinite(force), actuators_[index].name, force);
-  actuators_[index].state.command = force;
-}
 
 void System::track_energy(int element) {
   FURROW_ASSERT(in_range(element, elements_.size()), element, elements_.size());
@@ -140,31 +105,8 @@ double System::row_rate(const Row& row, const RowJacobian& J) const {
   return sum;
 }
 
-void System::actuator_forces(double h, bool first_half) {
-  FURROW_ASSERT(base_.size() == bodies_.size(), base_.size(), bodies_.size());
-  for (Actuator& actuator : actuators_) {
-    const Row& row = actuator.row;
-    actuator.jacobian = row_jacobian(row, pose(row.a), pose(row.b));
-    const RowJacobian& J = actuator.jacobian;
-    const double force = actuator.law ? actuator.law(time() + 0.5 * h) : actuator.state.command;
-    actuator.impulse = 0.5 * h * force;
-    actuator.rate_before = row_rate(row, J);
-    actuator.state.force = (first_half ? 0.0 : actuator.state.force) + 0.5 * force;
-    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
-      base_[body].velocity += (actuator.impulse / bodies_[body].mass) * v;
-      base_[body].angular_momentum += actuator.impulse * w;
-    };
-    add(row.a, J.v_a, J.w_a);
-    add(row.b, J.v_b, J.w_b);
-  }
-}
-
 // The work of an impulse is its product with the mean of the coordinate's rates before and after it.
-void System::finish_work(double h, bool first_half) {
-  FURROW_ASSERT(h > 0.0, h);
-  for (Actuator& actuator : actuators_)
-    actuator.state.work += actuator.impulse * 0.5 * (actuator.rate_before + row_rate(actuator.row, actuator.jacobian));
+void System::finish_work(bool first_half) {
   for (Tracked& tracked : tracked_) {
     const std::size_t row = constraint_rows_.size() + tracked.element;
     const double mean = 0.5 * (tracked.rate_before + rate(static_cast<int>(row)));
@@ -224,11 +166,6 @@ bool System::dampers_done(double scale, double& before, int iteration) {
 }
 
 void System::save_drives(Archive& archive) const {
-  if (!actuators_.empty()) {
-    ColumnWriter<ActuatorState> actuators;
-    for (const Actuator& actuator : actuators_) actuators.add(actuator.state);
-    actuators.put(archive, "actuators");
-  }
   if (!tracked_.empty()) {
     ColumnWriter<ElementEnergy> energies;
     for (const Tracked& tracked : tracked_) energies.add(tracked.energy);
@@ -240,10 +177,6 @@ void System::save_drives(Archive& archive) const {
 }
 
 void System::restore_drives(const Archive& archive) {
-  if (!actuators_.empty()) {
-    ColumnReader<ActuatorState> actuators(archive, "actuators", actuators_.size());
-    for (Actuator& actuator : actuators_) actuators.take(actuator.state);
-  }
   if (!tracked_.empty()) {
     ColumnReader<ElementEnergy> energies(archive, "element_energies", tracked_.size());
     for (Tracked& tracked : tracked_) energies.take(tracked.energy);

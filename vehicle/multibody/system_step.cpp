@@ -314,27 +314,25 @@ Outcome System::step(double h) {
   const double end_time = start_time_ + static_cast<double>(count_ + 1) * step_;
   begin_velocities(h);
   element_forces(h, true);
-  if (!actuators_.empty()) actuator_forces(h, true);
   if (!rates_.empty()) rates_.begin(RateStage::first_half, h, time() + 0.5 * h, bodies_);
   if (rate_count() > 0 || std::any_of(damping_.begin(), damping_.end(), [](double c) { return c > 0.0; }))
     if (Outcome outcome = factorize(true); !outcome.ok) return outcome;
   if (Outcome outcome = solve_half(true, h, end_time); !outcome.ok) return outcome;
   remove_null_impulses();
   collect_reactions(h, true);
-  finish_work(h, true);
+  finish_work(true);
 
   if (!rates_.empty()) turn_rotors();
   for (Body& body : bodies_) body.refresh();
   update_jacobians();
   begin_velocities(h);
   element_forces(h, false);
-  if (!actuators_.empty()) actuator_forces(h, false);
   if (!rates_.empty()) rates_.begin(RateStage::second_half, h, time() + 0.5 * h, bodies_);
   if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
   if (Outcome outcome = solve_half(false, h, end_time); !outcome.ok) return outcome;
   remove_null_impulses();
   collect_reactions(h, false);
-  finish_work(h, false);
+  finish_work(false);
   ++count_;
   return check_finite();
 }

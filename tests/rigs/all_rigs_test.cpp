@@ -135,9 +135,10 @@ TEST_P(AllRigs, continues_bit_for_bit_whether_placed_before_or_not) {
     EXPECT_EQ(saved(*again), saved(*original)) << time;
     EXPECT_EQ(saved(*fresh), saved(*original)) << time;
     EXPECT_EQ(fresh->accounts().damper_loss, original->accounts().damper_loss);
+    const std::vector<rigs::Subject> subjects = original->subjects();
     for (int k = 0; k < original->wheel_count(); ++k) {
       EXPECT_EQ(fresh->rim(k).orientation.coeffs(), original->rim(k).orientation.coeffs());
-      for (const Column& column : original->subjects()[k].columns)
+      for (const Column& column : subjects[k].columns)
         EXPECT_EQ(measured(*fresh, k, column.name), measured(*original, k, column.name)) << column.name;
     }
   }
@@ -177,6 +178,14 @@ TEST_P(AllRigs, refuses_the_state_of_another_tire_and_one_that_lacks_a_number_or
     EXPECT_THROW(rig->restore(broken), Error);
   }
 }
+
+#ifndef NDEBUG
+TEST_P(AllRigs, that_is_asked_before_it_is_placed_is_a_misuse) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_DEATH(static_cast<void>(made()->rim(0)), "check_wheel: precondition failed");
+  EXPECT_DEATH(GetParam().make()->place(std::vector<double>{0.5}), "check_tires: precondition failed");
+}
+#endif
 
 INSTANTIATE_TEST_SUITE_P(
     Rigs, AllRigs,

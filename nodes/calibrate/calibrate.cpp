@@ -8,15 +8,40 @@
 #include <fmt/format.h>
 
 #include "nodes/calibrate/objective.hpp"
-#include "nodes/calibrate/reach.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 
 namespace furrow::calibrate {
 namespace {
 
+constexpr double kWithin = 2.0;  // standard errors
 constexpr double kLeastRSquared = 0.5;
 constexpr double kLittleError = 0.1;  // of the peak: R² of data that hardly vary says nothing against such a model
+
+/// One for each figure that was not reached, with the range that was.
+std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const std::vector<Reach>& reach) {
+  std::vector<std::string> warnings;
+  each_figure(fitted, [&](const Target& target, std::size_t k, std::size_t at) {
+    const Reach& r = reach[at];
+    const ReachState state = reach_state(r, target.y[k], target.sigma[k]);
+    if (state == ReachState::reached) return;
+    if (state == ReachState::not_known) {
+      warnings.push_back(
+          fmt::format("whether {} of {} is reached is not known: {}, expected an error of {} at most; "
+                      "more beds ('seeds') or evaluations, or closer bounds tell more",
+                      target.name, with_error(target.y[k], target.sigma[k]), with_error(r.value, r.error),
+                      digits(kWithin * target.sigma[k])));
+      return;
+    }
+    warnings.push_back(fmt::format("{} of {} is not reached but {}: {} ({} to {})", target.name,
+                                   with_error(target.y[k], target.sigma[k]), with_error(r.value, r.error),
+                                   state == ReachState::out_of_range
+                                       ? "it is beyond all evaluations within these bounds"
+                                       : "the evaluations span it, but not where the other targets are met",
+                                   digits(r.low), digits(r.high)));
+  });
+  return warnings;
+}
 
 /// Curves and tables that the fitted model does not describe.
 std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, const Prediction& fitted) {
@@ -35,6 +60,13 @@ std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, con
 }
 
 }  // namespace
+
+ReachState reach_state(const Reach& r, double data, double sigma) {
+  if (r.error > kWithin * sigma) return ReachState::not_known;
+  if (std::abs(r.value - data) <= kWithin * r.scale) return ReachState::reached;
+  const bool beyond = data > r.high + kWithin * r.scale || data < r.low - kWithin * r.scale;
+  return beyond ? ReachState::out_of_range : ReachState::not_together;
+}
 
 CalibrationResults calibrate(const Calibration& calibration, const std::filesystem::path& folder,
                              const ProgressCall& progress) {

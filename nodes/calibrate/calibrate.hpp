@@ -39,6 +39,21 @@ struct CalibrationResults {
 CalibrationResults calibrate(const Calibration& calibration, const std::filesystem::path& folder,
                              const ProgressCall& progress);
 
+/// Calls visit(target, k, index among all points) for every figure.
+template <class Visit>
+void each_figure(const std::vector<Target>& targets, Visit&& visit) {
+  std::size_t at = 0;
+  for (const Target& target : targets)
+    for (std::size_t k = 0; k < target.y.size(); ++k) visit(target, k, at++);
+}
+
+/// not_known: the surrogate errs by more than twice the target's standard error, so it cannot be told. reached: within
+/// two standard errors, of target and surrogate together. out_of_range: beyond what all evaluations span, by more than
+/// two. not_together: within that span, and still not met with the others.
+enum class ReachState { reached, out_of_range, not_together, not_known };
+/// @param sigma the target's standard error
+ReachState reach_state(const Reach& reach, double data, double sigma);
+
 /// calibration.json.
 nlohmann::ordered_json calibration_json(const Calibration& calibration, const CalibrationResults& results);
 /// What a reader must know before trusting the result: parameters at bounds, what is not

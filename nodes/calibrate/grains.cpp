@@ -23,7 +23,7 @@
 #include <fmt/ranges.h>
 
 #include "nodes/calibrate/kinds.hpp"
-#include "nodes/calibrate/noisy.hpp"
+#include "nodes/calibrate/optimum.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "nodes/study/study.hpp"

@@ -18,7 +18,7 @@
 #include <fmt/format.h>
 
 #include "nodes/calibrate/kinds.hpp"
-#include "nodes/calibrate/smooth.hpp"
+#include "nodes/calibrate/optimum.hpp"
 #include "nodes/calibrate/statistics.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"

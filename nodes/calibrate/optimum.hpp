@@ -11,6 +11,8 @@
 
 namespace furrow::calibrate {
 
+class Objective;
+
 struct OptimizerOptions {
   int starts = 1;          // the first at the parameters' own start, the others anywhere within the bounds
   std::uint64_t seed = 1;  // of the others
@@ -45,5 +47,14 @@ struct Optimum {
   int evaluations = 0;        // of a noisy model that were asked for,
   std::string ended = {};     // and why no further one
 };
+
+/// For models that answer quickly and without noise (smooth.cpp).
+/// @throws Error(stopped) from the objective, Error(physics) where the model answers at none of the starts
+Optimum optimize_smooth(Objective& objective, const OptimizerOptions& options);
+
+/// For models that cost much and answer with noise (noisy.cpp). Asks for at most options.evaluations predictions of the
+/// fitted targets. The place that it ends at is one of them.
+/// @throws Error(stopped) from the objective, Error(physics) where the model answers at too few places
+Optimum optimize_noisy(Objective& objective, const OptimizerOptions& options);
 
 }  // namespace furrow::calibrate

@@ -1,5 +1,6 @@
 // What a calibration leaves behind.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -8,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "nodes/calibrate/calibrate.hpp"
-#include "nodes/calibrate/reach.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_number.hpp"
 #include "protocol/files/text_file.hpp"
@@ -19,6 +19,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormatVersion = 1;
+constexpr std::array kStates{"reached", "out of range", "not together with the others", "not known"};
+
+const char* name_of(ReachState state) { return kStates[static_cast<std::size_t>(state)]; }
 
 Json number_or_null(const std::optional<double>& value) { return value ? json_number(*value) : Json(); }
 
@@ -38,6 +41,28 @@ Json parameters_json(const Calibration& calibration, const Confidence& confidenc
                    {"lower", p.lower},
                    {"upper", p.upper},
                    {"scale", p.logarithmic ? "log" : "linear"}};
+  }
+  return all;
+}
+
+/// Of the figures of a target. @param first of them among all points of the set
+Json figures_json(const Target& target, const Prediction& prediction, std::size_t first,
+                  const std::vector<Reach>& reach) {
+  Json all = Json::array();
+  for (std::size_t k = 0; k < target.labels.size(); ++k) {
+    Json json{{"label", target.labels[k]}, {"target", target.y[k]}, {"sigma", target.sigma[k]}};
+    const std::size_t at = first + k;
+    if (at < prediction.values.size()) {
+      json["evaluated"] = prediction.values[at];
+      json["standard_error"] = at < prediction.errors.size() ? json_number(prediction.errors[at]) : Json();
+    }
+    if (at < reach.size()) {
+      const Reach& r = reach[at];
+      json["surrogate"] = {{"value", r.value}, {"standard_error", r.error}, {"noise", r.noise}};
+      json["evaluations_span"] = {r.low, r.high};
+      json["state"] = name_of(reach_state(r, target.y[k], target.sigma[k]));
+    }
+    all.push_back(json);
   }
   return all;
 }
@@ -118,14 +143,36 @@ std::string fit_table(const Calibration& calibration, const CalibrationResults& 
   std::string text = "target,set,label,x,data,sigma,model\n";
   for (const TargetSet set : kBothSets) {
     const std::vector<double>& model = set == TargetSet::fitted ? results.fitted.values : results.held_out.values;
-    std::size_t at = 0;
-    for (const Target& target : calibration.model->targets(set))
-      for (std::size_t k = 0; k < target.y.size(); ++k, ++at)
-        fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{:.12g},{:.6g},{}\n", target.name, kSetNames[set],
-                       target.labels.empty() ? "" : target.labels[k], target.x[k], target.y[k], target.sigma[k],
-                       at < model.size() ? fmt::format("{:.12g}", model[at]) : "");
+    each_figure(calibration.model->targets(set), [&](const Target& target, std::size_t k, std::size_t at) {
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.12g},{:.12g},{:.6g},{}\n", target.name, kSetNames[set],
+                     target.labels.empty() ? "" : target.labels[k], target.x[k], target.y[k], target.sigma[k],
+                     at < model.size() ? fmt::format("{:.12g}", model[at]) : "");
+    });
   }
   return text;
+}
+
+/// "friction_angle_deg 31 ± 0.4 (target 31.1 ± 1)", one after another.
+std::string reach_text(const std::vector<Target>& targets, const std::vector<Reach>& reach) {
+  std::string text;
+  each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
+    text += fmt::format("{}{} {} (target {}, {})", text.empty() ? "" : ", ", target.name,
+                        with_error(reach[at].value, reach[at].error), with_error(target.y[k], target.sigma[k]),
+                        target.what);
+  });
+  return text;
+}
+
+/// What soil files have under `measured`: mean and standard error of every figure, as evaluated.
+Json measured_json(const std::vector<Target>& targets, const Prediction& prediction) {
+  Json json = Json::object();
+  each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
+    if (at >= prediction.values.size()) return;
+    json[target.labels[k]] = {
+        {"mean", prediction.values[at]},
+        {"standard_error", at < prediction.errors.size() ? json_number(prediction.errors[at]) : Json()}};
+  });
+  return json;
 }
 
 /// Where the values of the fitted file come from.

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "nodes/calibrate/kinds.hpp"
-#include "nodes/calibrate/smooth.hpp"
+#include "nodes/calibrate/optimum.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/csv_file.hpp"

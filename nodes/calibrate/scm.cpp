@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "nodes/calibrate/kinds.hpp"
-#include "nodes/calibrate/smooth.hpp"
+#include "nodes/calibrate/optimum.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/fields.hpp"

@@ -1,10 +1,12 @@
-#include "nodes/calibrate/smooth.hpp"
-
+// The optimizer for models that answer quickly and without noise: bounded least squares (least_squares.hpp) from
+// several starts.
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "nodes/calibrate/least_squares.hpp"
+#include "nodes/calibrate/objective.hpp"
+#include "nodes/calibrate/optimum.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::calibrate {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "nodes/calibrate/calibrate.hpp"
-#include "nodes/calibrate/smooth.hpp"
+#include "nodes/calibrate/optimum.hpp"
 #include "nodes/calibrate/study.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/nodes/temporary_folder.hpp"

@@ -1,6 +1,4 @@
 // The optimizer for noisy models on functions with closed forms: true parameters are known, noise is drawn with a seed.
-#include "nodes/calibrate/noisy.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +6,6 @@
 #include <random>
 #include <set>
 
-#include "nodes/calibrate/reach.hpp"
 #include "nodes/calibrate/surrogate.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/nodes/calibrate/examples.hpp"

@@ -73,7 +73,7 @@ class Reference(SystemTest):
         for key in keys:
             if key not in ("tires", "rig.wheels"):
                 self.assertRegex(page, rf"\| `{re.escape(key)}(\[k\]\.\w+)?` \|")
-        self.assertIn("| `terrain.cohesion` | `0.0` | Pa | number, from 0 to 1e+09 |", page)
+        self.assertIn("| `terrain.cohesion` | `0` | Pa | number, from 0 to 1e+09 |", page)
 
     def test_every_column_of_a_run(self):
         columns = re.findall(r"^\| `(\w+)` \|", self.page("columns"), re.MULTILINE)

@@ -247,7 +247,6 @@ void Schema::normalize(json& value, const json& node) const {
     }
     return;
   }
-  if (value.is_string() && node.contains("formerly")) value = node["formerly"].value(value.get<std::string>(), value);
   if (!value.is_number()) return;
   if (allows(node, "number"))
     value = value.get<double>();

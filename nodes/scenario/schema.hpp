@@ -21,8 +21,8 @@ class Schema {
   /// rigs/scenario.schema.json of the data folder. @throws Error(io) when the installation lacks it
   static Schema load();
 
-  /// 15.0 becomes 15 where a whole number is wanted, 450 becomes 450.0 where any number is, and the former name of
-  /// a value ("formerly" of the schema) becomes its present one: equal scenarios are equal.
+  /// 15.0 becomes 15 where a whole number is wanted, and 450 becomes 450.0 where any number is: equal scenarios are
+  /// equal.
   void normalize(nlohmann::json& document) const;
   std::vector<Problem> problems(const nlohmann::json& document) const;
   /// Values outside the magnitudes that are usual; to warn of.

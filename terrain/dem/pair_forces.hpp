@@ -318,22 +318,9 @@ class PairForces {
       const ContactSampleOf<L> one = Law::template sample<kRolling>(
           coefficients(first + at, at), law_.step, contact_motion(at), contact_history(&pairs_.pair[first + at]));
       const auto real = order < constant<L>(count - at);
-      const auto increase = [&](L& to, L by) { to += real ? by : zero; };
-      increase(sum.power.sliding, one.power.sliding);
-      increase(sum.power.normal_damping, one.power.normal_damping);
-      increase(sum.power.tangential_damping, one.power.tangential_damping);
-      increase(sum.power.rolling, one.power.rolling);
-      increase(sum.power.opening, one.power.opening);
-      increase(sum.stored.cohesion, one.stored.cohesion);
-      increase(sum.stored.tangential, one.stored.tangential);
+      for_both(sum, one, [&](L& to, const L& by) { to += real ? by : zero; });
     }
-    sampled_.power.sliding += sum_of(folded(sum.power.sliding));
-    sampled_.power.normal_damping += sum_of(folded(sum.power.normal_damping));
-    sampled_.power.tangential_damping += sum_of(folded(sum.power.tangential_damping));
-    sampled_.power.rolling += sum_of(folded(sum.power.rolling));
-    sampled_.power.opening += sum_of(folded(sum.power.opening));
-    sampled_.stored.cohesion += sum_of(folded(sum.stored.cohesion));
-    sampled_.stored.tangential += sum_of(folded(sum.stored.tangential));
+    for_both(sampled_, sum, [](double& to, const L& by) { to += sum_of(folded(by)); });
   }
 
   void law(int first, int count) {

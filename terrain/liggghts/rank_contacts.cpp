@@ -298,24 +298,26 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
   const auto c = coefficients<Law>(tire, r);
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (const SurfaceHit& hit : hits) {
-    const dem::SurfacePoint at(*tire.collider, hit, centre, v, w);
+    const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
+    const dem::ContactMotion<double> motion = dem::motion_at(*tire.collider, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     double cosine = dem::kSameNormal;
     int nearest = -1;
     for (std::size_t p = 0; p < past_.size(); ++p) {
       if (static_cast<int>(past_[p].partner) != partner) continue;
-      const double same = dot(triple(past_[p].normal), at.motion.normal);
+      const double same = dot(triple(past_[p].normal), motion.normal);
       if (same > cosine) cosine = same, nearest = static_cast<int>(p);
     }
     if (nearest >= 0) history = history_of(past_[nearest]), taken_[nearest] = 1;
-    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, at.motion, history), hit.share);
-    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, at.motion, history);
-    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(partner, at.motion.normal, history));
-    const dem::PointLoads loads = dem::point_loads<Law>(c, f, at, options_.contact_tangents);
-    add(grains.force[g], loads.force);
-    add(grains.torque[g], loads.torque);
-    tire.forces.push_back(loads.on_surface);
-    on_grains_ += dem::vec(loads.force);
+    if (losses) add(now_.sample, dem::sample_of<Law, kRolling>(c, times_.since, motion, history), hit.share);
+    const ContactForce<double> f = Law::template force<kRolling>(c, times_.since, motion, history);
+    if constexpr (Law::kHistory) grains.carried[g].push_back(carried_of(partner, motion.normal, history));
+    const auto [push, drag, torque] = dem::facet_loads(f, motion.normal, arm, hit.share);
+    add(grains.force[g], push + drag);
+    add(grains.torque[g], torque);
+    tire.forces.push_back({hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}});
+    if (options_.contact_tangents) tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
+    on_grains_ += dem::vec(push + drag);
     now_.elastic += hit.share * f.energy;
     ++now_.contacts;
     note(hit.overlap, 0.5 * hit.overlap / r, grains.position[g]);

@@ -363,7 +363,7 @@ TEST(Dummies, grain_under_a_new_law_rebounds_from_the_floor_as_a_damped_spring) 
                                          {&force, &torque}, sums);
     grains.velocity[0].z += dt * force.z / grain.mass;
     grains.position[0].z += dt * grains.velocity[0].z;
-  } while (grains.position[0].z < grain.radius && (force.z > 0.0 || grains.velocity[0].z < 0.0));
+  } while (grains.position[0].z < grain.radius);
   // δ = (v/ω_d) e^{−γt} sin ω_d t; the force ends where k δ + c δ̇ = 0, at tan ω_d t = −2 γ ω_d / (ω_d² − γ²).
   const double gamma = 0.5 * options.normal_damping / grain.mass;
   const double omega = std::sqrt(options.normal_stiffness / grain.mass - gamma * gamma);

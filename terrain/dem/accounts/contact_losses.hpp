@@ -25,12 +25,14 @@ void visit_fields(Visit&& visit, FieldsOf<Losses> auto& s) {
 inline double total(const Losses& l) {
   return l.sliding + l.normal_damping + l.tangential_damping + l.rolling + l.opening;
 }
+/// Calls f(a's, b's) for each mechanism.
+template <class A, class B, class F>
+inline void for_both(LossesOf<A>& a, const LossesOf<B>& b, const F& f) {
+  f(a.sliding, b.sliding), f(a.normal_damping, b.normal_damping), f(a.tangential_damping, b.tangential_damping);
+  f(a.rolling, b.rolling), f(a.opening, b.opening);
+}
 inline void add(Losses& to, const Losses& l, double times) {
-  to.sliding += times * l.sliding;
-  to.normal_damping += times * l.normal_damping;
-  to.tangential_damping += times * l.tangential_damping;
-  to.rolling += times * l.rolling;
-  to.opening += times * l.opening;
+  for_both(to, l, [times](double& sum, double by) { sum += times * by; });
 }
 
 /// What contacts store beside their normal springs, J.
@@ -57,6 +59,11 @@ struct ContactSampleOf {
   StoredOf<T> stored;  // after it
 };
 using ContactSample = ContactSampleOf<double>;
+template <class A, class B, class F>
+inline void for_both(ContactSampleOf<A>& a, const ContactSampleOf<B>& b, const F& f) {
+  for_both(a.power, b.power, f);
+  f(a.stored.cohesion, b.stored.cohesion), f(a.stored.tangential, b.stored.tangential);
+}
 inline void add(ContactSample& to, const ContactSample& s, double times = 1.0) {
   add(to.power, s.power, times);
   add(to.stored, s.stored, times);

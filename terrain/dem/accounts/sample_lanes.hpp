@@ -43,10 +43,7 @@ class SampleLanes {
   [[gnu::noinline]] void evaluate() {
     for (int k = count_; k < kDoubleLanes; ++k) share_[k] = 0.0;
     const ContactSampleOf<Double4> s = Law::template sample<kRolling>(c_, dt_, motion_, history_);
-    const auto of = [this](const Double4& v) { return sum(share_ * v); };
-    dem::add(sum_, {{of(s.power.sliding), of(s.power.normal_damping), of(s.power.tangential_damping),
-                     of(s.power.rolling), of(s.power.opening)},
-                    {of(s.stored.cohesion), of(s.stored.tangential)}});
+    for_both(sum_, s, [this](double& to, const Double4& by) { to += simd::sum(share_ * by); });
     count_ = 0;
   }
 

@@ -15,7 +15,7 @@ namespace furrow::terrain::dem {
 
 /// Sets normal and overlap. @param gap D² − d² > 0, m²  @param sum D, m
 template <class T>
-inline void set_pair_overlap(ContactMotion<T>& to, const Triple<T>& d, T gap, T sum) {
+[[gnu::always_inline]] inline void set_pair_overlap(ContactMotion<T>& to, const Triple<T>& d, T gap, T sum) {
   const T distance = root(dot(d, d));
   to.normal = (constant<T>(1.0) / distance) * d;
   to.overlap = gap / (sum + distance);
@@ -33,7 +33,8 @@ struct RelativeMotion {
 
 /// Sets velocity and spin. @pre the normal is set
 template <bool kSizes, class T>
-inline void set_pair_velocity(ContactMotion<T>& to, const Triple<T>& d, const RelativeMotion<T>& relative) {
+[[gnu::always_inline]] inline void set_pair_velocity(ContactMotion<T>& to, const Triple<T>& d,
+                                                     const RelativeMotion<T>& relative) {
   const T half = constant<T>(0.5);
   to.velocity = relative.dv - half * cross(relative.turn, d);
   if constexpr (kSizes) to.velocity = to.velocity - (half * relative.delta) * cross(relative.roll, to.normal);
@@ -48,7 +49,8 @@ struct PairLoads {
 
 /// @param delta Δ, m, with sizes
 template <bool kSizes, class T>
-inline PairLoads<T> pair_loads(const ContactForce<T>& f, const Triple<T>& normal, const Triple<T>& d, T delta) {
+[[gnu::always_inline]] inline PairLoads<T> pair_loads(const ContactForce<T>& f, const Triple<T>& normal,
+                                                      const Triple<T>& d, T delta) {
   const T half = constant<T>(0.5);
   PairLoads<T> out{f.normal * normal + f.tangential, -half * cross(d, f.tangential), f.rolling};
   if constexpr (kSizes) out.couple = out.couple - (half * delta) * cross(normal, f.tangential);
@@ -59,8 +61,9 @@ inline PairLoads<T> pair_loads(const ContactForce<T>& f, const Triple<T>& normal
 
 /// Against a surface at rest. @param arm from the grain's centre to the point, m  @param v, w of the grain, m/s, rad/s
 template <class T>
-inline ContactMotion<T> motion_on_surface(const Triple<T>& normal, T overlap, const Triple<T>& arm, const Triple<T>& v,
-                                          const Triple<T>& w) {
+[[gnu::always_inline]] inline ContactMotion<T> motion_on_surface(const Triple<T>& normal, T overlap,
+                                                                 const Triple<T>& arm, const Triple<T>& v,
+                                                                 const Triple<T>& w) {
   return {normal, overlap, root(overlap), v + cross(w, arm), constant<T>(0.5) * dot(w, normal), w};
 }
 
@@ -72,8 +75,8 @@ struct WallPoint {
 };
 /// @param distance of the wall from the centre, m
 template <class T>
-inline WallPoint<T> point_on_wall(const Triple<T>& normal, T distance, T overlap, const Triple<T>& v,
-                                  const Triple<T>& w) {
+[[gnu::always_inline]] inline WallPoint<T> point_on_wall(const Triple<T>& normal, T distance, T overlap,
+                                                         const Triple<T>& v, const Triple<T>& w) {
   const Triple<T> arm = (-distance) * normal;
   return {arm, motion_on_surface(normal, overlap, arm, v, w)};
 }
@@ -83,8 +86,20 @@ struct SurfaceLoads {
   Triple<T> force, torque;  // N, N m
 };
 template <class T>
-inline SurfaceLoads<T> wall_loads(const ContactForce<T>& f, const WallPoint<T>& at) {
+[[gnu::always_inline]] inline SurfaceLoads<T> wall_loads(const ContactForce<T>& f, const WallPoint<T>& at) {
   return {f.normal * at.motion.normal + f.tangential, cross(at.arm, f.tangential) + f.rolling};
+}
+
+/// At a point of a tire's facet that counts by `share`; on the tire −push and −drag.
+template <class T>
+struct FacetLoads {
+  Triple<T> push, drag, torque;  // N, N, N m
+};
+template <class T>
+[[gnu::always_inline]] inline FacetLoads<T> facet_loads(const ContactForce<T>& f, const Triple<T>& normal,
+                                                        const Triple<T>& arm, T share) {
+  const Triple<T> push = (share * f.normal) * normal, drag = share * f.tangential;
+  return {push, drag, cross(arm, push + drag) + share * f.rolling};
 }
 
 }  // namespace furrow::terrain::dem

@@ -132,7 +132,7 @@ double SurfaceContacts::abandoned(const Grains& grains, const SurfaceStrip& mine
   return held;
 }
 
-template <class Law, bool kRolling>
+template <class Law>
 void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses,
                             const Loads& load, ContactTotals& sums) {
   FURROW_ASSERT(in_range(k, count()) && in_range(g, grains.count), k, count(), g, grains.count);
@@ -154,23 +154,31 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];
-    const SurfacePoint at(*surface.collider, hit, centre, v, w);
+    const Triple<double> arm = triple(Vec3(hit.point - centre));
+    const ContactMotion<double> motion = motion_at(*surface.collider, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {
       history = of(*past);
       if (losses) mine.taken[past - old.data()] = 1;
     }
-    if (losses) add(sums.sample, sample_of<Law, kRolling>(c, dt, at.motion, history), hit.share);
-    const ContactForce<double> f = Law::template force<kRolling>(c, dt, at.motion, history);
-    const auto &n = at.motion.normal, &t = history.tangential, &r = history.rolling;
+    if (losses)
+      add(sums.sample,
+          rolling_ ? sample_of<Law, true>(c, dt, motion, history) : sample_of<Law, false>(c, dt, motion, history),
+          hit.share);
+    const ContactForce<double> f = rolling_ ? Law::template force<true>(c, dt, motion, history)
+                                            : Law::template force<false>(c, dt, motion, history);
+    const auto& t = history.tangential;
+    const auto& r = history.rolling;
+    const Quad normal{motion.normal.x, motion.normal.y, motion.normal.z, 0.0};
     if constexpr (Law::kHistory)
-      mine.next.push_back({g, k, {n.x, n.y, n.z, 0.0}, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
+      mine.next.push_back({g, k, normal, {t.x, t.y, t.z, history.root_overlap}, {r.x, r.y, r.z, 0.0}});
 
-    const PointLoads loads = point_loads<Law>(c, f, at, tangents_);
-    add(*load.force, loads.force);
-    add(*load.torque, loads.torque);
-    mine.touches.push_back({k, loads.on_surface});
-    sums.power += hit.share * (power_of(f, at.motion) + dot(f.rolling, at.motion.roll));
+    const auto [push, drag, torque] = facet_loads(f, motion.normal, arm, hit.share);
+    add(*load.force, push + drag);
+    add(*load.torque, torque);
+    mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}}});
+    if (tangents_) mine.touches.back().force.tangent = contact_tangent<Law>(c, motion, f, hit.share);
+    sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
     sums.elastic += hit.share * f.energy;
     sums.max_overlap = std::max(sums.max_overlap, hit.overlap);
     ++sums.contacts;
@@ -193,11 +201,11 @@ void SurfaceContacts::evaluate(const Grains& grains, const Strip& strip, int s, 
   const bool any_near =
       std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& surface) { return near(surface, strip); });
   if (!any_near) return;
-  with_law(law_, rolling_, false, [&](auto law, auto rolling, auto) {
+  with_law(law_, [&](auto law) {
     for (int g = strip.first + from; g < strip.first + to; ++g)
       for (int k = 0; k < count(); ++k)
         if (inside(surfaces_[k].near, grains.position[g]))
-          touch<decltype(law), rolling>(grains, mine, k, g, dt, losses, loads.from(g - strip.first), sums);
+          touch<decltype(law)>(grains, mine, k, g, dt, losses, loads.from(g - strip.first), sums);
   });
 }
 

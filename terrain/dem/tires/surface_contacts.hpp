@@ -167,7 +167,7 @@ class SurfaceContacts {
     const double slack = largest_;  // grains stray from where they were sorted by less
     return surface.near.lo.x() < strip.x_max + slack && surface.near.hi.x() > strip.x_min - slack;
   }
-  template <class Law, bool kRolling>
+  template <class Law>
   void touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses, const Loads& load,
              ContactTotals& sums);
   template <class Law>

@@ -19,42 +19,21 @@ inline constexpr double kSameNormal = 0.5;
 /// @pre the surface has the triangle
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n);
 
-/// A touched point: where it is from the grain's centre, and how the grain moves there.
-struct SurfacePoint {
-  const SurfaceHit& hit;
-  Triple<double> arm;  // m
-  ContactMotion<double> motion;
+/// @param arm from the grain's centre to the point, m  @param velocity of the centre, m/s  @param spin rad/s
+inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const SurfaceHit& hit, const Triple<double>& arm,
+                                       const Triple<double>& velocity, const Triple<double>& spin) {
+  ContactMotion<double> motion = motion_on_surface(triple(hit.normal), hit.overlap, arm, velocity, spin);
+  motion.velocity = motion.velocity - triple(surface.velocity_at(hit));
+  motion.spin += 0.5 * spin_about(surface, hit.triangle, hit.normal);
+  return motion;
+}
 
-  /// @param velocity of the centre, m/s  @param spin of the grain, rad/s
-  SurfacePoint(const SurfaceCollider& surface, const SurfaceHit& at, const Vec3& centre, const Triple<double>& velocity,
-               const Triple<double>& spin)
-      : hit(at),
-        arm(triple(Vec3(at.point - centre))),
-        motion(motion_on_surface(triple(at.normal), at.overlap, arm, velocity, spin)) {
-    motion.velocity = motion.velocity - triple(surface.velocity_at(at));
-    motion.spin += 0.5 * spin_about(surface, at.triangle, at.normal);
-  }
-};
-
-/// What a touched point gives, by its share, to the grain (N, N m) and to the surface.
-struct PointLoads {
-  Triple<double> force, torque;
-  SurfaceContactForce on_surface;
-};
-/// @param tangents  the surface gets its tangent too
+/// How a contact that counts by `share` answers to the motion of the surface.
 template <class Law>
-PointLoads point_loads(const typename Law::template Coefficients<double>& c, const ContactForce<double>& f,
-                       const SurfacePoint& at, bool tangents) {
-  const SurfaceHit& hit = at.hit;
-  const Triple<double> push = (hit.share * f.normal) * at.motion.normal, drag = hit.share * f.tangential;
-  PointLoads out{push + drag,
-                 cross(at.arm, push + drag) + hit.share * f.rolling,
-                 {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}}};
-  if (tangents) {
-    const ContactStiffness k = Law::tangent(c, at.motion, f, hit.share);
-    out.on_surface.tangent = {hit.normal, k.k_n, k.k_t, k.c_n, k.c_t};
-  }
-  return out;
+SurfaceContactTangent contact_tangent(const typename Law::template Coefficients<double>& c,
+                                      const ContactMotion<double>& at, const ContactForce<double>& f, double share) {
+  const ContactStiffness k = Law::tangent(c, at, f, share);
+  return {vec(at.normal), k.k_n, k.k_t, k.c_n, k.c_t};
 }
 
 }  // namespace furrow::terrain::dem

@@ -82,6 +82,9 @@ void PairFurrow::evaluate() {
     const Triple<double> x_i = triple(x[i]), v_i = triple(v[i]), w_i = triple(w[i]);
     const double r_i = radius[i];
     Triple<double> force{0, 0, 0}, torque{0, 0, 0};
+    const auto coefficients = [&](int j) {
+      return kSizes ? dem::sized_pair<Law>(reference, radius_, r_i, radius[j]) : reference;
+    };
     for (int e = lists_.begin(row); e < end; ++e) {
       const int j = partner[e];
       if (e + kAhead < last) {
@@ -99,8 +102,7 @@ void PairFurrow::evaluate() {
           if (losses_) {
             const PairHistory h = lists_.history(e);
             const ContactHistory<double> before{triple(h.tangential), h.tangential.w, triple(h.rolling)};
-            const double held =
-                Law::held(dem::sized_pair<Law>(reference, radius_, r_i, radius[j]), 0.0, before).tangential;
+            const double held = Law::held(coefficients(j), 0.0, before).tangential;
             sums_.sample.power.opening += (j < owned ? 1.0 : 0.5) * held / dt;
           }
           touching[e] = 0;
@@ -116,8 +118,7 @@ void PairFurrow::evaluate() {
       dem::set_pair_overlap(m, d, gap, sum);
       m.roll = w_i - w_j;
       dem::set_pair_velocity<kSizes>(m, d, {v_i - triple(v[j]), w_i + w_j, m.roll, delta});
-      auto c = reference;
-      if constexpr (kSizes) c = dem::sized_pair<Law>(reference, radius_, r_i, radius[j]);
+      const auto c = coefficients(j);
       ContactHistory<double> history{triple(tangential[e]), tangential[e].w, {0, 0, 0}};
       if constexpr (kRoll) history.rolling = triple(rolling[e]);
       if (losses_) {

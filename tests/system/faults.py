@@ -259,7 +259,7 @@ class Damaged(CheckpointTest):
         manifest = json.loads((self.newest / "manifest.json").read_text())
         manifest["format_version"] = 3
         (self.newest / "manifest.json").write_text(json.dumps(manifest))
-        self.goes_on_from_the_one_before("format_version 3 is newer than this program reads")
+        self.goes_on_from_the_one_before("has format_version 3, but this program reads 2")
 
     def test_of_another_scenario(self):
         manifests = sorted((self.run / "checkpoints").glob("*/manifest.json"))

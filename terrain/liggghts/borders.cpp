@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
-#include "protocol/core/error.hpp"
 
 namespace furrow::terrain::liggghts {
 
@@ -42,17 +39,6 @@ double imbalance(std::span<const std::int64_t> grains) {
   if (all == 0) return 0.0;
   const std::int64_t most = *std::max_element(grains.begin(), grains.end());
   return static_cast<double>(most) * static_cast<double>(grains.size()) / static_cast<double>(all) - 1.0;
-}
-
-void check_saved_borders(std::span<const double> borders, double length) {
-  double before = 0.0;
-  for (const double border : borders) {
-    if (!(border >= before && border <= length))
-      throw Error(ExitCode::io,
-                  fmt::format("saved state 'borders' holds {:g} m, expected {:g} to {:g} m: it is damaged", border,
-                              before, length));
-    before = border;
-  }
 }
 
 }  // namespace furrow::terrain::liggghts

@@ -30,7 +30,4 @@ class Crowd {
 /// Largest number of grains of a rank over their mean, less 1; 0 without grains.
 double imbalance(std::span<const std::int64_t> grains);
 
-/// Borders of a saved state. @throws Error(io) unless they rise from 0 to `length`, m
-void check_saved_borders(std::span<const double> borders, double length);
-
 }  // namespace furrow::terrain::liggghts

@@ -20,16 +20,13 @@ from hours import provenance
 from run_targets import ROOT, TARGETS, environment
 
 READERS = """
-nodes/checkpoint/checkpoint.cpp nodes/checkpoint/resume.cpp nodes/checkpoint/run_summary.cpp nodes/checkpoint/segment.hpp
-nodes/launch/run_list.cpp nodes/output/table.cpp
 nodes/scenario/load_scenario.cpp nodes/scenario/model_keys.cpp nodes/scenario/scenario_checks.cpp nodes/scenario/schema.cpp
 nodes/scenario/soil_material.cpp nodes/study/study.cpp
 protocol/files/archive_file.cpp protocol/files/csv_file.cpp protocol/files/data_files.cpp protocol/files/hdf5_reader.cpp protocol/files/json_reader.cpp
 protocol/files/json_text.cpp protocol/files/printable.cpp protocol/files/text_file.cpp
 rigs/drawbar_spec.cpp rigs/rigs.cpp
-terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp terrain/dem/beds/bed_positions_h5.cpp
-terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp terrain/liggghts/saved_grains.cpp
-terrain/soil/soil_estimate.cpp
+terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_positions_h5.cpp
+terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp terrain/dem/solver_state_check.cpp
 terrain/rigid/roads/open_crg.cpp terrain/rigid/roads/read_road.cpp terrain/terrains.cpp
 tire/ancf/shell_spec.cpp tire/handling/sweep_table.cpp tire/handling/tir_file.cpp tire/planar/planar_spec.cpp tire/pressure_schedule.cpp tire/read_tire_file.cpp
 tire/ring/ring_spec.cpp

@@ -56,8 +56,6 @@ const TerrainEntry& find_terrain(const std::string& engine, const ReadContext& c
   throw input_error(context.file, context.key("engine"), "is '" + engine + "', expected " + names);
 }
 
-std::vector<Field> common_terrain_fields() { return fields_of<CommonOptions>(); }
-
 std::vector<std::string> engines_of_key(const std::string& key) {
   std::vector<std::string> engines;
   for (const TerrainEntry& entry : terrains())

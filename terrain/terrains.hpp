@@ -19,9 +19,6 @@ std::span<const TerrainEntry> terrains();
 /// @throws Error(bad_input) listing the valid names.
 const TerrainEntry& find_terrain(const std::string& engine, const ReadContext& context);
 
-/// Fields of CommonOptions: keys of every engine.
-std::vector<Field> common_terrain_fields();
-
 /// The engines that take this key of the section; empty for the keys that all share and for those that none has.
 std::vector<std::string> engines_of_key(const std::string& key);
 

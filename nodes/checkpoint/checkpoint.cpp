@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,8 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormatVersion = 2;  // 1 held the states of nodes as lists of numbers without names
-constexpr std::int64_t kMostThreads = 1 << 20;
+constexpr int kFormatVersion = 2;
 constexpr char kManifest[] = "manifest.json";
 constexpr char kKind[] = "checkpoint";
 
@@ -35,71 +33,50 @@ std::string step_name(std::int64_t step) {
   return fmt::format("{:012}", step);
 }
 
-Json to_json(const CheckpointManifest& m) {
-  Json json{{"format_version", kFormatVersion},
-            {"kind", kKind},
-            {"version", m.version},
-            {"build", m.build},
-            {"cpu", m.cpu},
-            {"name", m.name},
-            {"scenario_digest", m.scenario_digest},
-            {"step", m.step},
-            {"time_s", m.time},
-            {"bytes", m.bytes},
-            {"write_s", m.write_s}};
-  for (const CheckpointPart& part : m.parts)
-    json["parts"].push_back({{"file", part.file}, {"checksum", part.checksum}});
-  for (const SeriesMark& mark : m.series)
-    json["series"].push_back(
-        {{"subject", mark.subject}, {"bytes", mark.bytes}, {"lines", mark.lines}, {"checksum", mark.checksum}});
-  json["frames"] = {
-      {"every", m.frames.every}, {"first_step", m.frames.first_step}, {"first_index", m.frames.first_index}};
+template <class T>
+inline constexpr bool kIsListOfStructs = false;
+template <HasFields T>
+inline constexpr bool kIsListOfStructs<std::vector<T>> = true;
+
+/// Every field by its name, structs as objects.
+template <class T>
+Json as_json(const T& value) {
+  Json json;
+  if constexpr (HasFields<T>) {
+    visit_fields([&](const Field& field, const auto& one) { json[field.name] = as_json(one); }, value);
+  } else if constexpr (kIsListOfStructs<T>) {
+    json = Json::array();
+    for (const auto& one : value) json.push_back(as_json(one));
+  } else {
+    json = value;
+  }
+  return json;
+}
+
+/// @throws nlohmann::json::exception for a field that is missing or of another type
+template <class T>
+void take(const Json& json, T& value) {
+  if constexpr (HasFields<T>) {
+    visit_fields([&](const Field& field, auto& one) { take(json.at(field.name), one); }, value);
+  } else if constexpr (kIsListOfStructs<T>) {
+    for (const Json& one : json) take(one, value.emplace_back());
+  } else {
+    json.get_to(value);
+  }
+}
+
+Json manifest_json(const CheckpointManifest& m) {
+  Json json{{"format_version", kFormatVersion}, {"kind", kKind}};
+  json.update(as_json(m));
   json["segments"] = segments_json(m.segments);
-  json["file_hashes"] = m.file_hashes;
   json["scenario"] = Json::parse(m.scenario);
   return json;
 }
 
-/// A whole number of a size that a run may come to. @throws Error(io)
-std::int64_t whole(const std::string& file, const Json& object, const std::string& key, std::int64_t least = 0,
-                   std::int64_t most = kMostSteps) {
-  const Json& value = object.at(key);
-  if (value.is_number_integer() && value >= least && value <= most) return value.get<std::int64_t>();
-  throw io_error(file, fmt::format("is damaged: '{}' is {}, expected a whole number from {} to {}", key,
-                                   value_text(value), least, most));
-}
-
-FrameClock frames_from(const std::string& file, const Json& json, std::int64_t step) {
-  return {whole(file, json, "every"), whole(file, json, "first_step", 0, step), whole(file, json, "first_index")};
-}
-
-void check_segments(const std::string& file, const Json& segments) {
-  for (const Json& segment : segments) {
-    for (const char* key : {"from_step", "to_step"}) whole(file, segment, key);
-    whole(file, segment, "threads", 1, kMostThreads);
-  }
-}
-
-CheckpointManifest from_json(const std::string& file, const Json& json) {
+CheckpointManifest manifest_in(const Json& json) {
   CheckpointManifest m;
-  m.version = json.at("version");
-  m.build = json.at("build");
-  m.cpu = json.at("cpu");
-  m.name = json.at("name");
-  m.scenario_digest = json.at("scenario_digest");
-  m.step = whole(file, json, "step");
-  m.time = json.at("time_s");
-  m.bytes = whole(file, json, "bytes");
-  m.write_s = json.at("write_s");
-  for (const Json& part : json.at("parts"))
-    m.parts.push_back({m.step, part.at("file").get<std::string>(), part.at("checksum").get<std::string>(), ""});
-  for (const Json& mark : json.at("series"))
-    m.series.push_back({whole(file, mark, "bytes"), whole(file, mark, "lines"), mark.at("checksum").get<std::string>(),
-                        mark.at("subject").get<std::string>()});
-  m.frames = frames_from(file, json.at("frames"), m.step);
-  check_segments(file, json.at("segments"));
+  take(json, m);
   m.segments = segments_from_json(json.at("segments"));
-  m.file_hashes = json.at("file_hashes").get<std::vector<std::string>>();
   m.scenario = json.at("scenario").dump();
   return m;
 }
@@ -119,19 +96,16 @@ CheckpointManifest read_manifest(const fs::path& file) {
   try {
     if (json.value("kind", "") != kKind) throw io_error(file.string(), "is not a checkpoint of furrow");
     const Json& format = json.at("format_version");
-    if (format > kFormatVersion)
-      throw io_error(file.string(), fmt::format("format_version {} is newer than this program reads, which is {}",
-                                                format.dump(), kFormatVersion));
-    if (format < kFormatVersion)
+    if (format != kFormatVersion)
       throw io_error(file.string(),
-                     fmt::format("was written by an older version of furrow, format {}; this program reads format {}: "
-                                 "continue the run with that version, or start it again with furrow run",
+                     fmt::format("has format_version {}, but this program reads {}: continue the run with the version "
+                                 "of furrow that wrote it, or start it again with furrow run",
                                  format.dump(), kFormatVersion));
     const std::string checksum = json.at("checksum");
     json.erase("checksum");
     if (text_hash(json.dump()) != checksum)
       throw io_error(file.string(), "the checksum does not fit the contents: the file is damaged");
-    return from_json(file.string(), json);
+    return manifest_in(json);
   } catch (const Json::exception& problem) {
     throw io_error(file.string(), std::string("is damaged: ") + problem.what());
   }
@@ -185,7 +159,7 @@ void complete_checkpoint(const fs::path& run, const CheckpointManifest& manifest
   FURROW_ASSERT(keep > 0, keep);
   const fs::path part = unfinished_checkpoint(run, manifest.step);
   const fs::path folder = checkpoints_folder(run) / step_name(manifest.step);
-  Json json = to_json(manifest);
+  Json json = manifest_json(manifest);
   json["checksum"] = text_hash(json.dump());
   write_whole_file(part / kManifest, json.dump(1) + "\n");
   sync_folder(part);
@@ -244,18 +218,6 @@ void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
   } catch (...) {
     // What stays does no harm: it is replaced when its step comes.
   }
-}
-
-std::string build_id() {
-  static const std::string id = file_hash("/proc/self/exe");
-  return id;
-}
-
-std::string cpu_model() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
 }
 
 std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads, const ResumePoint* resume) {

@@ -15,6 +15,7 @@
 #include "nodes/checkpoint/frame_clock.hpp"
 #include "nodes/checkpoint/segment.hpp"
 #include "nodes/checkpoint/series_mark.hpp"
+#include "protocol/core/fields.hpp"
 #include "protocol/messages.hpp"
 
 namespace furrow::checkpoint {
@@ -34,6 +35,23 @@ struct CheckpointManifest {
   std::int64_t bytes = 0;         // of the parts on disk
   double write_s = 0.0;           // wall time that the run stood still for it, until this was written
 };
+/// All but scenario and segments, which have forms of their own in the manifest.
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<CheckpointManifest> auto& s) {
+  visit(Field{"version", ""}, s.version);
+  visit(Field{"build", ""}, s.build);
+  visit(Field{"cpu", ""}, s.cpu);
+  visit(Field{"name", ""}, s.name);
+  visit(Field{"scenario_digest", ""}, s.scenario_digest);
+  visit(Field{"file_hashes", ""}, s.file_hashes);
+  visit(Field{"step"}, s.step);
+  visit(Field{"time_s", "s"}, s.time);
+  visit(Field{"bytes"}, s.bytes);
+  visit(Field{"write_s", "s"}, s.write_s);
+  visit(Field{"parts", ""}, s.parts);
+  visit(Field{"series", ""}, s.series);
+  visit(Field{"frames", ""}, s.frames);
+}
 
 /// Where a run continues.
 struct ResumePoint {
@@ -74,10 +92,5 @@ std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path&
 
 /// Removes checkpoints beyond `step`, and those never completed; no other file. Errors are ignored.
 void remove_checkpoints_after(const std::filesystem::path& run, std::int64_t step) noexcept;
-
-/// Tells builds of the program apart: a hash of its file.
-std::string build_id();
-/// "model name" of the processor.
-std::string cpu_model();
 
 }  // namespace furrow::checkpoint

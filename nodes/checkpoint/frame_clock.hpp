@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/fields.hpp"
 
 namespace furrow::checkpoint {
 
@@ -36,5 +37,11 @@ struct FrameClock {
     return (step + every - 1) / every;
   }
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<FrameClock> auto& s) {
+  visit(Field{"every"}, s.every);
+  visit(Field{"first_step"}, s.first_step);
+  visit(Field{"first_index"}, s.first_index);
+}
 
 }  // namespace furrow::checkpoint

@@ -12,6 +12,7 @@
 #include "nodes/scenario/model_keys.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/program_id.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::checkpoint {
@@ -162,12 +163,11 @@ Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
 }
 
 /// Compares the scenario of the plan's checkpoint to that which continues, and takes what is changed into the plan.
-/// @param failed summary_failed.json @throws Error(bad_input), Error(io) for a scenario that no version completed
+/// @param failed summary_failed.json @throws Error(bad_input), Error(io) for a scenario that is damaged
 void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, ResumePlan& plan) try {
   ResumePoint& point = plan.point;
   const json now = json::parse(plan.scenario.completed);
-  const json before = with_places_of(scenario::completed_now(point.manifest.scenario),  // perhaps of an earlier version
-                                     now, plan.scenario);
+  const json before = with_places_of(json::parse(point.manifest.scenario), now, plan.scenario);
   const bool physics = value_at(failed, "failed.exit_code") == static_cast<int>(ExitCode::physics);
   const json changed = changes(run, before, now, physics);
   if (!changed.empty()) point.changed = changed.dump();

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "protocol/core/fields.hpp"
+
 namespace furrow::checkpoint {
 
 struct SeriesMark {
@@ -11,5 +13,12 @@ struct SeriesMark {
   std::string checksum;               // of those bytes
   std::string subject;                // whose table it is: "wheel0", "vehicle"
 };
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SeriesMark> auto& s) {
+  visit(Field{"subject", ""}, s.subject);
+  visit(Field{"bytes"}, s.bytes);
+  visit(Field{"lines"}, s.lines);
+  visit(Field{"checksum", ""}, s.checksum);
+}
 
 }  // namespace furrow::checkpoint

@@ -14,6 +14,7 @@
 #include "nodes/launch/messages.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/digits.hpp"
+#include "protocol/files/printable.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kTerminalInterval = 0.2;  // s between redrawings
 constexpr double kPlainInterval = 5.0;     // s between lines
 constexpr double kShareForGuess = 0.005;   // of the run, before which the time left is anyone's guess
 constexpr std::size_t kPlainWidth = 80;    // of a terminal that does not say
+constexpr unsigned short kLeastWidth = 8;  // of one that does
 
 std::string duration_text(double seconds) {
   const long s = std::lround(std::min(seconds, 1e7));
@@ -31,7 +33,7 @@ std::string duration_text(double seconds) {
 
 std::size_t terminal_width() {
   winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kPlainWidth;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col >= kLeastWidth ? size.ws_col : kPlainWidth;
 }
 
 }  // namespace
@@ -79,14 +81,12 @@ void ProgressDisplay::show(const Progress& progress) {
   phase_ = progress.phase;
   Progress shown = progress;
   if (shown.eta < 0.0 && shown.phase != "running") shown.eta = left;
-  std::string text = "furrow: " + progress_text(shown);
+  const std::string text = "furrow: " + progress_text(shown);
   if (!terminal_) {
     std::fprintf(stderr, "%s\n", text.c_str());
     return;
   }
-  const std::size_t width = terminal_width();
-  if (text.size() >= width) text.resize(width - 1);
-  std::fprintf(stderr, "\r%s\033[K", text.c_str());
+  std::fprintf(stderr, "\r%s\033[K", excerpt(text, terminal_width() - 1).c_str());
   std::fflush(stderr);
   drawn_ = true;
 }

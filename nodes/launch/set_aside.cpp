@@ -98,8 +98,7 @@ bool came_to_be(const fs::path& folder) {
     const std::vector<fs::path> runs = runs_in(folder, list);
     return std::any_of(runs.begin(), runs.end(), came_to_be);
   }
-  if (list.holds("results.h5"))  // earlier versions did not list that it had begun
-    return list.holds(kBegun) || !list.find(folder, "checkpoints/").files.empty();
+  if (list.holds("results.h5")) return list.holds(kBegun);
   return std::any_of(list.forms().begin(), list.forms().end(), [](const std::string& name) {
     return std::find(kEarly.begin(), kEarly.end(), name) == kEarly.end();
   });

@@ -17,6 +17,7 @@
 #include "protocol/core/hash.hpp"
 #include "protocol/core/rank_group.hpp"
 #include "protocol/files/json_number.hpp"
+#include "protocol/files/program_id.hpp"
 #include "terrain/rut.hpp"
 
 namespace furrow::output {
@@ -187,7 +188,7 @@ double imbalance(const SummaryInput& in, std::int64_t FinalReport::*grains) {
   return known ? furrow::imbalance(counts) : NAN;
 }
 
-Json rank_table(const SummaryInput& in) {
+Json ranks_json(const SummaryInput& in) {
   Json ranks = Json::array();
   for (std::size_t i = 0; i < in.end.reports.size(); ++i) {
     const FinalReport& r = in.end.reports[i];
@@ -297,7 +298,7 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   json["wall_s"] = wall;
   json["settle_wall_s"] = in.setup.settle_wall_s;
   json["wall_s_per_simulated_s"] = json_number(wall / time);
-  if (!in.end.reports.empty()) json["ranks"] = rank_table(in);
+  if (!in.end.reports.empty()) json["ranks"] = ranks_json(in);
   json["segments"] = checkpoint::segments_json(in.segments);
   json["grains"] = in.setup.grains;
   double contacts = 0.0, active = 0.0;
@@ -312,7 +313,7 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   json["substeps_refined_share"] = json_number(in.end.terrain.refined_time / time);
   json["substeps_most_parts"] = in.end.terrain.most_parts;
   json["compiler"] = kCompiler;
-  json["cpu"] = checkpoint::cpu_model();
+  json["cpu"] = cpu_model();
 }
 
 /// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²

@@ -8,10 +8,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
@@ -20,21 +20,10 @@
 namespace furrow::output {
 namespace {
 
-/// @param order  which column stands at each place
-std::string header_line(const Table& table, const std::vector<std::size_t>& order) {
+std::string header_line(const Table& table) {
   std::string header;
-  for (const std::size_t i : order) header += (header.empty() ? "" : ",") + std::string(table.columns[i].name);
+  for (const Column& column : table.columns) header += (header.empty() ? "" : ",") + std::string(column.name);
   return header + '\n';
-}
-
-std::vector<std::string> names_in(std::string_view header) {
-  std::vector<std::string> names;
-  for (std::size_t from = 0; from <= header.size();) {
-    const std::size_t to = std::min(header.find(',', from), header.size());
-    names.emplace_back(header.substr(from, to - from));
-    from = to + 1;
-  }
-  return names;
 }
 
 }  // namespace
@@ -65,15 +54,14 @@ std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Col
 }
 
 TableWriter::TableWriter(const std::filesystem::path& file, const Table& table)
-    : file_(file), subject_(table.subject), order_(table.columns.size()), stream_(std::fopen(file.c_str(), "wb")) {
+    : file_(file), subject_(table.subject), width_(table.columns.size()), stream_(std::fopen(file.c_str(), "wb")) {
   check(stream_ != nullptr);
   only_append();
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
-  write(header_line(table, order_));
+  write(header_line(table));
 }
 
 TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table)
-    : file_(file), subject_(table.subject), stream_(std::fopen(file.c_str(), "rb+")) {
+    : file_(file), subject_(table.subject), width_(table.columns.size()), stream_(std::fopen(file.c_str(), "rb+")) {
   if (!stream_ && errno == ENOENT)
     throw io_error(file_.string(),
                    "is missing, and a run cannot be continued without the lines that the checkpoint knows: "
@@ -85,17 +73,19 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
   std::string text(all ? static_cast<std::size_t>(mark.bytes) : 0, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), stream_.get()));
   hash_.add(text);
-  const std::size_t end = text.find('\n');
-  if (!all || hash_.hex() != mark.checksum || end == std::string::npos)
+  if (!all || hash_.hex() != mark.checksum)
     throw io_error(file_.string(), "does not hold the lines that the checkpoint knows: it was changed since");
+  const std::string header = header_line(table);
+  if (!text.starts_with(header))
+    throw io_error(file_.string(),
+                   "has other columns than this program writes: continue with the program that began the run");
   // Of a copy that shares its files with this one: what it holds must not change.
   if (struct stat own{}; fstat(fileno(stream_.get()), &own) == 0 && own.st_nlink > 1) {
     write_whole_file(file_, text);
     stream_.reset(std::fopen(file_.c_str(), "rb+"));
     check(stream_ != nullptr);
   }
-  take_order(std::string_view(text).substr(0, end), table);
-  const char* at = text.c_str() + end + 1;
+  const char* at = text.c_str() + header.size();
   for (std::int64_t line = 0; line < mark.lines; ++line) {
     at = read_line(at, table);
     if (!at) throw io_error(file_.string(), fmt::format("line {} cannot be read", line + 2));
@@ -110,34 +100,14 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
 /// Else the system would fill what somebody cut off with zeros, and the file would have its length again.
 void TableWriter::only_append() { check(fcntl(fileno(stream_.get()), F_SETFL, O_APPEND) == 0); }
 
-void TableWriter::take_order(std::string_view header, const Table& table) {
-  for (const std::string& name : names_in(header)) {
-    const auto place = table.find(name);
-    if (!place)
-      throw io_error(file_.string(),
-                     fmt::format("has a column '{}' that this program does not write: continue with the program "
-                                 "that began the run",
-                                 name));
-    if (std::find(order_.begin(), order_.end(), *place) != order_.end())
-      throw io_error(file_.string(), fmt::format("has the column '{}' twice", name));
-    order_.push_back(*place);
-  }
-  for (std::size_t i = 0; i < table.columns.size(); ++i)
-    if (std::find(order_.begin(), order_.end(), i) == order_.end())
-      throw io_error(file_.string(),
-                     fmt::format("lacks the column '{}' that this program writes: continue with the program that "
-                                 "began the run",
-                                 table.columns[i].name));
-}
-
 /// The line at `text`, which ends in a line feed; null when it is none.
 const char* TableWriter::read_line(const char* text, Table& table) const {
   const std::size_t begin = table.values.size();
-  table.values.resize(begin + order_.size());
-  for (std::size_t i = 0; i < order_.size(); ++i) {
+  table.values.resize(begin + width_);
+  for (std::size_t i = 0; i < width_; ++i) {
     char* end = nullptr;
-    table.values[begin + order_[i]] = std::strtod(text, &end);
-    if (end == text || *end != (i + 1 == order_.size() ? '\n' : ',')) return nullptr;
+    table.values[begin + i] = std::strtod(text, &end);
+    if (end == text || *end != (i + 1 == width_ ? '\n' : ',')) return nullptr;
     text = end + 1;
   }
   return text;
@@ -154,12 +124,8 @@ void TableWriter::write(const std::string& text) {
 }
 
 void TableWriter::add(std::span<const double> values) {
-  FURROW_ASSERT(values.size() == order_.size(), values.size(), order_.size());
-  std::string line;
-  for (const std::size_t i : order_)
-    fmt::format_to(std::back_inserter(line), "{}{:.17g}", line.empty() ? "" : ",", values[i]);
-  line += '\n';
-  write(line);
+  FURROW_ASSERT(values.size() == width_, values.size(), width_);
+  write(fmt::format("{:.17g}\n", fmt::join(values, ",")));
   ++lines_;
 }
 
@@ -181,7 +147,7 @@ void TableWriter::write_again(const Table& table) {
   only_append();
   hash_ = Hash();
   bytes_ = lines_ = 0;
-  write(header_line(table, order_));
+  write(header_line(table));
   for (std::size_t line = 0; line < table.lines(); ++line) add(table.line(line));
   flush();
 }

@@ -40,8 +40,7 @@ class TableWriter {
  public:
   /// @throws Error(io)
   TableWriter(const std::filesystem::path& file, const Table& table);
-  /// Goes on with a file that was cut short or written on since `mark`: cuts it there. Columns are found by name and
-  /// keep the order they have in the file.
+  /// Goes on with a file that was cut short or written on since `mark`: cuts it there.
   /// @param table receives its lines
   /// @throws Error(io) when the file does not begin with what the mark stands for, or has other columns
   TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table);
@@ -57,14 +56,13 @@ class TableWriter {
   checkpoint::SeriesMark mark();
 
  private:
-  void take_order(std::string_view header, const Table& table);
   const char* read_line(const char* text, Table& table) const;
   void check(bool ok);
   void only_append();
   void write(const std::string& text);
   std::filesystem::path file_;
   std::string subject_;
-  std::vector<std::size_t> order_;  // which column of the table stands at each place of a line
+  std::size_t width_;  // columns of the table
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };

@@ -13,6 +13,7 @@
 #include "protocol/core/clock.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/fault_point.hpp"
+#include "protocol/files/program_id.hpp"
 
 namespace furrow::ranks {
 
@@ -20,8 +21,6 @@ namespace {
 
 constexpr Address kRig{Role::rig, 0};
 constexpr char kCost[] = "run/cost";
-constexpr char kCommunicate[] =
-    "run/cost/communicate_s";  // checkpoints written before it was counted have it in computing
 
 }  // namespace
 
@@ -36,7 +35,7 @@ CheckpointWriter::CheckpointWriter(const scenario::Scenario& scenario, Node& nod
       cost_(std::move(cost)),
       frames_(frame_clock(scenario, context)),
       begin_(wall_clock()) {
-  if (transport.self() == kRig) build_ = checkpoint::build_id();
+  if (transport.self() == kRig) build_ = build_id();
 }
 
 CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
@@ -85,7 +84,7 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step, std
   checkpoint::CheckpointManifest m;
   m.version = FURROW_VERSION;
   m.build = build_;
-  m.cpu = checkpoint::cpu_model();
+  m.cpu = cpu_model();
   m.name = scenario_.name;
   m.scenario = scenario_.completed;
   m.scenario_digest = scenario_.digest;
@@ -132,15 +131,11 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
   if (context_.note) context_.note("warning: " + text + "; the run continues");
 }
 
-void save_cost(Archive& archive, const NodeCost& cost) {
-  save_fields(archive, kCost, cost);
-  archive.put(kCommunicate, cost.communicate_s);
-}
+void save_cost(Archive& archive, const NodeCost& cost) { save_fields(archive, kCost, cost); }
 
 NodeCost restore_cost(const Archive& archive) {
   NodeCost cost;
   restore_fields(archive, kCost, cost);
-  if (archive.has(kCommunicate)) cost.communicate_s = archive.get_double(kCommunicate);
   return cost;
 }
 

@@ -14,6 +14,7 @@ template <class Visit>
 void visit_fields(Visit&& visit, FieldsOf<NodeCost> auto& s) {
   visit(Field{"cpu_s", "s"}, s.cpu_s);
   visit(Field{"compute_s", "s"}, s.compute_s);
+  visit(Field{"communicate_s", "s"}, s.communicate_s);
   visit(Field{"wait_s", "s"}, s.wait_s);
 }
 

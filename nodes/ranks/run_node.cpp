@@ -71,7 +71,7 @@ class RunLoop {
     if (context_.resume) {
       saved = read_archive(context_.resume->folder / checkpoint::part_name(transport_.self()));
       context_.saved = &saved;
-      before_ = restore_cost(saved);
+      cost_before_ = restore_cost(saved);
       from_ = context_.resume->manifest.step;
     }
     node_ = make_node(
@@ -130,15 +130,16 @@ class RunLoop {
     const double wait = transport_.wait_clock().waited_s - waited_start_;
     // Nearly all waiting is for messages; the little that checkpoints wait for each other is none of them.
     const double communicate = std::max(0.0, profile_.exchanging() - wait);
-    return {before_.cpu_s + cpu_s() - cpu_start_, before_.compute_s + wall_clock() - wall_start_ - wait - communicate,
-            before_.communicate_s + communicate, before_.wait_s + wait};
+    return {cost_before_.cpu_s + cpu_s() - cpu_start_,
+            cost_before_.compute_s + wall_clock() - wall_start_ - wait - communicate,
+            cost_before_.communicate_s + communicate, cost_before_.wait_s + wait};
   }
 
   const scenario::Scenario& scenario_;
   Transport& transport_;
   RunContext context_;
   std::unique_ptr<Node> node_;
-  NodeCost before_;
+  NodeCost cost_before_;
   output::StepProfile profile_{0};
   std::int64_t from_ = 0;
   double wall_start_ = 0.0, cpu_start_ = 0.0, waited_start_ = 0.0;

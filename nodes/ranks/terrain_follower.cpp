@@ -52,7 +52,7 @@ class TerrainFollower final : public Node {
     if (!context.saved) return;
     restore(*context.saved);
     now_.ends_at = saved_end(*context.saved);
-    if (context.saved->has(kGrainsBegin)) grains_begin_ = context.saved->get_int(kGrainsBegin);
+    grains_begin_ = context.saved->get_int(kGrainsBegin);
   }
 
   void synchronize(Transport&, const StepHeader& header) override {

@@ -108,7 +108,7 @@ class TerrainNode : public Node {
   std::int64_t ends_at() const override { return now_.ends_at; }
 
   void finish(Transport& transport, FinalReport own, bool) override {
-    own.height_before = before_;
+    own.height_before = height_before_;
     own.height_after = terrain_->gather_height_field();
     own.grains = terrain_->grains_here();
     own.grains_begin = grains_begin_;
@@ -125,7 +125,7 @@ class TerrainNode : public Node {
 
   void save_setup(Archive& archive) const override {
     save_fields(archive, kSetup, setup_);
-    save_fields(archive, kBefore, before_);
+    save_fields(archive, kBefore, height_before_);
     if (group_) archive.put(kGrainsBegin, grains_begin_);
     save_end(archive, now_.ends_at);
   }
@@ -148,14 +148,14 @@ class TerrainNode : public Node {
     setup_.settle_wall_s = terrain_->prepare(watched_progress(scenario_, transport, context));
     setup_.grains = terrain_->size();
     setup_.floor_height = terrain_->floor_height();
-    before_ = terrain_->gather_height_field();
+    height_before_ = terrain_->gather_height_field();
     grains_begin_ = terrain_->grains_here();
   }
 
   void restore_setup(const Archive& archive) {
     restore_fields(archive, kSetup, setup_);
-    restore_fields(archive, kBefore, before_);
-    if (archive.has(kGrainsBegin)) grains_begin_ = archive.get_int(kGrainsBegin);
+    restore_fields(archive, kBefore, height_before_);
+    if (group_) grains_begin_ = archive.get_int(kGrainsBegin);
   }
 
   void write_frame(const StepHeader& header) {
@@ -176,8 +176,8 @@ class TerrainNode : public Node {
   std::vector<NodalForces> forces_;
   TerrainReport report_;
   TerrainSetup setup_;
-  HeightField before_;
-  std::int64_t grains_begin_ = 0;  // of this rank; 0: not known, of a checkpoint from before they were counted
+  HeightField height_before_;
+  std::int64_t grains_begin_ = 0;  // of this rank
   terrain::TerrainFrame frame_;
   std::filesystem::path directory_;
   launch::HeldFolder* held_ = nullptr;

@@ -55,7 +55,8 @@ class TireNode : public Node {
     directory_ = context.directory;
     held_ = context.held;
     frames_ = frame_clock(scenario_, context);
-    if (context.saved) restore_shown_forces(context);  // before anybody touches the results of the run
+    // Before anybody touches the results of the run: what is damaged is refused here.
+    if (context.saved) restore_forces(*context.saved, kShown, tire_->mesh().vertex_count, forces_);
     send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
     const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
     trajectory_ = tire::RimTrajectory(start.rim);
@@ -139,20 +140,6 @@ class TireNode : public Node {
   static constexpr Address kTerrain{Role::terrain, 0};
   static constexpr char kReport[] = "node/report", kShown[] = "shown_forces";  // in the saved state
 
-  /// @throws Error(io) for a checkpoint of an earlier version that lacks them, where a frame would show them
-  void restore_shown_forces(const RunContext& context) {
-    FURROW_ASSERT(context.resume != nullptr);
-    const checkpoint::ResumePoint& point = *context.resume;
-    if (context.saved->has(std::string(kShown) + "/force"))
-      return restore_forces(*context.saved, kShown, tire_->mesh().vertex_count, forces_);
-    if (!frames_.due(point.manifest.step)) return;
-    throw io_error((point.folder / checkpoint::part_name({Role::tire, index_})).string(),
-                   fmt::format("lacks '{}', which the frame at t = {:.6g} s shows: the checkpoint is of an earlier "
-                               "version of furrow; continue with that version, or without that frame (another "
-                               "output.frame_interval)",
-                               kShown, point.manifest.time));
-  }
-
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();
     report_.spindle = tire_->spindle_wrench();
@@ -162,13 +149,13 @@ class TireNode : public Node {
     report_.spindle_impulse += duration * report_.spindle.force;
     report_.gravity_impulse += duration * tire_->mass_properties().mass * tire_->gravity();
 
-    before_.swap(motion_.surface.position);
+    position_before_.swap(motion_.surface.position);
     tire_->surface(motion_.surface);
     Vec3 impulse = Vec3::Zero();
     for (std::size_t i = 0; i < forces_.vertex.size(); ++i) {
       const int vertex = forces_.vertex[i];
       impulse += duration * forces_.force[i];
-      report_.terrain_work += forces_.force[i].dot(motion_.surface.position[vertex] - before_[vertex]);
+      report_.terrain_work += forces_.force[i].dot(motion_.surface.position[vertex] - position_before_[vertex]);
     }
     report_.impulse_received += impulse;
     report_.impulse_received_abs += impulse.norm();
@@ -219,7 +206,7 @@ class TireNode : public Node {
   ImpulseLedger ledger_;
   SurfaceMotion motion_;
   SpindleReport report_;
-  std::vector<Vec3> before_;
+  std::vector<Vec3> position_before_;
   std::filesystem::path directory_;
   launch::HeldFolder* held_ = nullptr;
   checkpoint::FrameClock frames_;

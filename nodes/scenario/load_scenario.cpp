@@ -335,15 +335,6 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   return s;
 }
 
-json completed_now(const std::string& completed) {
-  json document = json::parse(completed);
-  const Schema& schema = Schema::of_scenarios();
-  schema.fill_defaults(document);
-  schema.normalize(document);
-  remove_foreign_keys(document);
-  return document;
-}
-
 bool may_change_on_resume(const std::string& key) {
   if (key == "output.series_interval") return false;  // means count the lines of a series equally
   return is_harmless(key) || is_output(key) || key == "run.end" || key == "run.average_from";

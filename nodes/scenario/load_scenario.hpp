@@ -17,10 +17,6 @@ namespace furrow::scenario {
 Scenario load_scenario(const std::filesystem::path& file,
                        const std::vector<std::pair<std::string, std::string>>& settings);
 
-/// A completed scenario of a run, perhaps of an earlier version, as this version would have completed it: keys that are
-/// missing mean their defaults, and those of other models are gone.
-nlohmann::json completed_now(const std::string& completed);
-
 /// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
 /// the physics alone.
 bool may_change_on_resume(const std::string& key);

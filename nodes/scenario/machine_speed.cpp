@@ -1,7 +1,6 @@
 #include "nodes/scenario/machine_speed.hpp"
 
 #include <ctime>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 
@@ -10,7 +9,7 @@
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
-#include "protocol/files/text_file.hpp"
+#include "protocol/files/program_id.hpp"
 #include "protocol/host.hpp"
 #include "rigs/rolling_tire.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
@@ -79,13 +78,8 @@ void measure_tire(MachineSpeed& found) {
 /// Names machine and build.
 std::string digest() {
   Hash hash;
-  hash.add(file_hash("/proc/self/exe"));
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) {
-      hash.add(line);
-      break;
-    }
+  hash.add(build_id());
+  hash.add(cpu_model());
   return hash.hex();
 }
 

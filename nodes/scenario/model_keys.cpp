@@ -16,18 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-// Of the section `terrain` in every scenario that a version before engines had keys of their own has completed; keys of
-// grains and of rigid ground, which nobody states together by hand.
-constexpr std::array<const char*, 6> kOfEarlierVersions{"activity",         "allow_unstable_step", "layers",
-                                                        "normal_stiffness", "ground_stiffness",    "ground_damping"};
-
-bool is_completed(const json& document) {
-  if (document.contains("completed_by")) return true;
-  const json terrain = document.value("terrain", json::object());
-  return std::all_of(kOfEarlierVersions.begin(), kOfEarlierVersions.end(),
-                     [&](const char* key) { return terrain.contains(key); });
-}
-
 std::string chosen_model(const json& document, const ModelSection& of) {
   return document[of.name].value(of.chooser, of.standard);
 }
@@ -80,7 +68,7 @@ bool chooses_model(const std::string& key) {
 std::vector<std::string> set_aside_keys(json& document, const Schema& schema, const std::filesystem::path& file,
                                         const std::vector<std::pair<std::string, std::string>>& settings,
                                         std::span<const ModelSection> sections) {
-  const bool completed = is_completed(document);
+  const bool completed = document.contains("completed_by");
   std::vector<std::string> warnings;
   for (const ModelSection& of : sections) {
     const std::string chooser = fmt::format("{}.{}", of.name, of.chooser);

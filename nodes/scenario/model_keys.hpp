@@ -32,8 +32,8 @@ bool chooses_model(const std::string& key);
 
 /// Removes the keys of other models than the document's own from its sections. A scenario that is written for one model
 /// must not state those of another. They are set aside where the command line has chosen the model, and in completed
-/// scenarios: those of runs hold the key `completed_by`, those of earlier versions the keys of all engines. Values that
-/// are the default do not count, unless the model cannot do what they say.
+/// scenarios, which hold the key `completed_by`. Values that are the default do not count, unless the model cannot do
+/// what they say.
 /// @param settings of the command line. Returns a warning for each section of which something was set aside
 /// @throws Error(bad_input) naming each key that is another model's, and whose
 std::vector<std::string> set_aside_keys(nlohmann::json& document, const Schema& schema,

@@ -1,7 +1,6 @@
 #include "protocol/files/archive_file.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -11,32 +10,8 @@
 namespace furrow {
 namespace {
 
-// The datasets that identify the beds of earlier versions.
-constexpr char kOldVersion[] = "format_version";
-constexpr char kOldChecksum[] = "checksum";
-constexpr char kOldKind[] = "bed";
-
-/// What a file says of itself.
-struct Label {
-  std::string kind;
-  std::int64_t version = 1;
-  std::optional<std::string> checksum;
-};
-
-Label label_of(const Hdf5Reader& file) {
-  Label label;
-  if (file.has_attribute("kind")) {
-    label.kind = file.text("kind");
-    if (!file.has_attribute("kind_version")) return label;
-    label.version = file.integer("kind_version");
-    label.checksum = file.text("checksum");
-  } else if (file.has(kOldVersion) && file.has(kOldChecksum)) {
-    const auto version = file.get<std::int64_t>(kOldVersion);
-    const auto checksum = file.get<std::uint64_t>(kOldChecksum);
-    if (version.size() != 1 || checksum.size() != 1) return label;
-    label = {kOldKind, version.front(), fmt::format("{:016x}", checksum.front())};
-  }
-  return label;
+bool is_of(const Hdf5Reader& file, const ArchiveKind& kind) {
+  return file.has_attribute("kind") && file.text("kind") == kind.name;
 }
 
 std::string swapped(std::string name, char from, char to) {
@@ -51,7 +26,7 @@ std::string stored_name(const std::string& name, const ArchiveKind& kind) {
 /// The array's name of a dataset; empty for one that is no array.
 std::string array_name(const std::string& stored, const ArchiveKind& kind) {
   const std::string group = kind.group;
-  if (group.empty()) return stored == kOldVersion || stored == kOldChecksum ? "" : stored;
+  if (group.empty()) return stored;
   return stored.starts_with(group + "/") ? swapped(stored.substr(group.size() + 1), ':', '/') : "";
 }
 
@@ -72,16 +47,6 @@ Archive::Array read_array(const Hdf5Reader& file, const std::filesystem::path& p
   }
 }
 
-void check_label(const Label& label, const std::filesystem::path& path, const ArchiveKind& kind) {
-  if (label.kind != kind.name) throw io_error(path.string(), std::string("is not ") + kind.words);
-  if (label.version >= kind.oldest && label.version <= kind.version) return;
-  const bool newer = label.version > kind.version;
-  throw io_error(path.string(),
-                 fmt::format("is {} of version {}, which is {} than this program's {}{}", kind.words, label.version,
-                             newer ? "newer" : "older", newer ? kind.version : kind.oldest,
-                             newer ? "" : ", expected one made by this version: make it again"));
-}
-
 }  // namespace
 
 void write_archive(const std::filesystem::path& path, const Archive& archive, const ArchiveKind& kind,
@@ -99,25 +64,25 @@ void write_archive(const std::filesystem::path& path, const Archive& archive, co
   file.finish();
 }
 
-Archive read_archive(const std::filesystem::path& path, const ArchiveKind& kind, std::int64_t* version,
-                     const std::function<void()>& each) {
+Archive read_archive(const std::filesystem::path& path, const ArchiveKind& kind, const std::function<void()>& each) {
   const Hdf5Reader file(path);
-  const Label label = label_of(file);
-  check_label(label, path, kind);
-  if (version) *version = label.version;
+  if (!is_of(file, kind)) throw io_error(path.string(), std::string("is not ") + kind.words);
+  if (const std::int64_t version = file.integer("kind_version"); version != kind.version)
+    throw io_error(path.string(), fmt::format("is {} of version {}, but this program reads version {}: make it again",
+                                              kind.words, version, kind.version));
   Archive archive;
   for (const std::string& stored : file.datasets()) {
     if (each) each();
     if (const std::string name = array_name(stored, kind); !name.empty())
       archive.put_array(name, read_array(file, path, stored));
   }
-  if (label.checksum && archive_hash(archive).hex() != *label.checksum)
+  if (archive_hash(archive).hex() != file.text("checksum"))
     throw io_error(path.string(), "the checksum does not fit the contents: the file is damaged");
   return archive;
 }
 
 bool may_be_archive(const std::filesystem::path& path, const ArchiveKind& kind) try {
-  return label_of(Hdf5Reader(path)).kind == kind.name;
+  return is_of(Hdf5Reader(path), kind);
 } catch (const Error&) {
   return true;
 }

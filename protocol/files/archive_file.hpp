@@ -1,9 +1,6 @@
 // An Archive on disk: every array as a dataset of its own type, bit for bit.
 //   attributes  format_version; kind; kind_version; checksum, archive_hash() in hexadecimal digits
 //   datasets    the arrays; those of a saved state as state/<name>, with ':' in place of the '/' in their names
-// Files of earlier versions are read as well. Their saved states have no kind_version, and a checksum over more than
-// archive_hash(): it is the manifest's checksum that vouches for them. Their beds have no attributes but the datasets
-// format_version, in place of kind_version, and checksum.
 #pragma once
 
 #include <filesystem>
@@ -18,22 +15,20 @@ struct ArchiveKind {
   const char* name;
   const char* words;     // "a saved state"
   std::int64_t version;  // of its arrays
-  std::int64_t oldest;   // that can be read
   const char* group;     // that holds the arrays, with ':' in place of '/' in names; empty: names are as they are
 };
 
-inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, 1, "state"};
+inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, "state"};
 
 /// The file appears whole or not at all. Of several processes that write it at once the last one wins. `each` is called
 /// before every array and may throw to stop. @throws Error(io)
 void write_archive(const std::filesystem::path& file, const Archive& archive, const ArchiveKind& kind = kSavedState,
                    const std::function<void()>& each = {});
 
-/// @param version receives the version of the arrays
-/// @param each    is called before every array and may throw to stop
+/// @param each is called before every array and may throw to stop
 /// @throws Error(io) naming the file when it is missing, cut short, damaged, of another kind or of another version
 Archive read_archive(const std::filesystem::path& file, const ArchiveKind& kind = kSavedState,
-                     std::int64_t* version = nullptr, const std::function<void()>& each = {});
+                     const std::function<void()>& each = {});
 
 /// Whether an HDF5 file is of this kind, or too damaged to decide.
 bool may_be_archive(const std::filesystem::path& file, const ArchiveKind& kind);

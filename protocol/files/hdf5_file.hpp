@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <span>
 #include <string>
@@ -65,9 +64,8 @@ class Hdf5Writer {
 /// How the numbers of a dataset are stored.
 enum class Hdf5Type { float64, float32, int64, int32, uint64, uint8, other };
 
-/// Files of other programs as well as ours. Nothing that a file says of itself is believed: a dataset is read when it
-/// is of plain numbers that are in this very file, and no larger than what is stored of it. So no file can take more
-/// memory than it has bytes (compressed: kMaxRatio times as much), make another file be read, or run a program.
+/// Files of other programs as well as ours. A dataset is read when it holds plain numbers, and no more of them than the
+/// file has bytes for (compressed: kMaxRatio times as many), so that a damaged size takes no memory.
 class Hdf5Reader {
  public:
   static constexpr std::uintmax_t kMaxRatio = 64;  // positions of grains compress by less than 10
@@ -79,11 +77,11 @@ class Hdf5Reader {
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  /// A dataset or group of that name, groups as in "a/b". @throws Error(io) for links to somewhere else
+  /// A dataset or group of that name, groups as in "a/b".
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
 
-  /// Names of all datasets, those in groups as "a/b". @throws Error(io) when there are links to somewhere else
+  /// Names of all datasets, those in groups as "a/b".
   std::vector<std::string> datasets() const;
   /// Lengths along its axes, at most 2³¹ numbers in all.
   std::vector<hsize_t> shape(const std::string& name) const;
@@ -104,8 +102,7 @@ class Hdf5Reader {
 
   std::unique_lock<std::recursive_mutex> lock_;
   std::filesystem::path file_;
-  std::uintmax_t size_ = 0;                       // of the file, bytes
-  mutable std::map<std::string, hsize_t> taken_;  // bytes of the file that each dataset was read from
+  std::uintmax_t size_ = 0;  // of the file, bytes
   hid_t handle_ = -1;
 };
 

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <limits>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,24 +25,6 @@ hid_t native(std::uint8_t) { return H5T_NATIVE_UINT8; }
 
 std::string quoted(const std::string& name) { return "'" + excerpt(name) + "'"; }
 
-/// Why a link does not lead to something in this file; empty where it does.
-std::string elsewhere(H5L_type_t type) {
-  switch (type) {
-    case H5L_TYPE_HARD:
-      return "";
-    case H5L_TYPE_SOFT:
-      return "is a soft link";
-    case H5L_TYPE_EXTERNAL:
-      return "is a link to another file";
-    default:
-      return "is a link of another program's own kind";
-  }
-}
-
-std::string refusal(const std::string& name, const std::string& why) {
-  return "the dataset " + quoted(name) + " " + why + ", expected the numbers themselves in this file";
-}
-
 /// One of the plain numbers that every program writes, in any byte order.
 bool is_plain_number(hid_t type) {
   static const std::array<hid_t, 20> kPlain{
@@ -62,28 +42,9 @@ hsize_t product(const std::vector<hsize_t>& factors, hsize_t first) {
   return std::find(factors.begin(), factors.end(), 0) != factors.end() ? 0 : all;
 }
 
-/// What H5Lvisit finds. No exception may pass through the library.
-struct Visit {
-  std::vector<std::string> names;
-  std::string refused;
-  std::exception_ptr failed;
-};
-
-herr_t look_at_link(hid_t group, const char* name, const H5L_info_t* info, void* target) {
-  auto& visit = *static_cast<Visit*>(target);
-  try {
-    if (const std::string why = elsewhere(info->type); !why.empty()) {
-      visit.refused = refusal(name, why);
-      return 1;
-    }
-    H5O_info_t object;
-    if (H5Oget_info_by_name2(group, name, &object, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return -1;
-    if (object.type == H5O_TYPE_DATASET) visit.names.emplace_back(name);
-    return 0;
-  } catch (...) {
-    visit.failed = std::current_exception();
-    return -1;
-  }
+herr_t add_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
+  if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
 }
 
 }  // namespace
@@ -94,12 +55,12 @@ class Hdf5Reader::Set {
   Set(const Hdf5Reader& file, const std::string& name)
       : file_(file),
         name_(name),
-        present_(file.has(name)),
-        set_(present_ ? H5Dopen2(file.handle_, name.c_str(), H5P_DEFAULT) : -1, H5Dclose),
+        set_(file.has(name) ? H5Dopen2(file.handle_, name.c_str(), H5P_DEFAULT) : -1, H5Dclose),
         made_(set_.ok() ? H5Dget_create_plist(set_) : -1, H5Pclose),
-        space_(opened_space(), H5Sclose),
-        type_(H5Dget_type(set_), H5Tclose) {
-    file_.check(space_.ok() && type_.ok(), "the dataset " + quoted(name) + " is damaged");
+        space_(set_.ok() ? H5Dget_space(set_) : -1, H5Sclose),
+        type_(set_.ok() ? H5Dget_type(set_) : -1, H5Tclose) {
+    file_.check(set_.ok(), "lacks the dataset " + quoted(name));
+    file_.check(made_.ok() && space_.ok() && type_.ok(), "the dataset " + quoted(name) + " is damaged");
     const int axes = std::max(H5Sget_simple_extent_ndims(space_), 0);
     shape_.resize(static_cast<std::size_t>(axes));
     if (axes > 0) H5Sget_simple_extent_dims(space_, shape_.data(), nullptr);
@@ -113,59 +74,34 @@ class Hdf5Reader::Set {
   hid_t type() const { return type_; }
   hsize_t numbers() const { return H5Sget_simple_extent_type(space_) == H5S_NULL ? 0 : product(shape_, 1); }
 
-  /// Bytes of the file that hold it. @throws Error(io) unless it can be read as it is
-  hsize_t stored() const {
+  /// @throws Error(io) unless it holds plain numbers, as many as the file has bytes for
+  void check_stored() const {
     file_.check(
         is_plain_number(type_),
         "the dataset " + quoted(name_) + " does not hold plain numbers, expected integers or floats of 1 to 8 bytes");
-    const bool packed = is_packed();
+    const bool packed = H5Pget_nfilters(made_) > 0;
     const hsize_t bytes = H5Dget_storage_size(set_), each = H5Tget_size(type_);
     const hsize_t most = packed ? product({kMaxRatio}, bytes) : bytes;
     const hsize_t needed = product(shape_, each), chunk = chunk_bytes(each);
-    if (numbers() == 0) return 0;
+    if (numbers() == 0) return;
     file_.check(bytes <= file_.size_ && needed <= most && chunk <= std::max(most, kSmallChunk),
                 fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or "
                             "the file is cut short or damaged",
                             quoted(name_), needed, std::min<hsize_t>(bytes, file_.size_)));
-    return bytes;
   }
 
  private:
   static constexpr hsize_t kSmallChunk = 1 << 20;
 
-  /// Its space, unless other files had to be opened to know it.
-  hid_t opened_space() const {
-    file_.check(set_.ok(), "lacks the dataset " + quoted(name_));
-    file_.check(made_.ok(), "the dataset " + quoted(name_) + " is damaged");
-    file_.check(H5Pget_layout(made_) != H5D_VIRTUAL, refusal(name_, "is made of other datasets"));
-    file_.check(H5Pget_external_count(made_) == 0, refusal(name_, "is stored in another file"));
-    return H5Dget_space(set_);
-  }
   hsize_t chunk_bytes(hsize_t each) const {
     if (H5Pget_layout(made_) != H5D_CHUNKED) return 0;
     std::array<hsize_t, H5S_MAX_RANK> length{};
     const int axes = H5Pget_chunk(made_, H5S_MAX_RANK, length.data());
     return axes > 0 ? product({length.begin(), length.begin() + axes}, each) : 0;
   }
-  /// Whether it passes through filters. @throws Error(io) for others than every HDF5 library has
-  bool is_packed() const {
-    const int filters = H5Pget_nfilters(made_);
-    for (int k = 0; k < filters; ++k) {
-      unsigned flags = 0;
-      std::size_t values = 0;
-      const H5Z_filter_t filter =
-          H5Pget_filter2(made_, static_cast<unsigned>(k), &flags, &values, nullptr, 0, nullptr, nullptr);
-      file_.check(filter == H5Z_FILTER_DEFLATE || filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32,
-                  fmt::format("the dataset {} was written through filter {}, expected none, gzip, shuffle or "
-                              "fletcher32",
-                              quoted(name_), static_cast<int>(filter)));
-    }
-    return filters > 0;
-  }
 
   const Hdf5Reader& file_;
   const std::string& name_;
-  bool present_;
   Handle set_, made_, space_, type_;
   std::vector<hsize_t> shape_;
 };
@@ -200,11 +136,7 @@ void Hdf5Reader::check(bool ok, const std::string& what) const {
 bool Hdf5Reader::has(const std::string& name) const {
   for (std::size_t end = 0; end != std::string::npos;) {
     end = name.find('/', end + 1);
-    const std::string part = name.substr(0, end);
-    if (H5Lexists(handle_, part.c_str(), H5P_DEFAULT) <= 0) return false;
-    H5L_info_t info;
-    check(H5Lget_info(handle_, part.c_str(), &info, H5P_DEFAULT) >= 0, quoted(part) + " is damaged");
-    if (const std::string why = elsewhere(info.type); !why.empty()) check(false, refusal(part, why));
+    if (H5Lexists(handle_, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
   }
   return true;
 }
@@ -212,12 +144,10 @@ bool Hdf5Reader::has(const std::string& name) const {
 bool Hdf5Reader::has_attribute(const std::string& name) const { return H5Aexists(handle_, name.c_str()) > 0; }
 
 std::vector<std::string> Hdf5Reader::datasets() const {
-  Visit visit;
-  const herr_t result = H5Lvisit(handle_, H5_INDEX_NAME, H5_ITER_INC, look_at_link, &visit);
-  if (visit.failed) std::rethrow_exception(visit.failed);
-  check(visit.refused.empty(), visit.refused);
-  check(result >= 0, "its contents cannot be listed: the file is damaged");
-  return std::move(visit.names);
+  std::vector<std::string> names;
+  check(H5Ovisit2(handle_, H5_INDEX_NAME, H5_ITER_INC, add_dataset, &names, H5O_INFO_BASIC) >= 0,
+        "its contents cannot be listed: the file is damaged");
+  return names;
 }
 
 std::vector<hsize_t> Hdf5Reader::shape(const std::string& name) const { return Set(*this, name).shape(); }
@@ -237,10 +167,7 @@ Hdf5Type Hdf5Reader::type(const std::string& name) const {
 template <class T>
 std::vector<T> Hdf5Reader::get(const std::string& name) const {
   const Set set(*this, name);
-  taken_[name] = set.stored();
-  hsize_t all = 0;  // several names may lead to the same bytes
-  for (const auto& [other, bytes] : taken_) all += bytes;
-  check(all <= size_, "its datasets are said to have more bytes than the file: it is damaged");
+  set.check_stored();
   std::vector<T> values(static_cast<std::size_t>(set.numbers()));
   if (values.empty()) return values;
   check(H5Dread(set, native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,

@@ -165,9 +165,9 @@ class DemTerrain : public Terrain {
     const Archive::Scope scope(archive, "terrain/");
     dem::require_same_parcels(archive, solver_.strips());
     solver_.restore(archive);
-    set_step(dem::saved_step(archive, "step"));
+    set_step(archive.get_double("step"));
     stable_overlap_ = archive.get_double("stable_overlap");
-    surface_work_ = archive.has("surface_work") ? archive.get_double("surface_work") : 0.0;
+    surface_work_ = archive.get_double("surface_work");
     dem::StepRefinement::State refined;
     if (archive.has(std::string(kRefinement) + "/level")) restore_fields(archive, kRefinement, refined);
     refinement_.restore(refined);

@@ -146,15 +146,11 @@ void GrainSolver::restore(const Archive& archive) {
   relative_mass_ = relative_mass();
   mean_contact_force_ = archive.get_double("mean_contact_force");
   overlap_bound_.clear();
-  // Cached beds of older programs hold no samples: the first step takes them.
   samples_.clear();
-  until_sample_ = 0;
-  if (archive.has("samples/until")) {
-    until_sample_ = archive.get_int("samples/until");
-    const auto& samples = archive.get<double>("samples/strips");
-    for (std::size_t k = 0; k + 1 < samples.size(); k += 2)
-      samples_.push_back({samples[k], static_cast<std::int64_t>(samples[k + 1])});
-  }
+  until_sample_ = archive.get_int("samples/until");
+  const auto& samples = archive.get<double>("samples/strips");
+  for (std::size_t k = 0; k + 1 < samples.size(); k += 2)
+    samples_.push_back({samples[k], static_cast<std::int64_t>(samples[k + 1])});
   strips_.restore_shape(static_cast<int>(archive.get_int("strips/cells_z")), archive.get_int("strips/resorted"));
 
   const std::size_t count = strips_.count();

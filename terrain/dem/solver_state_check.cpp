@@ -11,7 +11,6 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/core/saved_number.hpp"
 #include "terrain/dem/bin.hpp"
 #include "terrain/dem/quad.hpp"
 
@@ -76,7 +75,6 @@ class Check {
     force("mean_contact_force", archive_.get_double("mean_contact_force"));
     if (archive_.has("parcels/measured_force"))
       for (const double sum : archive_.get<double>("parcels/measured_force")) force("parcels/measured_force", sum);
-    if (!archive_.has("samples/until")) return;
     const auto& samples = archive_.get<double>("samples/strips");
     require(samples.empty() || samples.size() == 2 * count_, "samples/strips",
             [&] { return fmt::format("has {} numbers, expected {}", samples.size(), 2 * count_); });
@@ -200,12 +198,6 @@ void require_same_parcels(const Archive& archive, const Strips& strips) {
                 fmt::format("saved state '{}' is {}, expected {}: another version of the program cut the strips "
                             "of the bed otherwise, and what sleeps with them",
                             kAcross, across, strips.across()));
-}
-
-double saved_step(const Archive& archive, const char* name) {
-  const double step = saved_finite(archive, name);
-  require(step > 0.0, name, [&] { return fmt::format("is {} s", step); });
-  return step;
 }
 
 }  // namespace furrow::terrain::dem

@@ -20,7 +20,4 @@ std::int64_t saved_across(const Archive& archive);
 /// @throws Error(io) naming the array
 void require_same_parcels(const Archive& archive, const Strips& strips);
 
-/// @throws Error(io) when it is no step, s
-double saved_step(const Archive& archive, const char* name);
-
 }  // namespace furrow::terrain::dem

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
-#include "protocol/core/error.hpp"
 
 namespace furrow::terrain::liggghts {
 
@@ -35,17 +32,6 @@ std::vector<double> Crowd::borders(int ranks) const {
     places.push_back(length_ * (cell + std::clamp(inside, 0.0, 1.0)) / kCells);
   }
   return places;
-}
-
-void check_saved_borders(std::span<const double> borders, double length) {
-  double before = 0.0;
-  for (const double border : borders) {
-    if (!(border >= before && border <= length))
-      throw Error(ExitCode::io,
-                  fmt::format("saved state 'borders' holds {:g} m, expected {:g} to {:g} m: it is damaged", border,
-                              before, length));
-    before = border;
-  }
 }
 
 }  // namespace furrow::terrain::liggghts

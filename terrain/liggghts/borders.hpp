@@ -27,7 +27,5 @@ class Crowd {
   std::vector<std::int64_t> counts_;
 };
 
-/// Borders of a saved state. @throws Error(io) unless they rise from 0 to `length`, m
-void check_saved_borders(std::span<const double> borders, double length);
 
 }  // namespace furrow::terrain::liggghts

@@ -13,7 +13,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/core/saved_number.hpp"
 #include "protocol/files/fault_point.hpp"
 #include "terrain/dem/accounts/stored_energy.hpp"
 #include "terrain/dem/beds/bed_height.hpp"
@@ -165,12 +164,11 @@ class LiggghtsTerrain final : public Terrain {
 
   void do_restore(const Archive& archive) override {
     const Archive::Scope scope(archive, "terrain/");
-    dt_ = dem::saved_step(archive, "step");
-    since_ = saved_finite(archive, "since");
-    surface_work_ = saved_finite(archive, "surface_work");
-    top_ = saved_finite(archive, "top");
+    dt_ = archive.get_double("step");
+    since_ = archive.get_double("since");
+    surface_work_ = archive.get_double("surface_work");
+    top_ = archive.get_double("top");
     borders_ = archive.get<double>("borders", static_cast<std::size_t>(ranks() - 1));
-    check_saved_borders(borders_, options_.length);
     since_balance_ = static_cast<int>(archive.get_int("since_balance"));
     refinement_.set_step(dt_);
     dem::StepRefinement::State refined;
@@ -178,8 +176,8 @@ class LiggghtsTerrain final : public Terrain {
     refinement_.restore(refined);
     contacts_.restore(archive);
     size_ = archive.get_int("grains/all");
-    start(read_grains(archive, size_, contacts_.tires(), options_), true, archive.get_int("exchange_due") != 0);
-    set_part(dem::saved_step(archive, "part"));
+    start(read_grains(archive, size_), true, archive.get_int("exchange_due") != 0);
+    set_part(archive.get_double("part"));
   }
 
  private:

@@ -407,7 +407,6 @@ void RankContacts::restore(const Archive& archive) {
     restore_value(archive, "position", start.position, mesh.vertex_count);
     restore_fields(archive, "material", material);
     check_surface(mesh, start, static_cast<int>(k));
-    check_saved_material(material, static_cast<int>(k));
     attach(mesh, material, start);
   }
   restore_fields(archive, "sums", sums_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -12,8 +11,6 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
-#include "terrain/dem/bin.hpp"
-#include "terrain/dem/grain_sizes.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::liggghts {
@@ -24,23 +21,6 @@ constexpr std::int64_t kMostGrains = std::numeric_limits<std::int32_t>::max();
 
 [[noreturn]] void damaged(const std::string& what) {
   throw Error(ExitCode::io, "saved state " + what + ": it is damaged");
-}
-
-/// Nothing is computed with what is no number or lies nowhere.
-void within(std::span<const double> values, double limit, const char* array) {
-  for (const double value : values)
-    if (!(std::abs(value) < limit)) damaged(fmt::format("'{}' holds {:g}", array, value));
-}
-
-/// How often the list names the number that it names most, and that number.
-std::pair<int, std::int32_t> most_named(std::vector<std::int32_t> list) {
-  std::sort(list.begin(), list.end());
-  std::pair<int, std::int32_t> most{0, 0};
-  for (std::size_t k = 0, first = 0; k < list.size(); ++k) {
-    if (list[k] != list[first]) first = k;
-    most = std::max(most, {static_cast<int>(k - first) + 1, list[k]});
-  }
-  return most;
 }
 
 void grain_of(std::int32_t grain, std::int64_t size, const char* array) {
@@ -96,7 +76,7 @@ void save_grains(Engine& engine, std::span<const CarriedBy> contacts, Archive& a
   archive.put("carried/history", carried);
 }
 
-StartingBed read_grains(const Archive& archive, std::int64_t size, int tires, const dem::DemOptions& options) {
+StartingBed read_grains(const Archive& archive, std::int64_t size) {
   if (size < 0 || size > kMostGrains) damaged(fmt::format("'grains/all' is {}", size));
   const auto& id = archive.get<std::int32_t>("grains/id");
   const auto& states = archive.get<double>("grains/state", kState * id.size());
@@ -104,16 +84,8 @@ StartingBed read_grains(const Archive& archive, std::int64_t size, int tires, co
   const auto& histories = archive.get<double>("pairs/history", kPair * (partners.size() / 2));
   const auto& carriers = archive.get<std::int32_t>("carried/grain");
   const auto& contacts = archive.get<double>("carried/history", kCarried * carriers.size());
-  within(states, std::numeric_limits<double>::max(), "grains/state");
-  within(histories, std::numeric_limits<double>::max(), "pairs/history");
-  within(contacts, std::numeric_limits<double>::max(), "carried/history");
   if (partners.size() % 2 != 0) damaged("'pairs/grains' holds a grain without its partner");
-  if (const auto [times, grain] = most_named(id); times > 1)
-    damaged(fmt::format("'grains/id' names grain {} {} times", grain, times));
-  if (const auto [times, grain] = most_named(carriers); times > kMostCarried)
-    damaged(fmt::format("'carried/grain' gives grain {} {} contacts, expected at most {}", grain, times, kMostCarried));
   Numbers state(states), pairs(histories), carried(contacts);
-  const double smallest = dem::smallest_radius(options), largest = dem::largest_radius(options);
   StartingBed bed;
   for (const std::int32_t k : id) {
     grain_of(k, size, "grains/id");
@@ -121,18 +93,12 @@ StartingBed read_grains(const Archive& archive, std::int64_t size, int tires, co
     g.id = k;
     g.radius = state.one();
     for (auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin}) *v = state.three();
-    if (!(g.radius >= smallest && g.radius <= largest))
-      damaged(fmt::format("'grains/state' holds a grain of radius {:g} m, expected {:g} to {:g} m", g.radius, smallest,
-                          largest));
-    for (const auto* v : {&g.position, &g.list_position, &g.exchange_position})
-      within(*v, dem::Bin::kHigh, "grains/state");
     bed.grains.push_back(g);
   }
   for (std::size_t p = 0; p < partners.size(); p += 2) {
     PairRecord r;
     r.i = partners[p], r.j = partners[p + 1];
     grain_of(r.i, size, "pairs/grains"), grain_of(r.j, size, "pairs/grains");
-    if (r.i == r.j) damaged(fmt::format("'pairs/grains' names a contact of grain {} with itself", r.i));
     r.tangential = pairs.three();
     r.root_overlap = pairs.one();
     r.rolling = pairs.three();
@@ -146,8 +112,6 @@ StartingBed read_grains(const Archive& archive, std::int64_t size, int tires, co
     c.tangential = carried.three();
     c.root_overlap = carried.one();
     c.rolling = carried.three();
-    if (!(c.partner >= 0.0 && c.partner < dem::kWalls + tires))
-      damaged("'carried/history' names a wall or a tire that there is not");
     bed.walls.push_back({k, c});
   }
   return bed;
@@ -159,7 +123,7 @@ Archive as_solver_state(std::span<const Archive> parts, const dem::DemOptions& o
   for (const Archive& part : parts) {
     const Archive::Scope scope(part, "terrain/");
     size = part.get_int("grains/all");
-    StartingBed bed = read_grains(part, size, static_cast<int>(part.get_int("tires/count")), options);
+    StartingBed bed = read_grains(part, size);
     all.grains.insert(all.grains.end(), bed.grains.begin(), bed.grains.end());
     all.pairs.insert(all.pairs.end(), bed.pairs.begin(), bed.pairs.end());
     all.walls.insert(all.walls.end(), bed.walls.begin(), bed.walls.end());

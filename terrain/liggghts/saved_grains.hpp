@@ -13,9 +13,8 @@ namespace furrow::terrain::liggghts {
 /// @param carried  by this rank's grains
 void save_grains(Engine& engine, std::span<const CarriedBy> carried, Archive& archive);
 
-/// @param size grains of all ranks  @param tires on the terrain  @param options the sizes that grains may have
-/// @throws Error(io) when they do not hold together
-StartingBed read_grains(const Archive& archive, std::int64_t size, int tires, const dem::DemOptions& options);
+/// @param size grains of all ranks @throws Error(io) when they do not hold together
+StartingBed read_grains(const Archive& archive, std::int64_t size);
 
 /// The grains of all parts of a checkpoint as Terrain::save of engine dem writes them, without tires.
 /// @throws Error(io) when they do not hold together

@@ -73,17 +73,4 @@ WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, dou
   return e;
 }
 
-double bekker_sinkage(const SoilStrength& s, const RigidWheel& w) {
-  FURROW_ASSERT(s.n > 0.0 && s.n < 3.0, s.n);
-  FURROW_ASSERT(w.radius > 0.0 && w.width > 0.0 && w.load > 0.0, w.radius, w.width, w.load);
-  // W = (k_c + b k_φ) √(2R z₀) z₀ⁿ (3 − n)/3 for small z₀.
-  const double factor = (3.0 - s.n) * (s.k_c + w.width * s.k_phi) * std::sqrt(2.0 * w.radius);
-  return std::pow(3.0 * w.load / factor, 2.0 / (2.0 * s.n + 1.0));
-}
-
-double compaction_resistance(const SoilStrength& s, double width, double sinkage) {
-  FURROW_ASSERT(sinkage >= 0.0, sinkage);
-  return width * modulus(s, width) * std::pow(sinkage, s.n + 1.0) / (s.n + 1.0);
-}
-
 }  // namespace furrow::terrain::soil

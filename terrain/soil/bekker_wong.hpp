@@ -48,11 +48,4 @@ struct WheelEstimate {
 /// @pre all of soil and wheel finite; radius, width, load, n, K > 0; k_c/b + k_φ > 0
 WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, double slip);
 
-/// Bekker's sinkage of a towed rigid wheel, [3 W / ((3 − n)(k_c + b k_φ) √(2R))]^(2/(2n+1)), for n < 3 and small
-/// sinkage, m [Bekker 1956; Wong 2008].
-double bekker_sinkage(const SoilStrength& soil, const RigidWheel& wheel);
-
-/// Compaction resistance b k z^(n+1)/(n+1), N [Wong 2008].
-double compaction_resistance(const SoilStrength& soil, double width, double sinkage);
-
 }  // namespace furrow::terrain::soil

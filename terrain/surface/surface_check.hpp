@@ -10,7 +10,4 @@ namespace furrow::terrain {
 /// exist, or a position is not finite
 void check_surface(const SurfaceMesh& mesh, const SurfaceState& start, int index);
 
-/// @throws Error(io) when a saved state holds a material that no tire can have
-void check_saved_material(const ContactMaterial& material, int index);
-
 }  // namespace furrow::terrain

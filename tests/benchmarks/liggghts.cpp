@@ -78,7 +78,7 @@ struct Bench {
     const Archive::Scope scope(saved, "terrain/");
     grains = saved.get_int("grains/all");
     borders = saved.get<double>("borders", static_cast<std::size_t>(ranks - 1));
-    bed = read_grains(saved, grains, static_cast<int>(saved.get_int("tires/count")), options);
+    bed = read_grains(saved, grains);
     std::erase_if(bed.walls, [](const CarriedBy& one) { return one.contact.partner >= dem::kWalls; });
     bed.top = saved.get_double("top");
   }

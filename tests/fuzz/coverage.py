@@ -26,7 +26,7 @@ nodes/scenario/model_keys.cpp nodes/scenario/scenario_checks.cpp nodes/scenario/
 nodes/scenario/soil_material.cpp nodes/study/study.cpp protocol/files/archive_file.cpp protocol/files/csv_file.cpp
 protocol/files/data_files.cpp protocol/files/hdf5_reader.cpp protocol/files/json_reader.cpp
 protocol/files/json_text.cpp protocol/files/printable.cpp protocol/files/text_file.cpp rigs/drawbar_spec.cpp
-rigs/rigs.cpp terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp terrain/dem/beds/bed_format_4.cpp
+rigs/rigs.cpp terrain/dem/beds/bed_cache.cpp terrain/dem/beds/bed_csv.cpp 
 terrain/dem/beds/bed_positions_h5.cpp terrain/dem/dem_spec.cpp terrain/dem/grain_solver_state.cpp
 terrain/dem/solver_state_check.cpp terrain/liggghts/saved_grains.cpp terrain/rigid/roads/open_crg.cpp
 terrain/rigid/roads/read_road.cpp terrain/soil/soil_estimate.cpp terrain/terrains.cpp tire/ancf/shell_spec.cpp

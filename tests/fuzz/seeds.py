@@ -1,7 +1,6 @@
 """What the fuzzing targets begin with: the shipped files, and small documents of the kinds that each of them reads."""
 import json
 import random
-import re
 
 SMALL = {
     "rig": {"slip": 0.3, "ramp": 0.01}, "tire": {"file": "hmmwv_layered.json", "rigid": True},
@@ -9,23 +8,6 @@ SMALL = {
     "run": {"step": 1e-4, "end": 0.02, "average_from": 0},
 }
 GROUND = {"tire": {"file": "toroidal.json"}, "terrain": {"engine": "rigid"}, "run": {"end": 0.1}}
-SUMMARY = {
-    "format_version": 1, "scenario": "small", "scenario_digest": "0123456789abcdef", "tire_radius_m": 0.47,
-    "tread_width_m": 0.25, "vertical_load_N": 4600.0, "slip": 0.3, "sinkage_m": 0.02, "bed_clearance_m": 0.1,
-    "drawbar_pull_N": {"mean": 100.0, "sem": 5.0},
-    "segments": [{"from_step": 0, "to_step": 100, "wall_s": 1.0, "threads": 1, "finer_than": "0123"}],
-    "failed": {"exit_code": 3, "time_s": 0.01, "error": "a contact that no step can hold"},
-}
-SOIL = {"format_version": 1, "quick": False, "k_c": 1e3, "k_phi": 1e6,
-        "n": 1.0, "cohesion_Pa": 100.0, "friction_angle_deg": 30.0,
-        "janosi_K_m": 0.01, "standard_error": {"k_phi": 1e4, "n": 0.05, "cohesion_Pa": None}}
-MANIFEST = {
-    "format_version": 2, "kind": "checkpoint", "version": "0.1.0", "build": "b",
-    "cpu": "c", "name": "small", "scenario_digest": "d",
-    "step": 10, "time_s": 1e-3, "bytes": 6, "write_s": 0.01, "frames": {"every": 5, "first_step": 0, "first_index": 0},
-    "segments": [{"from_step": 0, "to_step": 10, "wall_s": 1.0, "threads": 2, "changed": {"run.threads": 1}}],
-    "file_hashes": [],
-}
 ROAD = ("$ROAD_CRG\nREFERENCE_LINE_START_U = 2.0\nREFERENCE_LINE_END_U = 4.0 ! m\nREFERENCE_LINE_INCREMENT = "
         "1\nLONG_SECTION_V_RIGHT = -0.5\n"
         "LONG_SECTION_V_INCREMENT = 0.5\n$!***\n$KD_DEFINITION\n")
@@ -81,16 +63,6 @@ def tires(root):
                     {"file": files[-1], "pressure": 1.5e5, "around": 24, "across": 6}]
 
 
-def checkpoints(root):
-    names = re.findall(r'visit\(\w+\("([^"]+)"', (root / "nodes/output/wheel_row.hpp").read_text())
-    lines = "".join(",".join(str(round(0.1 * k, 3)) for _ in names) + "\n" for k in range(2))
-    mark = {"subject": "wheel0", "bytes": len(",".join(names)) + 1 + len(lines), "lines": 2, "checksum": ""}
-    manifest = {**MANIFEST, "series": [mark]}
-    return [{"scenario": SMALL, "settings": {"run.end": 0.03}, "manifest": manifest, "lines": lines},
-            {"scenario": SMALL, "settings": {"run.step": 5e-5, "terrain.substeps": 2}, "manifest": manifest,
-             "lines": lines, "before": {"run": {"threads": 2}}, "failed": SUMMARY}]
-
-
 def vehicles(root):
     drivers = [document["rig"]["driver"] for document in documents(root, "rigs/hmmwv_*.json", "rigs/rover_small.json")
                if isinstance(document.get("rig", {}).get("driver"), dict)]
@@ -111,19 +83,12 @@ def texts(target, root):
         return ["cx_m,z_m\n-1,0\n6,0\n6,0.2\n", *(f"k{ROAD}#:{form}\n{CUTS}{rows}" for form, rows in ROWS.items())]
     if target == "handling":
         return [(root / "tire" / "data" / name).read_text() for name in ("handling_start.tir", "sweep_lumped.csv")]
-    if target == "run_list":
-        return ["furrow-run 1\nsummary.json\nframes/\nframes/tire0_%06d.h5\ncheckpoints/\ncheckpoints/%012d/\n"
-                "checkpoints/%012d/rig.h5\n"]
     found = {
         "scenario": lambda: [d for d in documents(root, "rigs/*.json") if "properties" not in d and "scenario" not in d]
         + [SMALL, GROUND],
         "tire": lambda: tires(root),
         "study": lambda: [d for d in documents(root, "rigs/*.json") if "scenario" in d],
         "soil": lambda: documents(root, "terrain/data/*.json"),
-        "summary": lambda: [{"summary": SUMMARY, "scenario": SMALL, "soil": SOIL, "path": "segments.0.to_step"},
-                            {"summary": {"wheels": [SUMMARY], "format_version": 1},
-                             "scenario": {}, "soil": {**SOIL, "quick": True}}],
-        "checkpoint": lambda: checkpoints(root),
         "vehicle": lambda: vehicles(root),
     }
     return [json.dumps(document) for document in found[target]()] if target in found else []

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/checkpoint.hpp"
@@ -16,6 +17,7 @@
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tests/nodes/temporary_folder.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -49,13 +51,7 @@ checkpoint::CheckpointManifest write_example(const fs::path& run, std::int64_t s
 }
 
 std::string error_of(const fs::path& folder) {
-  try {
-    checkpoint::read_checkpoint(folder);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::io);
-    return error.what();
-  }
-  return "";
+  return refusal(ExitCode::io, [&] { checkpoint::read_checkpoint(folder); });
 }
 
 TEST(Checkpoint, what_was_written_is_read) {
@@ -111,15 +107,17 @@ TEST(Checkpoint, a_manifest_with_any_byte_changed_or_cut_is_refused) {
   EXPECT_EQ(error_of(checkpoint), "");
 }
 
-TEST(Checkpoint, one_of_an_older_format_is_refused_by_its_version) {
+TEST(Checkpoint, one_of_another_format_is_refused_by_its_version) {
   const testing::TemporaryFolder folder;
   write_example(folder.path(), 10);
   const fs::path checkpoint = checkpoint::list_checkpoints(folder.path()).at(0);
-  std::ofstream(checkpoint / "manifest.json") << R"({"format_version": 1, "kind": "checkpoint", "checksum": "0"})";
-  EXPECT_EQ(error_of(checkpoint),
-            (checkpoint / "manifest.json").string() +
-                ": was written by an older version of furrow, format 1; this program reads format 2: continue the "
-                "run with that version, or start it again with furrow run");
+  for (const int version : {1, 3}) {
+    std::ofstream(checkpoint / "manifest.json")
+        << R"({"kind": "checkpoint", "checksum": "0", "format_version": )" << version << "}";
+    EXPECT_TRUE(error_of(checkpoint)
+                    .starts_with(fmt::format("{}: has format_version {}, but this program reads 2",
+                                             (checkpoint / "manifest.json").string(), version)));
+  }
 }
 
 /// Puts a value into the manifest of the run's only checkpoint, and the checksum that fits. @returns its folder
@@ -133,24 +131,7 @@ fs::path forge(const fs::path& run, const std::string& pointer, const Json& valu
   return checkpoint;
 }
 
-TEST(Checkpoint, numbers_that_no_run_comes_to_are_refused_although_the_checksum_fits) {
-  const testing::TemporaryFolder folder;
-  write_example(folder.path(), 120);
-  const fs::path file = checkpoint::list_checkpoints(folder.path()).at(0) / "manifest.json";
-  const std::string whole = read_whole_file(file);
-  for (const std::string pointer :
-       {"/step", "/bytes", "/series/0/bytes", "/series/0/lines", "/frames/every", "/frames/first_step",
-        "/frames/first_index", "/segments/0/from_step", "/segments/0/to_step", "/segments/0/threads"})
-    for (const Json& value : {Json(-1), Json(1e300), Json(0.5), Json(INT64_MAX), Json(UINT64_MAX)}) {
-      const std::string words = "'" + pointer.substr(pointer.rfind('/') + 1) + "' is";
-      EXPECT_NE(error_of(forge(folder.path(), pointer, value)).find(words), std::string::npos)
-          << pointer << " " << value;
-      std::ofstream(file, std::ios::binary) << whole;
-    }
-  EXPECT_NE(error_of(forge(folder.path(), "/frames/first_step", 121)), "") << "after the checkpoint itself";
-}
-
-TEST(Checkpoint, a_scenario_that_no_version_completed_is_refused) {
+TEST(Checkpoint, a_scenario_that_no_program_completed_is_refused) {
   for (const char* text : {"3", "\"x\"", "[1]", R"({"terrain": {"engine": 3}})", R"({"rig": 3})",
                            R"({"tire": {"substeps": "two"}})", R"({"run": {"step": "x"}})"}) {
     const testing::TemporaryFolder folder;

@@ -189,34 +189,6 @@ TEST(Coupling, each_of_four_wheels_on_one_bed_carries_its_own_weight) {
   }
 }
 
-/// The frame of the checkpoint's step shows the forces that acted before it; earlier versions did not save them.
-TEST(Coupling, a_checkpoint_without_the_forces_that_a_frame_shows_is_refused_by_name) {
-  scenario::Scenario scenario = rigid_wheel_on_plane().made();
-  scenario.output.frame_interval = 1e-2;
-  checkpoint::ResumePoint point;
-  point.folder = "old";
-  point.manifest.frames = {100, 0, 0};
-  const Archive saved;
-  ranks::RunContext context;
-  context.directory = "run";
-  context.resume = &point;
-  context.saved = &saved;
-  const auto set_up = [&](std::int64_t step) -> std::string {
-    point.manifest.step = step;
-    auto transports = make_in_process_transports(1);
-    transports[0]->announce_failure(ExitCode::io, "nobody else is here");
-    const auto node = ranks::make_node(scenario, transports[1]->self(), 1);
-    try {
-      node->set_up(*transports[1], {}, context);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(set_up(200).substr(0, 65), "old/tire0.h5: lacks 'shown_forces', which the frame at t = 0 s sh");
-  EXPECT_EQ(set_up(250), "nobody else is here");
-}
-
 TEST(Coupling, a_mismatch_of_digests_stops_every_node) {
   auto transports = make_in_process_transports(1);
   std::vector<std::thread> threads;

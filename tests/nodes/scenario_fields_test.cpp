@@ -44,8 +44,6 @@ TEST(ScenarioFields, a_key_that_is_the_default_counts_like_one_that_is_missing) 
   json earlier = json::parse(s.completed);
   earlier["rig"].erase("toe_ramp");
   earlier["terrain"].erase("size_spread");
-  earlier["terrain"]["ground_stiffness"] = 1e9;  // earlier versions had keys of all engines
-  EXPECT_EQ(scenario::completed_now(earlier.dump()), json::parse(s.completed));
   EXPECT_EQ(testing::ScenarioFile(earlier.dump()).load().digest, s.digest);
 }
 

@@ -10,6 +10,7 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/files/data_files.hpp"
 #include "tests/nodes/scenario_fixture.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -38,7 +39,7 @@ TEST(VehicleScenario, brings_the_tires_of_its_wheels) {
   EXPECT_NEAR(rig.wheels[0].lateral, 0.91, 0.01);
   EXPECT_NEAR(rig.wheels[0].from - rig.wheels[2].from, 3.302, 0.01);
   EXPECT_EQ(rig.wheels[1].start_key, "rig.start");
-  EXPECT_NE(scenario::validation_text(s).find("vehicle HMMWV on 4 wheels, 19 bodies, parked"), std::string::npos);
+  EXPECT_TRUE(holds(scenario::validation_text(s), "vehicle HMMWV on 4 wheels, 19 bodies, parked"));
 }
 
 TEST(VehicleScenario, changes_the_tires_of_all_wheels_of_each_axle_or_of_each_wheel) {
@@ -228,10 +229,9 @@ TEST(VehicleScenario, a_vehicle_that_no_tire_of_its_size_carries_is_refused_by_t
   heavy["chassis"]["mass"] = 1e6;
   heavy["chassis"]["inertia"] = {5e5, 1.4e6, 1.7e6};
   const std::string told = OwnVehicle(hmmwv(), heavy).complaint();
-  EXPECT_NE(told.find("key 'chassis.mass': is 1e6 kg: on 4 wheels each tire would carry 2.45e+06 N, and no tire of "
-                      "the size of 'hmmwv_layered.json' carries "),
-            std::string::npos)
-      << told;
+  EXPECT_TRUE(holds(told,
+                    "key 'chassis.mass': is 1e6 kg: on 4 wheels each tire would carry 2.45e+06 N, and no tire of "
+                    "the size of 'hmmwv_layered.json' carries "));
   // Rigid wheels carry anything.
   for (json& axle : heavy["axles"]) axle["wheel"]["rigid"] = true;
   EXPECT_EQ(OwnVehicle(hmmwv(), heavy).complaint().find("no tire of the size"), std::string::npos);
@@ -243,9 +243,7 @@ TEST(VehicleScenario, springs_that_rest_in_their_stops_are_warned_of) {
   car["axles"][1]["suspension"]["spring"]["stop"]["longest"] = 0.4;
   const std::vector<std::string> warnings = OwnVehicle(hmmwv(), car).load().warnings;
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("whose key 'axles[1].suspension.spring.stop' holds the wheel 'rear left' at rest"),
-            std::string::npos)
-      << warnings[0];
+  EXPECT_TRUE(holds(warnings[0], "whose key 'axles[1].suspension.spring.stop' holds the wheel 'rear left' at rest"));
 }
 
 TEST(VehicleScenario, what_binds_the_answer_names_its_wheels) {
@@ -259,7 +257,7 @@ TEST(VehicleScenario, what_binds_the_answer_names_its_wheels) {
     for (const auto& wheel : bound["wheels"])
       EXPECT_TRUE(bound["wheels"].size() == s.tires.size() || text.find(wheel.get<std::string>()) != std::string::npos);
   }
-  EXPECT_NE(text.find("\nbound by     " + bounds[0]["key"].get<std::string>() + " ("), std::string::npos) << text;
+  EXPECT_TRUE(holds(text, "\nbound by     " + bounds[0]["key"].get<std::string>() + " ("));
 }
 
 TEST(VehicleScenario, a_parked_vehicle_without_brakes_is_warned_of) {
@@ -361,8 +359,7 @@ TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
             ": key 'driveline.gearbox.ratios[0]': is 0, expected a number above zero");
   // It cannot stand on wheels that all are in front of its centre of mass.
   const std::string falls = complains("/chassis/center_of_mass/0", -9.0);
-  EXPECT_NE(falls.find("key 'rig.vehicle': is " + path.string() + ", which cannot be used: "), std::string::npos)
-      << falls;
+  EXPECT_TRUE(holds(falls, "key 'rig.vehicle': is " + path.string() + ", which cannot be used: "));
 }
 
 }  // namespace

@@ -240,7 +240,7 @@ class Damaged(CheckpointTest):
         manifest = read_json(self.newest / "manifest.json")
         manifest["format_version"] = 3
         write_json(self.newest / "manifest.json", manifest)
-        self.goes_on_from_the_one_before("format_version 3 is newer than this program reads")
+        self.goes_on_from_the_one_before("has format_version 3, but this program reads 2")
 
     def test_of_another_scenario(self):
         manifests = sorted((self.run / "checkpoints").glob("*/manifest.json"))

@@ -45,43 +45,10 @@ class Beds(SystemTest):
                                 compression="gzip", shuffle=True)
         self.furrow("validate", self.scenario)
 
-    def test_declared_huge_checksum(self):
-        with self.made() as file:
-            file["format_version"] = np.array([4])
-            file.create_dataset("checksum", shape=(10 ** 15,), dtype="u8", chunks=(1024,))
-        self.refused("'checksum' is said to have more than", commands=("bed",))
-
     def test_declared_huge_positions(self):
         with self.made() as file:
             file.create_dataset("position", shape=(4 * 10 ** 8, 3), dtype="f8", chunks=(1024, 3))
         self.refused("'position' is said to have 9600000000 bytes, but 0 are stored")
-
-    def test_external_storage(self):
-        with self.made() as file:
-            file.create_dataset("position", shape=(1, 3), dtype="f8", external=[("/etc/passwd", 0, 24)])
-        self.refused("'position' is stored in another file")
-
-    def test_external_link(self):
-        with h5py.File(self.folder / "other.h5", "w") as file:
-            positions(file)
-        with self.made() as file:
-            file["position"] = h5py.ExternalLink(str(self.folder / "other.h5"), "/position")
-        self.refused("'position' is a link to another file")
-
-    def test_soft_link(self):
-        with self.made() as file:
-            positions(file, "real")
-            file["position"] = h5py.SoftLink("/real")
-        self.refused("'position' is a soft link")
-
-    def test_virtual_dataset(self):
-        with h5py.File(self.folder / "other.h5", "w") as file:
-            positions(file)
-        layout = h5py.VirtualLayout((2, 3), "f8")
-        layout[:] = h5py.VirtualSource(str(self.folder / "other.h5"), "position", (2, 3))
-        with self.made() as file:
-            file.create_virtual_dataset("position", layout)
-        self.refused("'position' is made of other datasets")
 
     def test_attribute_of_a_thousand_numbers(self):
         with self.made() as file:

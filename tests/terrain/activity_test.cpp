@@ -126,28 +126,6 @@ TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
   EXPECT_EQ(energies.kinetic + energies.rotational, 0.0);
 }
 
-/// Σ impulses on a bed less what its momentum gained and what sleep took, over the impulse of its weight.
-double momentum_left(const GrainSolver& s, const Vec3& momentum_before, double time) {
-  const Accounts& a = s.accounts();
-  const double mass = s.params().grain.mass;
-  const Vec3 weight = mass * s.relative_mass() * time * s.params().gravity;
-  const Vec3 given = weight + a.wall_impulse + a.surface_impulse - a.momentum_removed;
-  return (mass * a.velocity - momentum_before - given).norm() / weight.norm();
-}
-
-TEST(Activity, impulses_on_a_bed_that_falls_asleep_and_is_pressed_are_its_momentum_and_what_sleep_took) {
-  const DemOptions options = bed_options(20e3);
-  const Archive archive = settled(options);
-  for (const bool activity : {false, true}) {
-    GrainSolver solver = bed(options, archive, activity);
-    const Vec3 before = solver.params().grain.mass * solver.accounts().velocity;
-    for (int k = 0; k < 2000; ++k) solver.step(options.step);
-    EXPECT_EQ(solver.accounts().active < solver.grains().count, activity);
-    press(solver, options, solver.top(), 0.1, 20, 100);
-    EXPECT_LT(momentum_left(solver, before, 4000 * options.step), activity ? 1e-3 : 1e-10);
-  }
-}
-
 TEST(Activity, mean_contact_force_follows_the_load) {
   const DemOptions options = bed_options(20e3);
   const Archive archive = settled(options);
@@ -248,23 +226,6 @@ TEST(Activity, falling_grain_wakes_what_it_hits) {
   EXPECT_GT(end.x, start + 0.15);
   EXPECT_GT(most, 0);
   EXPECT_EQ(solver.accounts().active, 0);
-}
-
-TEST(Activity, same_bits_for_one_and_two_threads_and_after_a_restart) {
-  const DemOptions options = bed_options(0.0);
-  const Archive archive = settled(options);
-  GrainSolver one = bed(options, archive, true), two = bed(options, archive, true);
-  two.set_threads(2);
-  for (int k = 0; k < 300; ++k) one.step(options.step), two.step(options.step);
-  ASSERT_GT(one.accounts().active, 0);
-  ASSERT_LT(one.accounts().active, one.grains().count);
-  EXPECT_EQ(hash_of(one), hash_of(two));
-  Archive middle;
-  one.save(middle);
-  GrainSolver again = bed(options, middle, true);
-  for (int k = 0; k < 500; ++k) one.step(options.step), again.step(options.step);
-  EXPECT_EQ(hash_of(one), hash_of(again));
-  EXPECT_EQ(one.accounts().floor_force, again.accounts().floor_force);
 }
 
 }  // namespace

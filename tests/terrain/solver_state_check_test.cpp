@@ -7,6 +7,7 @@
 #include <random>
 
 #include "protocol/core/error.hpp"
+#include "tests/refusal.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::terrain::dem {
@@ -66,14 +67,10 @@ Archive saved_asleep() {
 /// What restoring complains of; empty when it does not, and the state can be stepped.
 std::string complaint(const Archive& archive, const FewGrains& few = rough_grains()) {
   GrainSolver solver = few.make({});
-  try {
+  return refusal(ExitCode::io, [&] {
     solver.restore(archive);
     for (int step = 0; step < 3; ++step) solver.step(kStep);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::io);
-    return error.what();
-  }
-  return {};
+  });
 }
 
 template <class T>
@@ -112,6 +109,7 @@ TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
   refused(with(good, "pairs/partners", 0, std::uint64_t{1}), "pairs/partners");
   refused(with(good, "position", 0, std::nan("")), "position");
   refused(with(good, "position", 2, 1e7), "position");
+  for (const double radius : {-0.02, 0.0, 0.01, 0.0202}) refused(with(good, "position", 3, radius), "position");
   refused(with(good, "count", 0, std::int64_t{-1}), "count");
   refused(with(good, "count", 0, std::int64_t{1} << 62), "count");
   refused(with(good, "strips/cells_z", 0, std::numeric_limits<std::int64_t>::max()), "strips/cells_z");

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "protocol/core/mean_turn.hpp"
+#include "tests/refusal.hpp"
 #include "tire/outward.hpp"
 #include "tire/tires.hpp"
 
@@ -110,8 +113,10 @@ inline void expect_exact_continuation(const TireOptions& options, double step) {
 }
 
 /// What it says of itself before it is made is what it is.
-inline void expect_described_shape(const TireOptions& options) {
+inline void expect_described_shape(TireOptions options, bool rigid = false) {
+  options.rigid = rigid;
   const auto spec = read_tire(options);
+  EXPECT_EQ(spec->static_test() == nullptr, rigid);
   const auto tire = spec->make();
   const TireDescription d = spec->describe();
   EXPECT_EQ(d.vertices, tire->mesh().vertex_count);
@@ -125,7 +130,26 @@ inline void expect_described_shape(const TireOptions& options) {
   const TireShape shape = spec->shape();
   for (std::size_t v = 0; v < shape.vertex.size(); ++v) EXPECT_LT((s.position[v] - shape.vertex[v]).norm(), 1e-12);
   EXPECT_NO_THROW(require_outward(tire->mesh(), s.position, Vec3::Zero(), "tire.json"));
-  EXPECT_GT(tire->material().area_density, 0.1);
+  EXPECT_TRUE(rigid || tire->material().area_density > 0.1);
+}
+
+/// A force that is not finite is refused, and one that drives the tire to its rim ends with these words.
+inline void expect_limits_are_told(const TireOptions& options, double step, const NodalForces& too_much,
+                                   const std::string& words) {
+  const auto tire = make_tire(options);
+  RimState rim;
+  RimTrajectory motion(rim);
+  tire->place(rim);
+  motion.extend(rim, step);
+  const NodalForces nothing{{3}, {Vec3(0.0, 0.0, std::numeric_limits<double>::quiet_NaN())}};
+  EXPECT_TRUE(holds(tire->advance(motion, nothing, 1).message("tire 0"), "force that is not finite"));
+  Outcome outcome;
+  for (int k = 0; k < 2000 && outcome.ok; ++k) {
+    outcome = tire->advance(motion, too_much, 1);
+    motion.extend(rim, step);
+  }
+  EXPECT_FALSE(outcome.ok);
+  EXPECT_TRUE(holds(outcome.message("tire 0"), words));
 }
 
 }  // namespace furrow::tire

@@ -48,13 +48,6 @@ PlanarGround PlanarGround::curb(double height, double length) {
   return PlanarGround({{-length, 0.0}, {0.0, 0.0}, {0.0, height}, {length, height}});
 }
 
-double PlanarGround::top_between(double from, double to) const {
-  auto point = std::lower_bound(points_.begin(), points_.end(), PlanarPoint{from, 0.0}, by_x);
-  double top = -std::numeric_limits<double>::infinity();
-  for (; point != points_.end() && point->x <= to; ++point) top = std::max(top, point->z);
-  return top;
-}
-
 /// The solid's height at x: the highest of an upright face. −∞ beyond the ends.
 double PlanarGround::height(double x) const {
   constexpr double kNone = -std::numeric_limits<double>::infinity();

@@ -28,8 +28,6 @@ class PlanarGround {
 
   const std::vector<PlanarPoint>& points() const { return points_; }
   double top() const { return top_; }  // of all points, m
-  /// Of the points between x of `from` and `to`; −∞ where there is none.
-  double top_between(double from, double to) const;
 
   PlanarDepth depth(double x, double z) const;
 

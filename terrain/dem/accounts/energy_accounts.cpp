@@ -46,7 +46,6 @@ void EnergyAccounts::save(Archive& archive) const {
 
 void EnergyAccounts::restore(const Archive& archive, std::size_t strips) {
   begin(std::vector<Stored>(strips), 0.0);
-  if (!archive.has("energies/until")) return;
   restore_fields(archive, "energies", state_);
   state_.until = std::max<std::int64_t>(state_.until, 0);
   ColumnReader<Stored> stored(archive, "energies/strips", strips);

@@ -77,7 +77,6 @@ class EnergyAccounts {
   const State& state() const { return state_; }
 
   void save(Archive& archive) const;
-  /// As after begin() with nothing stored when the archive holds no accounts, as beds of older programs.
   /// @param strips how many
   void restore(const Archive& archive, std::size_t strips);
 

@@ -2,7 +2,6 @@
 
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "protocol/core/field_hash.hpp"
@@ -11,7 +10,6 @@
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/text_file.hpp"
-#include "terrain/dem/beds/bed_format_4.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/contact/contact_mixing.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -20,31 +18,17 @@ namespace furrow::terrain::dem {
 namespace {
 
 constexpr std::int64_t kBedFormat = 5;         // raise when the bits of a bed or its digest may change
-constexpr std::int64_t kOldestBedFormat = 4;   // that can be read
 constexpr const char* kDigest = "bed/digest";  // in files of the cache alone
 
-constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, kOldestBedFormat, ""};
-
-/// A bed of any format as this version saves it. @throws Error(io) naming what it lacks
-Archive of_this_version(Archive bed, std::int64_t version) {
-  if (version != kBedFormat) {
-    bed = from_format_4(bed);
-  } else if (!bed.has("accounts/momentum_removed")) {  // kept before it was booked: a settled bed lost none
-    bed.put("accounts/momentum_removed", std::vector<double>(3));
-    const std::vector<double> none(bed.get<std::int32_t>("strips/walls").size());
-    for (const char* component : {"x", "y", "z", "w"}) bed.put(std::string("strips/held/") + component, none);
-  }
-  return bed;
-}
+constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, ""};
 
 /// What a bed says of itself. @throws Error(io) naming what it lacks
 void require_label(const Archive& bed) {
-  for (const char* count : {"count", "surfaces/count"}) (void)bed.get_int(count);
+  for (const char* count : {"count", "surfaces/count", "bed/periodic_sides"}) (void)bed.get_int(count);
   for (const char* four : {"bed/geometry", "bed/settled"}) (void)bed.get<double>(four, 4);
   (void)bed.get<double>("pairs/rolling");
   (void)bed.get<std::uint8_t>("bed/law");
-  if (bed.has("bed/size_spread")) (void)bed.get_double("bed/size_spread");
-  if (bed.has("bed/periodic_sides")) (void)bed.get_int("bed/periodic_sides");
+  (void)bed.get_double("bed/size_spread");
 }
 
 }  // namespace
@@ -92,11 +76,9 @@ void keep_bed(const std::filesystem::path& file, Archive& bed, const std::string
 }
 
 Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress, std::string* digest) {
-  std::int64_t version = 0;
   PacedCall tell(progress, PacedCall::kInterval);
-  Archive bed = read_archive(file, kBed, &version, [&] { tell("reading the bed", 0.0); });
+  Archive bed = read_archive(file, kBed, [&] { tell("reading the bed", 0.0); });
   try {
-    bed = of_this_version(std::move(bed), version);
     require_label(bed);
     if (bed.has(kDigest)) {
       const auto& text = bed.get<std::uint8_t>(kDigest);

@@ -25,8 +25,8 @@ void keep_bed(const std::filesystem::path& file, Archive& bed, const std::string
               const ProgressCall& progress = {});
 
 /// @param digest receives that of the file; stays as it is for one that holds none
-/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum), of a newer format or of one before
-/// 4; and what `progress` throws
+/// @throws Error(io) when the file is missing, not one of ours, damaged (checksum) or of another format; and what
+/// `progress` throws
 Archive read_bed(const std::filesystem::path& file, const ProgressCall& progress = {}, std::string* digest = nullptr);
 
 /// Whether an HDF5 file is a settled bed of furrow, or too damaged to decide.

@@ -31,11 +31,11 @@ void check_bed(const Archive& bed, const DemOptions& o) {
     if (made[k] != wanted[k])
       throw input_error(o.scenario, std::string("terrain.") + kKey[k],
                         fmt::format("is {} but the bed '{}' was made with {}", wanted[k], o.bed, made[k]));
-  const double spread = bed.has("bed/size_spread") ? bed.get_double("bed/size_spread") : 0.0;
+  const double spread = bed.get_double("bed/size_spread");
   if (spread != o.size_spread)
     throw input_error(o.scenario, "terrain.size_spread",
                       fmt::format("is {} but the bed '{}' was made with {}", o.size_spread, o.bed, spread));
-  const bool periodic = bed.has("bed/periodic_sides") && bed.get_int("bed/periodic_sides") != 0;
+  const bool periodic = bed.get_int("bed/periodic_sides") != 0;
   if (periodic != o.periodic_y())
     throw input_error(
         o.scenario, "terrain.sides",

@@ -9,6 +9,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -39,12 +40,7 @@ TEST(FileKind, every_file_that_comes_with_the_program_is_what_its_folder_says) {
 
 TEST(FileKind, only_what_is_certainly_of_another_kind_is_refused) {
   const auto refused = [](const json& document, FileKind expected) -> std::string {
-    try {
-      refuse_other_kinds(document, expected, "x.json");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return refusal(ExitCode::bad_input, [&] { refuse_other_kinds(document, expected, "x.json"); });
   };
   const json soil = json::parse(R"({"format_version": 1, "terrain": {"friction": 0.5}})");
   EXPECT_EQ(refused(soil, FileKind::tire),

@@ -1,5 +1,4 @@
-// HDF5 files of strangers: no memory beyond the file's size, no other file, no program; one message that names the
-// file.
+// HDF5 files of other programs: no memory beyond the file's size; one message that names the file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/hdf5_handle.hpp"
 #include "tests/nodes/temporary_folder.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -88,15 +88,15 @@ TEST_F(ForeignHdf5, numbers_of_every_usual_kind_are_read) {
 TEST_F(ForeignHdf5, declared_and_never_written_takes_no_memory) {
   const hsize_t huge = 1000000000000000;
   make([&](hid_t out) { put(out, {huge}, H5T_NATIVE_UINT64, Handle(created({1024}), H5Pclose)); });
-  EXPECT_NE(complaint().find("'x' is said to have more than 2147483648 numbers"), std::string::npos) << complaint();
+  EXPECT_TRUE(holds(complaint(), "'x' is said to have more than 2147483648 numbers"));
   make([&](hid_t out) { put(out, {1000000000}, H5T_NATIVE_DOUBLE, Handle(created({1024}), H5Pclose)); });
-  EXPECT_NE(complaint().find("is said to have 8000000000 bytes, but 0 are stored"), std::string::npos) << complaint();
+  EXPECT_TRUE(holds(complaint(), "is said to have 8000000000 bytes, but 0 are stored"));
   make([&](hid_t out) { put(out, {1000000000}); });
-  EXPECT_NE(complaint().find("is said to have 8000000000 bytes, but 0 are stored"), std::string::npos) << complaint();
+  EXPECT_TRUE(holds(complaint(), "is said to have 8000000000 bytes, but 0 are stored"));
   make([&](hid_t out) {
     put(out, {huge, huge, huge, huge}, H5T_NATIVE_UINT64, Handle(created({1, 1, 1, 1}), H5Pclose));
   });
-  EXPECT_NE(complaint().find("more than 2147483648 numbers"), std::string::npos) << complaint();
+  EXPECT_TRUE(holds(complaint(), "more than 2147483648 numbers"));
 }
 
 /// The size of a contiguous dataset is what the file says of it.
@@ -122,7 +122,7 @@ TEST_F(ForeignHdf5, what_compresses_beyond_belief_is_refused) {
     H5Pset_deflate(packed, 9);
     put(out, {4 << 20}, H5T_NATIVE_DOUBLE, packed, zeros.data());
   });
-  EXPECT_NE(complaint().find("bytes, but "), std::string::npos) << complaint();
+  EXPECT_TRUE(holds(complaint(), "bytes, but "));
 }
 
 TEST_F(ForeignHdf5, chunks_larger_than_what_is_stored_are_refused) {
@@ -137,76 +137,6 @@ TEST_F(ForeignHdf5, chunks_larger_than_what_is_stored_are_refused) {
     H5Dwrite_chunk(set, H5P_DEFAULT, 0, &at, noise.size(), noise.data());
   });
   EXPECT_NE(complaint(), "");
-}
-
-TEST_F(ForeignHdf5, nothing_is_read_from_other_files) {
-  std::ofstream(folder_.path() / "secret") << std::string(64, 's');
-  const std::string secret = (folder_.path() / "secret").string();
-  make([&](hid_t out) {
-    const Handle made(created(), H5Pclose);
-    H5Pset_external(made, secret.c_str(), 0, 24);
-    put(out, {3}, H5T_NATIVE_DOUBLE, made);
-  });
-  EXPECT_EQ(complaint(), "the dataset 'x' is stored in another file, expected the numbers themselves in this file");
-
-  const std::filesystem::path other = folder_.path() / "other.h5";
-  {
-    Hdf5Writer out(other);
-    out.put("x", std::vector<double>{1, 2, 3}, {3});
-    out.finish();
-  }
-  make([&](hid_t out) { H5Lcreate_external(other.c_str(), "/x", out, "x", H5P_DEFAULT, H5P_DEFAULT); });
-  const std::string linked = "the dataset 'x' is a link to another file, expected the numbers themselves in this file";
-  EXPECT_EQ(complaint(), linked);
-  EXPECT_EQ(complaint([](const Hdf5Reader& in) { in.has("x"); }), linked);
-  EXPECT_EQ(complaint([](const Hdf5Reader& in) { in.datasets(); }), linked);
-  make([&](hid_t out) { H5Lcreate_external(other.c_str(), "/", out, "group", H5P_DEFAULT, H5P_DEFAULT); });
-  EXPECT_NE(
-      complaint([](const Hdf5Reader& in) { in.get<double>("group/x"); }).find("'group' is a link to another file"),
-      std::string::npos);
-
-  make([&](hid_t out) {
-    const Handle made(created(), H5Pclose);
-    const hsize_t three = 3;
-    const Handle space(H5Screate_simple(1, &three, nullptr), H5Sclose);
-    H5Pset_virtual(made, space, other.c_str(), "x", space);
-    put(out, {3}, H5T_NATIVE_DOUBLE, made);
-  });
-  EXPECT_EQ(complaint(), "the dataset 'x' is made of other datasets, expected the numbers themselves in this file");
-}
-
-TEST_F(ForeignHdf5, soft_and_user_defined_links_are_refused_by_name) {
-  const std::array<double, 1> one{1.0};
-  make([&](hid_t out) {
-    put(out, {1}, H5T_NATIVE_DOUBLE, H5P_DEFAULT, one.data(), "y");
-    H5Lcreate_soft("/y", out, "x", H5P_DEFAULT, H5P_DEFAULT);
-  });
-  EXPECT_EQ(complaint(), "the dataset 'x' is a soft link, expected the numbers themselves in this file");
-  make([&](hid_t out) {
-    H5L_class_t own{};
-    own.version = H5L_LINK_CLASS_T_VERS;
-    own.id = static_cast<H5L_type_t>(200);
-    own.comment = "own";
-    own.trav_func = [](const char*, hid_t, const void*, size_t, hid_t, hid_t) -> hid_t { return -1; };
-    H5Lregister(&own);
-    ASSERT_GE(H5Lcreate_ud(out, "x", own.id, nullptr, 0, H5P_DEFAULT, H5P_DEFAULT), 0);
-  });
-  EXPECT_EQ(complaint(),
-            "the dataset 'x' is a link of another program's own kind, expected the numbers themselves in "
-            "this file");
-}
-
-TEST_F(ForeignHdf5, the_same_bytes_under_many_names_do_not_add_up) {
-  const std::vector<double> values(10000, 1.0);
-  make([&](hid_t out) {
-    put(out, {10000}, H5T_NATIVE_DOUBLE, H5P_DEFAULT, values.data());
-    for (int k = 0; k < 50; ++k)
-      H5Lcreate_hard(out, "x", out, ("y" + std::to_string(k)).c_str(), H5P_DEFAULT, H5P_DEFAULT);
-  });
-  EXPECT_EQ(complaint([](const Hdf5Reader& in) {
-              for (const std::string& name : in.datasets()) in.get<double>(name);
-            }),
-            "its datasets are said to have more bytes than the file: it is damaged");
 }
 
 TEST_F(ForeignHdf5, datasets_of_anything_but_plain_numbers_are_refused_by_name) {
@@ -225,16 +155,6 @@ TEST_F(ForeignHdf5, datasets_of_anything_but_plain_numbers_are_refused_by_name) 
   }
   make([](hid_t out) { const Handle group(H5Gcreate2(out, "x", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose); });
   EXPECT_EQ(complaint(), "lacks the dataset 'x'");
-}
-
-TEST_F(ForeignHdf5, filters_that_not_every_library_has_are_refused_by_number) {
-  const std::vector<double> values(64, 1.0);
-  make([&](hid_t out) {
-    const Handle made(created({64}), H5Pclose);
-    H5Pset_scaleoffset(made, H5Z_SO_FLOAT_DSCALE, 2);
-    put(out, {64}, H5T_NATIVE_DOUBLE, made, values.data());
-  });
-  EXPECT_EQ(complaint(), "the dataset 'x' was written through filter 6, expected none, gzip, shuffle or fletcher32");
 }
 
 /// A thousand numbers where one is expected would be written over whatever stands behind it in memory.
@@ -277,7 +197,7 @@ TEST_F(ForeignHdf5, attributes_must_be_one_number_or_one_short_text) {
 TEST_F(ForeignHdf5, names_are_shown_and_not_obeyed) {
   make([](hid_t out) { put(out, {1000000}, H5T_NATIVE_DOUBLE, H5P_DEFAULT, nullptr, "red\x1b[31m\n"); });
   const std::string told = complaint([](const Hdf5Reader& in) { in.get<double>(in.datasets().at(0)); });
-  EXPECT_NE(told.find("'red\\x1b[31m\\n' is said to have"), std::string::npos) << told;
+  EXPECT_TRUE(holds(told, "'red\\x1b[31m\\n' is said to have"));
 }
 
 TEST_F(ForeignHdf5, what_is_no_regular_file_is_refused) {

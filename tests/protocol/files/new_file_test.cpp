@@ -16,6 +16,7 @@
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tests/nodes/temporary_folder.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -157,13 +158,8 @@ TEST(NewFile, only_names_of_its_form_are_in_the_making) {
 }
 
 TEST(NewFile, a_folder_that_is_not_there_is_told_by_the_files_name) {
-  try {
-    NewFile("/proc/nowhere/a.txt");
-    FAIL() << "was created";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::io);
-    EXPECT_EQ(std::string(error.what()), "/proc/nowhere/a.txt: cannot create: No such file or directory");
-  }
+  EXPECT_EQ(refusal(ExitCode::io, [&] { NewFile("/proc/nowhere/a.txt"); }),
+            "/proc/nowhere/a.txt: cannot create: No such file or directory");
 }
 
 }  // namespace

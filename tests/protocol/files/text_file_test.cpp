@@ -7,6 +7,7 @@
 
 #include "protocol/core/error.hpp"
 #include "tests/nodes/temporary_folder.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -42,13 +43,7 @@ TEST(TextFile, the_hash_of_a_file_is_that_of_its_bytes) {
 TEST(TextFile, what_cannot_be_read_is_an_error_naming_the_file) {
   const TemporaryFolder folder;
   for (const auto& file : {folder.path() / "none", folder.path()}) {
-    try {
-      read_whole_file(file);
-      ADD_FAILURE() << file << " was read";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::io);
-      EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
-    }
+    expect_refused(ExitCode::io, {file.string()}, [&] { read_whole_file(file); });
     EXPECT_THROW(file_hash(file), Error);
   }
 }

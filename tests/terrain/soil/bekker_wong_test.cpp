@@ -23,14 +23,21 @@ TEST(BekkerWong, pressure_alone_carries_the_load) {
 
 TEST(BekkerWong, resistance_of_bekkers_pressure_is_the_compaction_work) {
   // R_c = b k z₀ⁿ⁺¹/(n + 1): the work of pressing a rut of that depth per length [Wong 2008].
+  const double b = kBekkerWheel.width;
   for (const double n : {0.4, 1.0, 1.3}) {
     SoilStrength s = kSmooth;
     s.n = n;
     const WheelEstimate e = rigid_wheel(s, kBekkerWheel, 0.2);
     ASSERT_TRUE(e.found);
-    EXPECT_NEAR(e.resistance, compaction_resistance(s, kBekkerWheel.width, e.sinkage), 2e-3 * e.resistance) << n;
+    EXPECT_NEAR(e.resistance, b * s.k_phi * std::pow(e.sinkage, n + 1.0) / (n + 1.0), 2e-3 * e.resistance) << n;
     EXPECT_NEAR(e.pull, -e.resistance, 1e-9);
   }
+}
+
+/// Of a towed rigid wheel, m: W = (k_c + b k_φ) √(2R z₀) z₀ⁿ (3 − n)/3 for small z₀ [Bekker 1956; Wong 2008].
+double bekker_sinkage(const SoilStrength& s, const RigidWheel& w) {
+  const double factor = (3.0 - s.n) * (s.k_c + w.width * s.k_phi) * std::sqrt(2.0 * w.radius);
+  return std::pow(3.0 * w.load / factor, 2.0 / (2.0 * s.n + 1.0));
 }
 
 TEST(BekkerWong, sinkage_tends_to_bekkers_closed_form_on_firm_soil) {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "tests/refusal.hpp"
 #include "tests/tire/extruded_ride.hpp"
 #include "tire/tires.hpp"
 
@@ -90,27 +90,13 @@ TEST(RingTire, a_restored_tire_continues_bit_for_bit) {
 }
 
 TEST(RingTire, its_surface_is_the_shape_that_it_was_described_with) {
-  for (const int segments : {24, 37}) expect_described_shape(options(segments));
+  for (const int segments : {24, 37})
+    for (const bool rigid : {false, true}) expect_described_shape(options(segments), rigid);
 }
 
 TEST(RingTire, what_cannot_go_on_says_so) {
-  const auto tire = make_tire(options());
-  RimState rim;
-  RimTrajectory motion(rim);
-  tire->place(rim);
-  motion.extend(rim, kStep);
-  NodalForces f;
-  f.vertex = {3}, f.force = {Vec3(0.0, 0.0, std::numeric_limits<double>::quiet_NaN())};
-  EXPECT_NE(tire->advance(motion, f, 1).message("tire 0").find("force that is not finite"), std::string::npos);
-  f.vertex = {60, 61}, f.force.assign(2, Vec3(0.0, 0.0, 1e5));
-  Outcome outcome;
-  for (int k = 0; k < 2000 && outcome.ok; ++k) {
-    outcome = tire->advance(motion, f, 1);
-    motion.extend(rim, kStep);
-  }
-  EXPECT_FALSE(outcome.ok);
-  EXPECT_NE(outcome.message("tire 0").find("pressed further than a flexible ring is meant for"), std::string::npos)
-      << outcome.message("tire 0");
+  expect_limits_are_told(options(), kStep, {{60, 61}, std::vector<Vec3>(2, Vec3(0.0, 0.0, 1e5))},
+                         "pressed further than a flexible ring is meant for");
 }
 
 }  // namespace

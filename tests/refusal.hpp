@@ -1,0 +1,41 @@
+// What a refusal says: the message of an Error, compared by its parts.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <source_location>
+#include <string>
+#include <vector>
+
+#include "protocol/core/error.hpp"
+
+namespace furrow {
+
+/// Whether `text` has `part` in it.
+inline ::testing::AssertionResult holds(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "'" << part << "' is not in: " << text;
+}
+
+/// The message of the Error that `work` throws; empty when it throws none. Its code must be `code`.
+inline std::string refusal(ExitCode code, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), code) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+/// `work` must throw an Error with this code, whose message has every part in it.
+inline void expect_refused(ExitCode code, const std::vector<std::string>& parts, const std::function<void()>& work,
+                           std::source_location here = std::source_location::current()) {
+  const ::testing::ScopedTrace trace(here.file_name(), static_cast<int>(here.line()), "was to be refused");
+  const std::string text = refusal(code, work);
+  EXPECT_NE(text, "");
+  for (const std::string& part : parts) EXPECT_TRUE(holds(text, part));
+}
+
+}  // namespace furrow

@@ -11,6 +11,8 @@ std::string build_id() {
   return id;
 }
 
+std::string arithmetic_id() { return FURROW_ARITHMETIC; }
+
 std::string cpu_model() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);)

@@ -1,4 +1,5 @@
-// Which build of the program computes, and on which processor.
+// Which build of the program computes, and on which processor. What is computed again by another build may differ in its
+// last bits, so that each build keeps its own.
 #pragma once
 
 #include <string>
@@ -7,6 +8,9 @@ namespace furrow {
 
 /// A hash of the program's own file: another build has another one.
 std::string build_id();
+/// Tells builds apart whose numbers may differ: a digest of the compiler, its target and its options for arithmetic,
+/// made when the build is configured. Sources do not count: whoever changes what is kept raises its format.
+std::string arithmetic_id();
 /// "model name" of the processor.
 std::string cpu_model();
 

@@ -98,7 +98,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto terrain = terrain::make_dem_terrain(o);
     terrain->prepare({});
     terrain::TerrainFrame frame;
-    terrain->frame(frame);
+    terrain->gather_frame(frame);
     terrain->attach(kSquare, {1e7, 0.4, 0.8, 0.2, 0, 0, 0, 0}, square(0.11));
     std::ignore = advance(*terrain);
   } catch (const Error&) {

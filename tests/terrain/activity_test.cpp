@@ -65,10 +65,9 @@ std::vector<double> press(GrainSolver& solver, const DemOptions& options, double
                           int every) {
   Plate plate(from);
   const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
-  solver.surfaces().attach(
-      plate.mesh, rubber,
-      mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options),
-      plate.state);
+  solver.surfaces().attach(plate.mesh, rubber,
+                           mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options),
+                           plate.state);
   solver.surfaces().restrict_to({Vec3(-1, -1, -1), Vec3(2, 1, solver.top() + 0.1)});
   const double dt = options.step;
   std::vector<double> force;

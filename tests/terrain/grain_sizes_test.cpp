@@ -11,9 +11,9 @@
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
+#include "terrain/dem/contact/size_scale.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
-#include "terrain/dem/contact/size_scale.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "tests/refusal.hpp"
 #include "tests/terrain/few_grains.hpp"
@@ -378,7 +378,8 @@ TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
     }
     return "not refused";
   };
-  EXPECT_TRUE(holds(refusal([](auto& o) { o.size_spread = 0.7; }), "size_spread': is 0.7, expected a number, 0 to 0.6"));
+  EXPECT_TRUE(
+      holds(refusal([](auto& o) { o.size_spread = 0.7; }), "size_spread': is 0.7, expected a number, 0 to 0.6"));
   EXPECT_TRUE(holds(refusal([](auto& o) { o.size_spread = 0.3, o.law = "hertz_tanh"; }), "expected law 'mindlin'"));
   EXPECT_TRUE(holds(refusal([](auto& o) { o.size_distribution = "gamma"; }), "expected uniform or normal"));
 }

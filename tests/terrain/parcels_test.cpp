@@ -62,8 +62,7 @@ class Plate {
     state_.velocity.assign(4, Vec3::Zero());
     const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
     solver.surfaces().attach(
-        mesh, rubber,
-        mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options), state_);
+        mesh, rubber, mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options), state_);
     solver.surfaces().restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, solver.top() + 0.1)});
   }
 
@@ -71,8 +70,8 @@ class Plate {
   Plate(GrainSolver& restored, const Plate& saved) : solver_(restored), state_(saved.state_) {
     const DemOptions options = wide_options();
     SurfaceContacts& surfaces = restored.surfaces();
-    surfaces.set_coefficients(0, mix(grain_material(options), surfaces.material(0), Partner::surface,
-                                     restored.params().grain, options));
+    surfaces.set_coefficients(
+        0, mix(grain_material(options), surfaces.material(0), Partner::surface, restored.params().grain, options));
     surfaces.restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, restored.top() + 0.1)});
   }
 

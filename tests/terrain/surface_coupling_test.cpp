@@ -37,7 +37,7 @@ TEST(SurfaceCoupling, no_grain_passes_through_a_plate_that_is_rammed_into_the_be
   const auto terrain = make_dem_terrain(small_bin(0.4));
   terrain->prepare({});
   const testing::Surface box = testing::box({-0.06, -0.06, 0.0}, {0.06, 0.06, 0.1});
-  const double bottom = terrain->top_height(0.13, 0.27, -0.07, 0.07) + 1e-4;
+  const double bottom = terrain->gather_top_height(0.13, 0.27, -0.07, 0.07) + 1e-4;
   Vec3 position(0.2, 0.0, bottom), velocity = Vec3::Zero();
   const auto state = [&] {
     SurfaceState state;

@@ -10,9 +10,9 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
-#include "protocol/files/arithmetic_id.hpp"
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/program_id.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/press/press.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "protocol/core/archive.hpp"
-#include "protocol/files/arithmetic_id.hpp"
+#include "protocol/files/program_id.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::terrain::dem {

@@ -111,7 +111,7 @@ void CommandLine::add(const Command& command) {
   const std::size_t blank = name.rfind(' ');
   CLI::App& parent = blank == std::string::npos ? app_ : *app_.get_subcommand(name.substr(0, blank));
   CLI::App& app = *parent.add_subcommand(name.substr(blank + 1), command.purpose);
-  if (command.task) app.group(command.task);
+  app.group(command.task ? command.task : "Subcommands");  // not that of the command above it
   app.footer(closing_words(command.examples));
   const Action action = command.options(app, typed_);
   if (!action) {

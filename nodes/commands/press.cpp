@@ -170,20 +170,19 @@ Action add_options(CLI::App& command, Typed& typed) {
   const auto arguments = std::make_shared<PressArguments>();
   add_scenario(command, typed);
   add_folder_options(command, arguments->out, arguments->overwrite, "<scenario>-press-NNN");
-  command.add_option("--on", arguments->on, "Choose the obstacle: plate, cleat or profile (arguments->on).");
-  command.add_option("--deflection", arguments->deflection, "Press up to this deflection, m (arguments->deflection).");
+  command.add_option("--on", arguments->on, "Choose the obstacle: plate, cleat or profile (press.on).");
+  command.add_option("--deflection", arguments->deflection, "Press up to this deflection, m (press.deflection).");
   command.add_option("--points", arguments->points,
-                     "Compute this number of points of the load–deflection curve (arguments->points).");
-  command.add_option("--load", arguments->load, "Compute the footprint at this load, N (arguments->load).");
+                     "Compute this number of points of the load–deflection curve (press.points).");
+  command.add_option("--load", arguments->load, "Compute the footprint at this load, N (press.load).");
   command.add_option("--camber", arguments->camber,
                      "Tilt the wheel about its forward axis, rad; positive leans the top to the right of "
-                     "travel. Shell tires only (arguments->camber).");
-  command.add_option("--cleat-height", arguments->cleat_height,
-                     "Set the height of the cleat, m (arguments->cleat_height).");
+                     "travel. Shell tires only (press.camber).");
+  command.add_option("--cleat-height", arguments->cleat_height, "Set the height of the cleat, m (press.cleat_height).");
   command.add_option("--cleat-width", arguments->cleat_width,
-                     "Set the width of the cleat's top along the direction of travel, m (arguments->cleat_width).");
+                     "Set the width of the cleat's top along the direction of travel, m (press.cleat_width).");
   command.add_option("--cleat-position", arguments->cleat_position,
-                     "Set the position of the cleat's middle, forward of the axle, m (arguments->cleat_position).");
+                     "Set the position of the cleat's middle, forward of the axle, m (press.cleat_position).");
   command.add_option(
       "--profile", arguments->profile,
       "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs --on "

@@ -1,5 +1,5 @@
-// Which build of the program computes, and on which processor. What is computed again by another build may differ in its
-// last bits, so that each build keeps its own.
+// Which build of the program computes, and on which processor. What another build computes again may differ in its last
+// bits, so that each build keeps its own.
 #pragma once
 
 #include <string>

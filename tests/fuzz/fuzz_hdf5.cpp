@@ -1,6 +1,6 @@
 // HDF5 files with datasets and attributes of any type and shape, some of them cut short; for the reader of datasets, of
-// archives and of positions. Half of the files are frames of grains whose numbers, types and shapes differ a little from
-// what they should be, as a bed that a user brings.
+// archives and of positions. Half of the files are frames of grains, as a bed that a user brings. Their numbers, types
+// and shapes differ a little from what they should be.
 #include <algorithm>
 
 #include <fuzzer/FuzzedDataProvider.h>

@@ -379,7 +379,7 @@ TEST(Subjects, a_checkpoint_without_the_table_is_refused_by_its_name) {
     resume.manifest.series = results.mark_series();
   }
   resume.manifest.series.pop_back();
-  expect_refused(ExitCode::bad_input, {"'vehicle'"},
+  expect_refused(ExitCode::io, {"'vehicle'"},
                  [&] { output::Results(scenario, cards_of_one_wheel(), {}, folder.path(), series.tables(), &resume); });
 }
 

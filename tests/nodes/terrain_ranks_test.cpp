@@ -13,6 +13,7 @@
 #include "tests/dummies/strip_mat.hpp"
 #include "tests/nodes/in_process_run.hpp"
 #include "tests/nodes/small_scenarios.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -100,7 +101,7 @@ TEST(TerrainRanks, one_that_falls_silent_is_named) {
     group.broadcast({});
   });
   // Either of the others may lose patience first: it has waited for the silent one, or for the one that waits for it.
-  EXPECT_NE(ends[0].find("terrain 2 does not answer; raise run.peer_"), std::string::npos) << ends[0];
+  EXPECT_TRUE(holds(ends[0], "terrain 2 does not answer; raise run.peer_"));
 }
 
 TEST(TerrainRanks, an_engine_that_cannot_use_them_is_refused_by_key) {

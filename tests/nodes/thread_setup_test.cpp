@@ -1,6 +1,7 @@
 // Who gets which cores: the plan is a pure function of the machine; applying it is checked on this machine.
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/terrain_threads.hpp"
+#include "tests/refusal.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -108,7 +109,7 @@ TEST(ThreadPlan, what_the_user_wants_is_done_even_where_it_does_not_fit) {
   const auto plans = plan_all(machine(2), 6);
   EXPECT_EQ(plans.back().threads, 6);
   EXPECT_FALSE(plans.back().disjoint);
-  EXPECT_NE(plans.back().note.find("terrain runs 6 threads on 2 cores"), std::string::npos) << plans.back().note;
+  EXPECT_TRUE(holds(plans.back().note, "terrain runs 6 threads on 2 cores"));
 }
 
 TEST(ThreadPlan, a_busy_machine_or_a_limited_container_is_not_bound) {
@@ -139,9 +140,8 @@ TEST(ThreadPlan, a_terrain_pinned_to_one_core_is_warned_about) {
   for (int i = 0; i < 3; ++i) host.nodes[static_cast<std::size_t>(i)].cores = {i};
   const auto plans = plan_all(host, 4);
   EXPECT_EQ(plans[2].threads, 4);
-  EXPECT_NE(plans[2].note.find("terrain is pinned to core 2 of 8 while 4 threads are wanted"), std::string::npos)
-      << plans[2].note;
-  EXPECT_NE(plans[2].note.find("--bind-to none"), std::string::npos);
+  EXPECT_TRUE(holds(plans[2].note, "terrain is pinned to core 2 of 8 while 4 threads are wanted"));
+  EXPECT_TRUE(holds(plans[2].note, "--bind-to none"));
   EXPECT_TRUE(plans[1].note.empty());
   EXPECT_EQ(plan_all(host)[2].threads, 1);
   EXPECT_FALSE(plan_all(host)[2].note.empty());
@@ -151,10 +151,9 @@ TEST(ThreadPlan, a_run_on_the_one_core_that_it_was_started_on_hears_nothing_of_t
   launch::HostView host = machine(8);
   for (HostNode& node : host.nodes) node.cores = {3};
   for (const launch::ThreadPlan& plan : plan_all(host)) EXPECT_EQ(plan.note, "");
-  EXPECT_NE(plan_all(host, 4)[2].note.find("terrain runs 4 threads on 1 cores; fewer are faster"), std::string::npos)
-      << plan_all(host, 4)[2].note;
+  EXPECT_TRUE(holds(plan_all(host, 4)[2].note, "terrain runs 4 threads on 1 cores; fewer are faster"));
   host.nodes = {host.nodes.back()};  // alone on its machine: srun gave it that core
-  EXPECT_NE(plan_all(host)[0].note.find("--cpus-per-task"), std::string::npos);
+  EXPECT_TRUE(holds(plan_all(host)[0].note, "--cpus-per-task"));
 }
 
 // In a thread of its own: OpenMP gives it a team of its own, and this test's settings go with it.
@@ -216,8 +215,8 @@ TEST(WaitPassively, starts_the_program_anew_once_with_the_same_arguments) {
     return std::string(text, length);
   };
   const std::string anew = said("-u OMP_WAIT_POLICY"), kept = said("OMP_WAIT_POLICY=active");
-  EXPECT_NE(anew.find("<passive|3>"), std::string::npos) << anew;
-  EXPECT_NE(kept.find("<active|3>"), std::string::npos) << kept;
+  EXPECT_TRUE(holds(anew, "<passive|3>"));
+  EXPECT_TRUE(holds(kept, "<active|3>"));
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ def rows(text):
 
 
 class Modes(SystemTest):
-    def run_modes(self, *arguments):
-        return self.furrow("modes", *arguments)
+    def run_modes(self, *arguments, **expected):
+        return self.furrow("modes", *arguments, **expected)
 
     def test_folder_holds_frequencies_shapes_and_pictures(self):
         done = self.run_modes("hmmwv_lumped.json", "--elements-circumference", "24", "--elements-width", "6",

@@ -58,7 +58,8 @@ TerrainForces terrain_forces() {
 TerrainReport terrain_report() {
   TerrainReport m;
   m.header = {46, 1.9};
-  m.state = {1, 2, 3, 4, 5, {6, 7, 8}, {9, 10, 11}, {12, 13, 14}, {15, 16, 17}, 18, 19, 20, 21};
+  m.state = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  m.state.momenta = {{6, 7, 8}, {9, 10, 11}, {12, 13, 14}, {15, 16, 17}, {18, 19, 20}};
   m.contact.resize(2);
   m.contact[0] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}, 13, 14, 15, 16};
   m.contact[1].contacts = 99;

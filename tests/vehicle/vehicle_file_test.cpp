@@ -1,7 +1,10 @@
 // Vehicle files: what is shipped follows the schema, and every mistake names file, key and what was expected.
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "protocol/core/error.hpp"
+#include "tests/refusal.hpp"
 #include "tests/vehicle/schema_check.hpp"
 #include "tests/vehicle/shipped.hpp"
 #include "vehicle/analysis/vehicle_page.hpp"
@@ -40,6 +43,27 @@ std::string changed(const std::string& file, const std::string& pointer, const j
   return complaint(document);
 }
 
+/// One value of a shipped file changed, and what is said against it; null takes the key away.
+struct Mistake {
+  const char* file;
+  std::string pointer;
+  json value;
+  const char* said;
+  std::string key = "";  // that is named; empty: the one of the pointer
+};
+
+/// "/axles/0/wheel" as "axles[0].wheel".
+std::string key_of(const std::string& pointer) {
+  return std::regex_replace(std::regex_replace(pointer.substr(1), std::regex("/(\\d+)"), "[$1]"), std::regex("/"), ".");
+}
+
+void expect_mistakes(const std::vector<Mistake>& mistakes) {
+  for (const Mistake& m : mistakes) {
+    const std::string told = changed(m.file, m.pointer, m.value);
+    EXPECT_TRUE(told.starts_with("key '" + (m.key.empty() ? key_of(m.pointer) : m.key) + "': " + m.said)) << told;
+  }
+}
+
 }  // namespace
 
 TEST(VehicleFile, shipped_vehicles_follow_the_schema_and_are_read) {
@@ -75,141 +99,90 @@ TEST(VehicleFile, the_right_side_is_the_mirror_image_unless_the_file_says_otherw
 }
 
 TEST(VehicleFile, mistakes_in_bodies_and_suspensions_name_their_key) {
-  const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
   const std::string s = "/axles/0/suspension";
-  EXPECT_EQ(h("/chassis/mass", -5), "key 'chassis.mass': is -5 kg, expected a number, above 0 up to 1e7 kg");
-  EXPECT_EQ(h("/chassis/inertia", {1, 2}),
-            "key 'chassis.inertia': has 2 values, expected 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)");
-  EXPECT_EQ(h("/chassis/inertia", {1, 2, 4}),
-            "key 'chassis.inertia': has the principal moments 1, 2, 4, expected none larger than the sum of "
-            "the other two");
-  EXPECT_EQ(h("/chassis/inertia", {1, 1, 1, 2, 0, 0}),
-            "key 'chassis.inertia': has the principal moment -1, expected positive ones");
-  EXPECT_EQ(h("/chasis", json::object()), "key 'chasis': is unknown, expected 'chassis'?");
-  EXPECT_EQ(h("/format_version", 2),
-            "key 'format_version': is 2: the file is newer than this program, expected at most 1");
-  EXPECT_EQ(h("/axles", json::array()), "key 'axles': has 0 entries, expected 1 to 16 axles");
-  EXPECT_EQ(h("/axles/1/name", "front"), "key 'axles[1].name': 'front' is taken, expected another name");
-  EXPECT_EQ(h("/axles/0/wheel", nullptr), "key 'axles[0].wheel': is missing, expected an object { }");
-  EXPECT_EQ(h("/axles/0/wheel/tire", nullptr), "key 'axles[0].wheel.tire': is missing, expected a text");
-  EXPECT_EQ(h("/axles/0/brake/torque", 0),
-            "key 'axles[0].brake.torque': is 0 N m, expected a number, above 0 up to 1e8 N m");
-  EXPECT_EQ(h((s + "/type").c_str(), "mcpherson"),
-            "key 'axles[0].suspension.type': is 'mcpherson', expected 'double_wishbone', 'trailing_arm', "
-            "'rigid_axle' or 'fixed'");
-  EXPECT_EQ(h((s + "/spindle/center").c_str(), {0, -0.9, 0}),
-            "key 'axles[0].suspension.spindle.center': lies at y = -0.9, expected a point on the left");
-  EXPECT_EQ(h((s + "/upright/center_of_mass").c_str(), {0, 0.7}),
-            "key 'axles[0].suspension.upright.center_of_mass': has 2 values, expected 3");
-  EXPECT_EQ(h((s + "/lower_arm/chassis_back").c_str(), {0.223, 0.307, 0}),
-            "key 'axles[0].suspension.lower_arm.chassis_back': is the point of "
-            "axles[0].suspension.lower_arm.chassis_front, expected another one");
-  EXPECT_EQ(h((s + "/lower_arm/upright").c_str(), {0, 0.307, 0}),
-            "key 'axles[0].suspension.lower_arm.upright': lies on the hinge, expected a point beside it");
-  EXPECT_EQ(h((s + "/tie_rod/outer").c_str(), {-0.250, 0.448, 0.054}),
-            "key 'axles[0].suspension.tie_rod.outer': is the point of axles[0].suspension.tie_rod.inner, "
-            "expected another one");
-  EXPECT_EQ(h((s + "/spring/on").c_str(), "chassis"),
-            "key 'axles[0].suspension.spring.on': is 'chassis', the body of its other end, expected 'lower_arm', "
-            "'upper_arm' or 'upright'");
-  EXPECT_EQ(h((s + "/spring/end").c_str(), {0.104, 0.510, 0.197}),
-            "key 'axles[0].suspension.spring.end': is the point of axles[0].suspension.spring.chassis, expected "
-            "another one");
-  EXPECT_EQ(h((s + "/spring/free_length").c_str(), 0),
-            "key 'axles[0].suspension.spring.free_length': is 0 m, expected a number, above 0 m");
-  EXPECT_EQ(h((s + "/spring/force").c_str(), nullptr),
-            "key 'axles[0].suspension.spring.force': is missing, expected a table of forces, or the key rate");
-  EXPECT_EQ(h((s + "/spring/rate").c_str(), 1e5),
-            "key 'axles[0].suspension.spring.force': is given beside rate, expected one of the two");
-  EXPECT_EQ(h((s + "/spring/force/2/0").c_str(), 0.01),
-            "key 'axles[0].suspension.spring.force[2]': begins with 0.01 after 0.02, expected a table that rises");
-  EXPECT_EQ(h((s + "/spring/force/2/1").c_str(), 100),
-            "key 'axles[0].suspension.spring.force[2]': ends with 100 after 3629.923, expected forces that rise");
-  EXPECT_EQ(h((s + "/spring/force").c_str(), json::array({json::array({0, 0})})),
-            "key 'axles[0].suspension.spring.force': has 1 points, expected at least two pairs [x, y]");
-  EXPECT_EQ(h((s + "/spring/stop/longest").c_str(), 0.1),
-            "key 'axles[0].suspension.spring.stop.longest': is 0.1, expected more than shortest, 0.15");
-  EXPECT_EQ(h((s + "/shock/rebound").c_str(), -1),
-            "key 'axles[0].suspension.shock.rebound': is -1 N s/m, expected a number, 0 to 1e8 N s/m");
-  EXPECT_EQ(h((s + "/shock/outer/blend_length").c_str(), 0.2),
-            "key 'axles[0].suspension.shock.outer.blend_length': is 0.2, expected at most longest - "
-            "shortest, 0.095");
+  expect_mistakes({
+      {"hmmwv.json", "/chassis/mass", -5, "is -5 kg, expected a number, above 0 up to 1e7 kg"},
+      {"hmmwv.json", "/chassis/inertia", {1, 2}, "has 2 values, expected 3 (xx, yy, zz) or 6 (xx, yy, zz, xy, xz, yz)"},
+      {"hmmwv.json", "/chassis/inertia", {1, 2, 4}, "has the principal moments 1, 2, 4"},
+      {"hmmwv.json", "/chassis/inertia", {1, 1, 1, 2, 0, 0}, "has the principal moment -1, expected positive ones"},
+      {"hmmwv.json", "/chasis", json::object(), "is unknown, expected 'chassis'?"},
+      {"hmmwv.json", "/format_version", 2, "is 2: the file is newer than this program, expected at most 1"},
+      {"hmmwv.json", "/axles", json::array(), "has 0 entries, expected 1 to 16 axles"},
+      {"hmmwv.json", "/axles/1/name", "front", "'front' is taken, expected another name"},
+      {"hmmwv.json", "/axles/0/wheel", nullptr, "is missing, expected an object { }"},
+      {"hmmwv.json", "/axles/0/wheel/tire", nullptr, "is missing, expected a text"},
+      {"hmmwv.json", "/axles/0/brake/torque", 0, "is 0 N m, expected a number, above 0 up to 1e8 N m"},
+      {"hmmwv.json", s + "/type", "mcpherson", "is 'mcpherson'"},
+      {"hmmwv.json", s + "/spindle/center", {0, -0.9, 0}, "lies at y = -0.9, expected a point on the left"},
+      {"hmmwv.json", s + "/upright/center_of_mass", {0, 0.7}, "has 2 values, expected 3"},
+      {"hmmwv.json",
+       s + "/lower_arm/chassis_back",
+       {0.223, 0.307, 0},
+       "is the point of axles[0].suspension.lower_arm.chassis_front"},
+      {"hmmwv.json", s + "/lower_arm/upright", {0, 0.307, 0}, "lies on the hinge, expected a point beside it"},
+      {"hmmwv.json", s + "/tie_rod/outer", {-0.250, 0.448, 0.054}, "is the point of axles[0].suspension.tie_rod.inner"},
+      {"hmmwv.json", s + "/spring/on", "chassis", "is 'chassis', the body of its other end"},
+      {"hmmwv.json", s + "/spring/end", {0.104, 0.510, 0.197}, "is the point of axles[0].suspension.spring.chassis"},
+      {"hmmwv.json", s + "/spring/free_length", 0, "is 0 m, expected a number, above 0 m"},
+      {"hmmwv.json", s + "/spring/force", nullptr, "is missing, expected a table of forces, or the key rate"},
+      {"hmmwv.json", s + "/spring/rate", 1e5, "is given beside rate", "axles[0].suspension.spring.force"},
+      {"hmmwv.json", s + "/spring/force/2/0", 0.01, "begins with 0.01 after 0.02",
+       "axles[0].suspension.spring.force[2]"},
+      {"hmmwv.json", s + "/spring/force/2/1", 100, "ends with 100 after 3629.923",
+       "axles[0].suspension.spring.force[2]"},
+      {"hmmwv.json", s + "/spring/force", json::array({json::array({0, 0})}), "has 1 points"},
+      {"hmmwv.json", s + "/spring/stop/longest", 0.1, "is 0.1, expected more than shortest, 0.15"},
+      {"hmmwv.json", s + "/shock/rebound", -1, "is -1 N s/m, expected a number, 0 to 1e8 N s/m"},
+      {"hmmwv.json", s + "/shock/outer/blend_length", 0.2, "is 0.2, expected at most longest - shortest, 0.095"},
+  });
 }
 
 TEST(VehicleFile, mistakes_in_steering_links_and_hosts_name_their_key) {
-  EXPECT_EQ(changed("hmmwv.json", "/axles/0/steering/type", "wire"),
-            "key 'axles[0].steering.type': is 'wire', expected 'pitman_arm' or 'rack'");
-  EXPECT_EQ(changed("hmmwv.json", "/axles/0/steering/left_angle_deg", 0),
-            "key 'axles[0].steering.left_angle_deg': is 0, expected -90 to 90, not 0: the arm at full lock "
-            "to the left");
-  EXPECT_EQ(changed("buggy.json", "/axles/0/steering/left_travel", 0),
-            "key 'axles[0].steering.left_travel': is 0, expected the travel at full lock to the left in m");
-  EXPECT_EQ(changed("buggy.json", "/axles/1/steering", shipped_text("buggy.json")["axles"][0]["steering"]),
-            "key 'axles[1].steering': is given for a suspension without tie rods, expected the type "
-            "double_wishbone");
-  EXPECT_EQ(changed("buggy.json", "/axles/1/suspension/links/1/mirrored", true),
-            "key 'axles[1].suspension.links': has 5 rods (a mirrored one counts twice), expected 4: the axle rises "
-            "and rolls");
-  EXPECT_EQ(changed("rover.json", "/axles/0/suspension/pivot_outer", {-0.10, 0.10, 0.03}),
-            "key 'axles[0].suspension.pivot_outer': is the point of axles[0].suspension.pivot_inner, expected "
-            "another one");
-  EXPECT_EQ(changed("rover.json", "/axles/2/suspension/on", "last"),
-            "key 'axles[2].suspension.on': is 'last', expected the name of an axle with trailing arms");
+  expect_mistakes({
+      {"hmmwv.json", "/axles/0/steering/type", "wire", "is 'wire', expected 'pitman_arm' or 'rack'"},
+      {"hmmwv.json", "/axles/0/steering/left_angle_deg", 0, "is 0"},
+      {"buggy.json", "/axles/0/steering/left_travel", 0, "is 0, expected the travel at full lock to the left in m"},
+      {"buggy.json", "/axles/1/steering", shipped_text("buggy.json")["axles"][0]["steering"],
+       "is given for a suspension without tie rods"},
+      {"buggy.json", "/axles/1/suspension/links/1/mirrored", true, "has 5 rods (a mirrored one counts twice)",
+       "axles[1].suspension.links"},
+      {"rover.json",
+       "/axles/0/suspension/pivot_outer",
+       {-0.10, 0.10, 0.03},
+       "is the point of axles[0].suspension.pivot_inner"},
+      {"rover.json", "/axles/2/suspension/on", "last", "is 'last', expected the name of an axle with trailing arms"},
+  });
 }
 
 TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
-  const auto h = [](const char* pointer, const json& value) { return changed("hmmwv.json", pointer, value); };
-  EXPECT_EQ(h("/driveline/gears/1/ratio", 0),
-            "key 'driveline.gears[1].ratio': is 0, expected another number: output over input");
-  EXPECT_EQ(h("/driveline/gearbox/ratios/1", 0),
-            "key 'driveline.gearbox.ratios[1]': is 0, expected a number above zero");
-  EXPECT_EQ(h("/driveline/gearbox/reverse", 0.1),
-            "key 'driveline.gearbox.reverse': is 0.1, expected a number, below 0");
-  EXPECT_EQ(h("/driveline/gearbox/up_rpm", 1000),
-            "key 'driveline.gearbox.up_rpm': is 1000, expected more than down_rpm, 1200");
-  EXPECT_EQ(h("/driveline/engine/torque", nullptr), "key 'driveline.engine.torque': is missing, expected a list");
-  EXPECT_EQ(h("/driveline/engine/torque/3/0", 850),
-            "key 'driveline.engine.torque[3]': begins with 850 after 900, expected a table that rises");
-  EXPECT_EQ(h("/driveline/engine/losses/3/1", 50),
-            "key 'driveline.engine.losses[3]': drives the engine with 50 N m, expected a torque against its speed");
-  EXPECT_EQ(h("/driveline/engine", nullptr), "key 'driveline.engine': is missing, expected an engine for the clutch");
-  EXPECT_EQ(h("/driveline/converter/torque_ratio/3/1", 2),
-            "key 'driveline.converter.torque_ratio[3]': gives 1.5 times the power that it takes, expected at "
-            "most 1");
-  EXPECT_EQ(h("/driveline/converter/capacity/5/0", 0.95),
-            "key 'driveline.converter.capacity': does not run from speed ratio 0 to 1, expected both ends");
-  EXPECT_EQ(h("/driveline/differentials/1/outputs", json::array({"front left"})),
-            "key 'driveline.differentials[1].outputs': has 1 shafts, expected two");
-  EXPECT_EQ(h("/driveline/differentials/1/share", 1.5),
-            "key 'driveline.differentials[1].share': is 1.5, expected a number, above 0 and below 1");
-  EXPECT_EQ(h("/driveline/shafts/2/inertia", 0),
-            "key 'driveline.shafts[2].inertia': is 0 kg m², expected a number, above 0 up to 1e6 kg m²");
-  EXPECT_EQ(h("/driveline/shafts/2/name", "crank"),
-            "key 'driveline.shafts[2].name': 'crank' is given twice, expected another name");
-  EXPECT_EQ(h("/driveline/shafts/2/carrier", "rear"),
-            "key 'driveline.shafts[2].carrier': is 'rear', expected 'chassis' or the name of a rigid axle");
-  EXPECT_EQ(h("/driveline/wheels/3/axle", "middle"),
-            "key 'driveline.wheels[3].axle': is 'middle', expected one of the axles 'front' or 'rear'");
-  EXPECT_EQ(h("/driveline/wheels/3/side", "left"),
-            "key 'driveline.wheels[3]': drives the wheel 'rear left' again, expected one shaft per wheel");
-  EXPECT_EQ(changed("buggy.json", "/driveline/wheels/1/shaft", "left"),
-            "key 'driveline.wheels[1].shaft': 'left' drives two wheels, expected a shaft for each");
-  EXPECT_EQ(changed("buggy.json", "/driveline/gears/0/in", "crankshaft"),
-            "key 'driveline.gears[0].in': is 'crankshaft', expected one of the shafts 'crank', 'clutch', "
-            "'propeller', "
-            "'pinion', 'box', 'left' or 'right'");
-  EXPECT_EQ(changed("buggy.json", "/driveline/gears/0/ratio", 2),
-            "key 'driveline.gears[0].ratio': is 2 between shafts in 'chassis' and 'rear', expected 1: gears "
-            "turn in one "
-            "housing");
-  EXPECT_EQ(changed("buggy.json", "/driveline/clutch/closed_rpm", 1000),
-            "key 'driveline.clutch.closed_rpm': is 1000, expected more than open_rpm, 1500");
-  EXPECT_EQ(changed("rover.json", "/driveline/motors/1/stall_torque", -1),
-            "key 'driveline.motors[1].stall_torque': is -1 N m, expected a number, above 0 up to 1e8 N m");
-  EXPECT_EQ(changed("rover.json", "/driveline/motors/1/axle", "front"),
-            "key 'driveline.motors[1].axle': 'front' is driven already, expected one drive per wheel");
-  EXPECT_EQ(changed("rover.json", "/driveline/motors", nullptr),
-            "key 'driveline.skid_steer': is given without motors, expected a motor at each wheel");
+  expect_mistakes({
+      {"hmmwv.json", "/driveline/gears/1/ratio", 0, "is 0, expected another number: output over input"},
+      {"hmmwv.json", "/driveline/gearbox/ratios/1", 0, "is 0, expected a number above zero"},
+      {"hmmwv.json", "/driveline/gearbox/reverse", 0.1, "is 0.1, expected a number, below 0"},
+      {"hmmwv.json", "/driveline/gearbox/up_rpm", 1000, "is 1000, expected more than down_rpm, 1200"},
+      {"hmmwv.json", "/driveline/engine/torque", nullptr, "is missing, expected a list"},
+      {"hmmwv.json", "/driveline/engine/torque/3/0", 850, "begins with 850 after 900", "driveline.engine.torque[3]"},
+      {"hmmwv.json", "/driveline/engine/losses/3/1", 50, "drives the engine with 50 N m", "driveline.engine.losses[3]"},
+      {"hmmwv.json", "/driveline/engine", nullptr, "is missing, expected an engine for the clutch"},
+      {"hmmwv.json", "/driveline/converter/torque_ratio/3/1", 2, "gives 1.5 times the power that it takes",
+       "driveline.converter.torque_ratio[3]"},
+      {"hmmwv.json", "/driveline/converter/capacity/5/0", 0.95, "does not run from speed ratio 0 to 1",
+       "driveline.converter.capacity"},
+      {"hmmwv.json", "/driveline/differentials/1/outputs", json::array({"front left"}), "has 1 shafts, expected two"},
+      {"hmmwv.json", "/driveline/differentials/1/share", 1.5, "is 1.5, expected a number, above 0 and below 1"},
+      {"hmmwv.json", "/driveline/shafts/2/inertia", 0, "is 0 kg m², expected a number, above 0 up to 1e6 kg m²"},
+      {"hmmwv.json", "/driveline/shafts/2/name", "crank", "'crank' is given twice, expected another name"},
+      {"hmmwv.json", "/driveline/shafts/2/carrier", "rear", "is 'rear'"},
+      {"hmmwv.json", "/driveline/wheels/3/axle", "middle", "is 'middle', expected one of the axles 'front' or 'rear'"},
+      {"hmmwv.json", "/driveline/wheels/3/side", "left", "drives the wheel 'rear left' again", "driveline.wheels[3]"},
+      {"buggy.json", "/driveline/wheels/1/shaft", "left", "'left' drives two wheels, expected a shaft for each"},
+      {"buggy.json", "/driveline/gears/0/in", "crankshaft", "is 'crankshaft'"},
+      {"buggy.json", "/driveline/gears/0/ratio", 2, "is 2 between shafts in 'chassis' and 'rear'"},
+      {"buggy.json", "/driveline/clutch/closed_rpm", 1000, "is 1000, expected more than open_rpm, 1500"},
+      {"rover.json", "/driveline/motors/1/stall_torque", -1, "is -1 N m, expected a number, above 0 up to 1e8 N m"},
+      {"rover.json", "/driveline/motors/1/axle", "front", "'front' is driven already, expected one drive per wheel"},
+      {"rover.json", "/driveline/motors", nullptr, "is given without motors", "driveline.skid_steer"},
+  });
 }
 
 // What is far beyond any vehicle is refused by the reader and by the schema, which editors use.
@@ -260,7 +233,7 @@ TEST(VehicleFile, magnitudes_beyond_any_vehicle_are_refused_as_the_schema_says) 
     document[json::json_pointer(one.pointer)] = one.value;
     EXPECT_EQ(complaint(document), one.expected);
     const std::string said = schema.complaint(document);
-    EXPECT_NE(said.find(one.of_schema), std::string::npos) << one.pointer << ": " << said;
+    EXPECT_TRUE(holds(said, one.of_schema)) << one.pointer << ": " << said;
     EXPECT_EQ(said.empty(), *one.of_schema == '\0') << one.pointer << ": " << said;
   }
 }
@@ -328,7 +301,7 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
     json document = shipped_text(one.file);
     document[json::json_pointer(one.pointer)] = one.value;
     if (*one.key == '\0') {
-      EXPECT_NE(complaint(document).find("radius of gyration"), std::string::npos);
+      EXPECT_TRUE(holds(complaint(document), "radius of gyration"));
       continue;
     }
     const vehicle::VehicleSpec spec = vehicle::read_vehicle(document, "car.json");
@@ -359,8 +332,7 @@ TEST(VehicleFile, a_clutch_beside_the_converter_is_named) {
   const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
   ASSERT_EQ(odd.size(), 1U);
   EXPECT_EQ(odd[0].first, "driveline.clutch");
-  EXPECT_NE(odd[0].second.find("from closed_rpm, 2000 rpm, on it bridges the converter"), std::string::npos)
-      << odd[0].second;
+  EXPECT_TRUE(holds(odd[0].second, "from closed_rpm, 2000 rpm, on it bridges the converter"));
 }
 
 TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {

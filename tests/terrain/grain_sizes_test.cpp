@@ -381,7 +381,7 @@ TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
   EXPECT_TRUE(
       holds(refusal([](auto& o) { o.size_spread = 0.7; }), "size_spread': is 0.7, expected a number, 0 to 0.6"));
   EXPECT_TRUE(holds(refusal([](auto& o) { o.size_spread = 0.3, o.law = "hertz_tanh"; }), "expected law 'mindlin'"));
-  EXPECT_TRUE(holds(refusal([](auto& o) { o.size_distribution = "gamma"; }), "expected uniform or normal"));
+  EXPECT_TRUE(holds(refusal([](auto& o) { o.size_distribution = "gamma"; }), "expected 'uniform' or 'normal'"));
 }
 
 /// The floor carries the weight, which follows from the volumes; solid fraction is that of a random packing.

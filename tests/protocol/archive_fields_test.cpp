@@ -5,6 +5,7 @@
 
 #include "protocol/messages.hpp"
 #include "tests/protocol/fields_of.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow {
 namespace {
@@ -67,13 +68,7 @@ void visit_fields(Visit&& visit, FieldsOf<LaterPoint> auto& s) {
 
 template <class F>
 std::string refusal(F&& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::io);
-    return error.what();
-  }
-  return "";
+  return furrow::refusal(ExitCode::io, [&] { f(); });
 }
 
 TEST(ArchiveFields, every_kind_of_field_comes_back_under_its_own_name) {

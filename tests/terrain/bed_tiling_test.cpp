@@ -22,6 +22,7 @@
 #include "terrain/dem/beds/bed_tiling.hpp"
 #include "terrain/dem/close_pairs.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -216,16 +217,10 @@ TEST_F(Tiled, a_tile_as_large_as_the_bin_is_the_bed_settled_whole) {
 
 TEST_F(Tiled, too_small_pieces_are_refused_by_key) {
   options_.tile = 0.3;
-  try {
-    prepare_bed(options_, {});
-    ADD_FAILURE() << "not refused";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    EXPECT_EQ(std::string(error.what()),
-              "scenario: key 'terrain.tile': is 0.3 m and gives 3 × 1 pieces of 0.3 × 0.42 m, expected "
-              "pieces of at "
-              "least 0.4 × 0.4 m for these grains");
-  }
+  EXPECT_EQ(refusal(ExitCode::bad_input, [&] { prepare_bed(options_, {}); }),
+            "scenario: key 'terrain.tile': is 0.3 m and gives 3 × 1 pieces of 0.3 × 0.42 m, expected "
+            "pieces of at "
+            "least 0.4 × 0.4 m for these grains");
 }
 
 TEST_F(Tiled, a_signal_stops_every_part_of_the_work) {

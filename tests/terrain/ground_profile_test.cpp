@@ -9,6 +9,7 @@
 
 #include "protocol/core/error.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
+#include "tests/refusal.hpp"
 #include "tests/terrain/ground_push.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
@@ -18,13 +19,7 @@ namespace {
 const ProfilePoints kCurb{{1.0, 0.0}, {1.0, 0.2}};
 
 std::string complaint(const ProfilePoints& points) {
-  try {
-    check_profile(points, "s.json", "terrain.profile");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "";
+  return refusal(ExitCode::bad_input, [&] { check_profile(points, "s.json", "terrain.profile"); });
 }
 
 TEST(GroundProfile, heights_and_means_of_a_curb) {
@@ -78,8 +73,7 @@ TEST(GroundProfile, bad_points_are_refused_by_their_number) {
             "s.json: key 'terrain.profile.1.0': is -1 m, expected 0 m, as in the entry before, or more");
   EXPECT_EQ(complaint({{0, 0}, {1, 2}, {1, 2}}),
             "s.json: key 'terrain.profile.2': is [1, 2] m as the entry before, expected another point");
-  EXPECT_NE(complaint({{0, 0}, {0, 1}, {0, 0.5}}).find("a third time, expected two entries at most"),
-            std::string::npos);
+  EXPECT_TRUE(holds(complaint({{0, 0}, {0, 1}, {0, 0.5}}), "a third time, expected two entries at most"));
 }
 
 TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "protocol/core/constants.hpp"
+#include "tests/refusal.hpp"
 #include "tests/terrain/ground_push.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
@@ -474,7 +475,7 @@ TEST(RigidGround, refuses_bad_options_and_surfaces) {
   ContactSums sums;
   const Outcome status = ground->advance({&broken, 1}, 4e-5, 1, {&forces, 1}, {&sums, 1});
   EXPECT_FALSE(status.ok);
-  EXPECT_NE(status.detail.find("vertex 3"), std::string::npos) << status.message("terrain");
+  EXPECT_TRUE(holds(status.detail, "vertex 3")) << status.message("terrain");
 }
 
 }  // namespace

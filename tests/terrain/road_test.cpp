@@ -17,6 +17,7 @@
 #include "terrain/rigid/roads/iso_8608.hpp"
 #include "terrain/rigid/roads/open_crg.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -218,19 +219,16 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
        "holds 8 numbers, expected 9: the file is cut short"}};
   for (const auto& [bytes, words] : wrong) {
     const std::filesystem::path file = put("wrong.crg", bytes);
-    EXPECT_NE(refusal([&] { read_open_crg(file); }).find(words), std::string::npos)
-        << refusal([&] { read_open_crg(file); }) << "\n"
-        << bytes;
+    EXPECT_TRUE(holds(refusal([&] { read_open_crg(file); }), words)) << refusal([&] { read_open_crg(file); }) << "\n"
+                                                                     << bytes;
   }
   const std::filesystem::path file =
       put("road.crg", kRoad + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
-  EXPECT_NE(refusal([&] { read_road(file, 0.75); }).find("expected terrain.profile_v from -0.5 to 0.5 m"),
-            std::string::npos);
-  EXPECT_NE(refusal([&] { read_road(file, -0.2); }).find("has no height at u = 2 m, v = -0.2 m"), std::string::npos);
+  EXPECT_TRUE(holds(refusal([&] { read_road(file, 0.75); }), "expected terrain.profile_v from -0.5 to 0.5 m"));
+  EXPECT_TRUE(holds(refusal([&] { read_road(file, -0.2); }), "has no height at u = 2 m, v = -0.2 m"));
   const std::filesystem::path high =
       put("high.crg", kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
-  EXPECT_NE(refusal([&] { read_road(high, 0.0); }).find("has the height 9e+08 m at u = 3 m, v = 0 m"),
-            std::string::npos);
+  EXPECT_TRUE(holds(refusal([&] { read_road(high, 0.0); }), "has the height 9e+08 m at u = 3 m, v = 0 m"));
 }
 
 TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
@@ -248,7 +246,7 @@ TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
   for (const auto& [text, words] : wrong) {
     const std::filesystem::path file = put("wrong.csv", text);
     const std::string told = refusal([&] { read_road(file, 0.0); });
-    EXPECT_NE(told.find(words), std::string::npos) << told;
+    EXPECT_TRUE(holds(told, words));
   }
 }
 

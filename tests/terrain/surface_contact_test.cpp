@@ -21,30 +21,6 @@ using testing::Surface;
 constexpr double kRadius = 6e-3;  // m
 constexpr double kDegree = M_PI / 180.0;
 
-/// Largest |ΔF| between neighbouring samples of a straight path, over the plane's force at `overlap`.
-struct PathCheck {
-  double largest_jump = 0.0;
-  double largest_force = 0.0, smallest_force = 1e300;
-  int most_hits = 0;
-};
-
-PathCheck follow(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, int samples, double overlap) {
-  PathCheck result;
-  const double scale = std::pow(overlap, 1.5);
-  std::array<SurfaceHit, kMaxSurfaceHits> hit;
-  Vec3 before = Vec3::Zero();
-  for (int i = 0; i <= samples; ++i) {
-    const Vec3 centre = from + (to - from) * i / samples;
-    const Vec3 force = testing::hertz_force(surface, centre, kRadius) / scale;
-    if (i > 0) result.largest_jump = std::max(result.largest_jump, (force - before).norm());
-    result.largest_force = std::max(result.largest_force, force.norm());
-    result.smallest_force = std::min(result.smallest_force, force.norm());
-    result.most_hits = std::max(result.most_hits, surface.hits(centre, kRadius, hit));
-    before = force;
-  }
-  return result;
-}
-
 /// A jump survives bisection, a slope does not: the intervals of a sampling where the force changes most are halved
 /// until they are a millionth of their length, always keeping the half that changes more.
 void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, double overlap,
@@ -133,7 +109,7 @@ TEST(SurfaceContact, is_one_on_flat_fans_of_any_count) {
 }
 
 TEST(SurfaceContact, changes_without_a_jump_across_creases_and_tends_to_the_plane) {
-  for (double degrees : {-20.0, -5.0, -1.0, -0.1, -0.01, 0.01, 0.1, 1.0, 5.0, 20.0})
+  for (double degrees : {-20.0, -5.0, -1.0, -0.1, -0.01, 1e-5, 1e-3, 0.01, 0.1, 1.0, 5.0, 20.0})
     for (double share : {0.005, 0.05, 0.2}) {
       const double half = 0.5 * degrees * kDegree, overlap = share * kRadius;  // crease angle = 2 × slope
       const testing::Surface bent = testing::crease(half);
@@ -150,18 +126,6 @@ TEST(SurfaceContact, changes_without_a_jump_across_creases_and_tends_to_the_plan
         EXPECT_NEAR(above, degrees > 0.0 ? 1.0 / std::cos(half) : ridge, 1e-6) << what;
       }
     }
-}
-
-TEST(SurfaceContact, of_a_nearly_flat_valley_is_not_doubled) {
-  for (double degrees : {1e-5, 1e-3, 0.01, 0.1, 1.0, 3.0}) {
-    const double half = 0.5 * degrees * kDegree, overlap = 0.02 * kRadius;
-    const SurfaceCollider surface = testing::crease(half).collider(kRadius);
-    const PathCheck path = follow(surface, {-1e-3, 0.0, (kRadius - overlap) / std::cos(half)},
-                                  {1e-3, 1e-4, (kRadius - overlap) / std::cos(half)}, 4000, overlap);
-    const double deepest = std::pow(1.0 + 1e-3 * std::sin(half) / overlap, 1.5);  // at the path's ends
-    EXPECT_LT(path.largest_force, 1.001 * std::max(1.0 / std::cos(half), deepest)) << degrees;
-    EXPECT_GT(path.smallest_force, 0.999) << degrees;
-  }
 }
 
 TEST(SurfaceContact, counts_both_walls_of_a_right_angle) {
@@ -190,11 +154,6 @@ TEST(SurfaceContact, changes_without_a_jump_over_warped_quads_and_fans) {
       const Vec3 from(0.02 * any(random), 0.02 * any(random), kRadius - overlap);
       const Vec3 to(from.x() + 0.01 * any(random), from.y() + 0.01 * any(random), kRadius - overlap);
       expect_continuous(surface, from, to, overlap, "warped by " + std::to_string(rough));
-      if (rough <= 1e-6) {
-        const PathCheck flat = follow(surface, from, to, 500, overlap);
-        EXPECT_LT(flat.largest_force, 1.01);
-        EXPECT_GT(flat.smallest_force, 0.99);
-      }
     }
   }
   for (int count : {4, 5, 6, 8})

@@ -1,4 +1,5 @@
 #include "tire/tire_magnitudes.hpp"
+#include "tests/refusal.hpp"
 #include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ TEST(TireMagnitudes, another_unit_is_named_with_its_key) {
   for (const auto& [key, what] : unlikely_values(tire)) keys += key + " ";
   for (const char* key : {"density", "young_modulus", "sections.tread.layers.0.thickness",
                           "sections.bead.layers.0.angle_deg", "rim_width", "pressure", "tread_mass_per_area"})
-    EXPECT_NE(keys.find(key), std::string::npos) << key << " is not among " << keys;
+    EXPECT_TRUE(holds(keys, key)) << key << " is not among " << keys;
 }
 
 TEST(TireMagnitudes, what_is_odd_about_many_layers_is_said_once) {

@@ -1,5 +1,6 @@
 // Tables, springs with stops and shock absorbers: values, slopes, integrals and energies.
 #include "vehicle/multibody/strut_laws.hpp"
+#include "tests/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -76,10 +77,10 @@ TEST(Table, wrong_tables_are_refused_with_what_was_expected) {
     }
     return std::string("accepted");
   };
-  EXPECT_NE(text_of([] { Table("map", {{0, 1}}); }).find("two points"), std::string::npos);
-  EXPECT_NE(text_of([] { Table("map", {{0, 1}, {2, 1}, {2, 3}}); }).find("expected rising"), std::string::npos);
-  EXPECT_NE(text_of([] { Table("map", {{0, 1}, {2, std::nan("")}}); }).find("finite"), std::string::npos);
-  EXPECT_NE(text_of([] { Table::odd("map", {{-1, 1}, {2, 3}}); }).find("expected a positive"), std::string::npos);
+  EXPECT_TRUE(holds(text_of([] { Table("map", {{0, 1}}); }), "two points"));
+  EXPECT_TRUE(holds(text_of([] { Table("map", {{0, 1}, {2, 1}, {2, 3}}); }), "expected rising"));
+  EXPECT_TRUE(holds(text_of([] { Table("map", {{0, 1}, {2, std::nan("")}}); }), "finite"));
+  EXPECT_TRUE(holds(text_of([] { Table::odd("map", {{-1, 1}, {2, 3}}); }), "expected a positive"));
 }
 
 namespace {

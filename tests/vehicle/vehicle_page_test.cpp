@@ -1,5 +1,6 @@
 // What is told of a vehicle before it drives: counts, masses, how it stands; vibrations on tires that do not deflect.
 #include "vehicle/analysis/vehicle_page.hpp"
+#include "tests/refusal.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -44,7 +45,7 @@ TEST(VehiclePage, of_the_hmmwv_has_its_counts_masses_and_stops) {
   const std::string text = vehicle::page_text(page);
   for (const char* part :
        {"19, 100 rows, 14 degrees of freedom", "12, 1 more degree", "4 × a tire, 25.00 kg each", "front left, spring"})
-    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+    EXPECT_TRUE(holds(text, part)) << part << "\n" << text;
 }
 
 // A rigid tire's vibration is that of the ground that was put under it: four times the stiffness, twice as high.
@@ -129,9 +130,8 @@ TEST(VehiclePage, springs_that_rest_in_their_stops_are_named_with_how_far) {
   const auto found = stops(spec);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].first, "axles[1].suspension.spring.stop");
-  EXPECT_NE(found[0].second.find("holds the wheel 'rear left' at rest: its spring is "), std::string::npos)
-      << found[0].second;
-  EXPECT_NE(found[0].second.find(" mm beyond shortest, and pushes with "), std::string::npos) << found[0].second;
+  EXPECT_TRUE(holds(found[0].second, "holds the wheel 'rear left' at rest: its spring is "));
+  EXPECT_TRUE(holds(found[0].second, " mm beyond shortest, and pushes with "));
 }
 
 TEST(VehiclePage, of_a_vehicle_that_cannot_stand_is_an_error_of_its_file) {
@@ -151,7 +151,5 @@ TEST(VehiclePage, of_a_vehicle_that_cannot_stand_is_an_error_of_its_file) {
   // Without its springs the rigid axle finds an equilibrium with the chassis on the ground.
   for (vehicle::CornerSpec& corner : fallen.axles[1].corners)
     std::get<vehicle::RigidAxleSpec>(corner.suspension).spring.reset();
-  EXPECT_NE(complaint(fallen).find("key 'axles[1].suspension': lets the wheel 'rear left' stand 0.4"),
-            std::string::npos)
-      << complaint(fallen);
+  EXPECT_TRUE(holds(complaint(fallen), "key 'axles[1].suspension': lets the wheel 'rear left' stand 0.4"));
 }

@@ -1,5 +1,6 @@
 // Tables of sweeps on hard ground, and what is written of them in the layout of TYDEX.
 #include "tire/handling/sweep_table.hpp"
+#include "tests/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,23 +59,18 @@ TEST(SweepTable, wrong_tables_are_refused_by_line) {
   const auto changed = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };
-  EXPECT_NE(complaint(changed(head, "iso_w.force_N.1", "x") + rows).find("line 1': has no column 'iso_w.force_N.1'"),
-            std::string::npos);
-  EXPECT_NE(complaint(changed(head, "rig.mode", "x") + rows).find("has no column 'rig.mode'"), std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "1500", "nan")).find("line 3': iso_w.force_N.0 is 'nan'"),
-            std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "3000", "-3000")).find("line 3': has a load"), std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "0.3415", "1e-300"))
-                .find("line 3': has a load of 3000 N and a rolling radius of 1e-300 m"),
-            std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "3000", "1e300")).find("line 3': has a load of 1e+300 N"),
-            std::string::npos);
-  EXPECT_NE(complaint(head + changed(rows, "1500,", "")).find("line 3': has 12 values, expected 13"),
-            std::string::npos);
-  EXPECT_NE(
-      complaint(head + "done,fixed_speed,1500,0,3000,0,-10,0,0,0,0.342,0.3415,\n").find("expected one at each load"),
-      std::string::npos);
-  EXPECT_NE(complaint(head).find("expected one at each load"), std::string::npos);
+  EXPECT_TRUE(
+      holds(complaint(changed(head, "iso_w.force_N.1", "x") + rows), "line 1': has no column 'iso_w.force_N.1'"));
+  EXPECT_TRUE(holds(complaint(changed(head, "rig.mode", "x") + rows), "has no column 'rig.mode'"));
+  EXPECT_TRUE(holds(complaint(head + changed(rows, "1500", "nan")), "line 3': iso_w.force_N.0 is 'nan'"));
+  EXPECT_TRUE(holds(complaint(head + changed(rows, "3000", "-3000")), "line 3': has a load"));
+  EXPECT_TRUE(holds(complaint(head + changed(rows, "0.3415", "1e-300")),
+                    "line 3': has a load of 3000 N and a rolling radius of 1e-300 m"));
+  EXPECT_TRUE(holds(complaint(head + changed(rows, "3000", "1e300")), "line 3': has a load of 1e+300 N"));
+  EXPECT_TRUE(holds(complaint(head + changed(rows, "1500,", "")), "line 3': has 12 values, expected 13"));
+  EXPECT_TRUE(
+      holds(complaint(head + "done,fixed_speed,1500,0,3000,0,-10,0,0,0,0.342,0.3415,\n"), "expected one at each load"));
+  EXPECT_TRUE(holds(complaint(head), "expected one at each load"));
 }
 
 /// Names in columns 1 to 10, units in 41 to 50, as many numbers as channels [TYDEX 1.3].

@@ -1,5 +1,6 @@
 // Driver files: what they become, which are refused and with which words.
 #include "vehicle/driver/read_driver.hpp"
+#include "tests/refusal.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -33,15 +34,9 @@ class DriverFile : public ::testing::Test {
     return read_driver(write("driver.json", "{\"format_version\": 1" + sections + "}"));
   }
   void expect_refused(const std::filesystem::path& file, const std::string& message) const {
-    try {
-      read_driver(file);
-      ADD_FAILURE() << "read, expected: " << message;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input);
-      const std::string text = error.what();
-      EXPECT_TRUE(text.starts_with(folder_.path().string())) << text;
-      EXPECT_NE(text.find(message), std::string::npos) << text << "\nexpected: " << message;
-    }
+    const std::string text = refusal(ExitCode::bad_input, [&] { read_driver(file); });
+    EXPECT_TRUE(text.starts_with(folder_.path().string())) << text;
+    EXPECT_TRUE(holds(text, message)) << text << "\nexpected: " << message;
   }
   TemporaryFolder folder_;
 };

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "small_tire.hpp"
-#include "tests/refusal.hpp"
 
 namespace furrow::test {
 namespace {
@@ -122,8 +121,8 @@ TEST(RimClearance, a_tire_pressed_down_to_its_rim_stops_with_node_and_clearance)
     status = tire.advance(t, ground_forces(tire), 1);
   }
   EXPECT_EQ(status.what, "reached its rim") << status.message("tire");
-  EXPECT_TRUE(holds(status.detail, "clearance -"));
-  EXPECT_TRUE(holds(status.detail, "column"));
+  EXPECT_NE(status.detail.find("clearance -"), std::string::npos) << status.detail;
+  EXPECT_NE(status.detail.find("column"), std::string::npos) << status.detail;
   EXPECT_LT(rim.position.z(), file.rim_radius + 0.06);  // the crown buckles upwards, off the ground
   EXPECT_GT(rim.position.z(), file.rim_radius - 0.01);
 }
@@ -139,7 +138,7 @@ TEST(AncfTireLimits, a_force_that_is_not_finite_is_named_and_changes_nothing) {
   t.extend(t.end(), 1e-4);
   const Outcome status = tire.advance(t, f, 1);
   EXPECT_FALSE(status.ok);
-  EXPECT_TRUE(holds(status.message("tire"), "vertex 17"));
+  EXPECT_NE(status.message("tire").find("vertex 17"), std::string::npos) << status.message("tire");
   EXPECT_EQ(tire.integrator().q(), before);
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "small_tire.hpp"
-#include "tests/refusal.hpp"
 
 namespace furrow::test {
 namespace {
@@ -72,22 +71,32 @@ TEST(AncfTire, mass_matrix_and_mass_properties_agree_for_rigid_velocity_fields) 
   EXPECT_NEAR(tire.diagnostics().kinetic_energy, kinetic, 1e-12 * kinetic);
 }
 
-TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim_along_any_gravity) {
-  for (const Vec3& gravity : {Vec3(0.0, 0.0, -9.81), Vec3(4.0, 3.0, -8.0)}) {
-    tire::ShellIntegratorParams params;
-    params.gravity = gravity;
-    tire::AncfTire tire(small_file(), params);
-    RimState rim;
-    tire.place(rim);
-    tire::RimTrajectory t(rim);
-    for (int n = 0; n < 600; ++n) {
-      t.extend(rim, 2e-4);
-      ASSERT_TRUE(tire.advance(t, {}, 1).ok);
-    }
-    const Vec3 off = tire.spindle_wrench().force - tire.mass_properties().mass * gravity;
-    EXPECT_LT(off.norm(), 0.3);  // N
-    EXPECT_LT(off.cross(gravity.normalized()).norm(), gravity.x() == 0.0 ? 0.05 : 0.3);
+TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim) {
+  tire::AncfTire tire(small_file());
+  RimState rim;
+  tire.place(rim);
+  tire::RimTrajectory t(rim);
+  for (int n = 0; n < 600; ++n) {
+    t.extend(rim, 2e-4);
+    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
   }
+  const Wrench w = tire.spindle_wrench();
+  EXPECT_NEAR(w.force.z(), -9.81 * tire.mass_properties().mass, 0.3);  // N
+  EXPECT_LT(std::hypot(w.force.x(), w.force.y()), 0.05);
+}
+
+TEST(AncfTire, inflated_tire_at_rest_hangs_its_weight_on_the_rim_along_a_tilted_gravity) {
+  tire::ShellIntegratorParams params;
+  params.gravity = Vec3(4.0, 3.0, -8.0);
+  tire::AncfTire tire(small_file(), params);
+  RimState rim;
+  tire.place(rim);
+  tire::RimTrajectory t(rim);
+  for (int n = 0; n < 600; ++n) {
+    t.extend(rim, 2e-4);
+    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
+  }
+  EXPECT_LT((tire.spindle_wrench().force - tire.mass_properties().mass * params.gravity).norm(), 0.3);  // N
 }
 
 TEST(AncfTire, restored_tire_continues_bit_for_bit) {
@@ -166,7 +175,7 @@ TEST(AncfTire, a_blow_that_cannot_be_integrated_is_a_status_with_advice) {
   EXPECT_FALSE(status.ok);
   const std::string message = status.message("tire 0", " at t = 0.1 s, step 7");
   EXPECT_EQ(message.rfind("tire 0 did not converge at t = 0.1 s, step 7: residual ", 0), 0u) << message;
-  EXPECT_TRUE(holds(message, "; try "));
+  EXPECT_NE(message.find("; try "), std::string::npos) << message;
 }
 
 TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) {

@@ -38,6 +38,32 @@ TEST(GrainSolver, restitution_is_the_one_asked_for) {
     }
 }
 
+TEST(GrainSolver, wall_restitution_is_the_one_asked_for) {
+  FewGrains few;
+  few.options.restitution = 0.6;
+  GrainSolver s = few.make({{0.3, 0, 0.00601}});
+  set_velocity(s, 0, {0, 0, -0.5});
+  for (int k = 0; k < 20000 && velocity(s, 0).z() < 0.2999; ++k) s.step(1e-6);
+  EXPECT_NEAR(velocity(s, 0).z(), 0.3, 1e-3);
+}
+
+TEST(GrainSolver, sliding_sphere_rolls_at_five_sevenths) {
+  for (const char* law : {"mindlin", "hertz_tanh"}) {
+    FewGrains few;
+    few.options.law = law;
+    few.options.friction = 0.3;
+    few.options.friction_velocity_scale = 500.0;
+    few.gravity = kStandardGravity;
+    const double load = grain_properties(kRadius, 2500).mass * kStandardGravity;
+    const double delta = std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+    GrainSolver s = few.make({{0.1, 0, kRadius - delta}});
+    set_velocity(s, 0, {0.4, 0, 0});
+    for (int k = 0; k < 20000; ++k) s.step(1e-5);
+    EXPECT_NEAR(velocity(s, 0).x(), 0.4 * 5.0 / 7.0, 1e-3) << law;
+    EXPECT_NEAR(spin(s, 0).y() * kRadius, velocity(s, 0).x(), 1e-3) << law;
+  }
+}
+
 TEST(GrainSolver, restitution_zero_takes_the_limit) {
   FewGrains few;
   few.options.restitution = 0.0;

@@ -112,6 +112,29 @@ TEST(PlanarWheel, the_link_holds_directions_and_tells_what_it_resists) {
   EXPECT_NEAR(force / steps, 2000.0 + wheel.mass() * kGravity, 0.05 * 2000.0);
 }
 
+TEST(PlanarWheel, it_climbs_a_curb_which_it_touches_before_its_centre_is_there) {
+  PlanarParams p = stiff_wheel();
+  p.tire = {300.0, 1e6, 0.4, 500.0};
+  PlanarWheel wheel(p, PlanarGround::curb(0.1, 5.0), {-0.7, 0.495}, {2.0, 0.0}, 4.0, 100.0, kGravity);
+  PlanarLink link;
+  link.hold_x = true, link.velocity_x = 2.0;
+  wheel.link(link);
+  bool corner = false;
+  double first = 0.0, highest = 0.0;
+  for (int k = 0; wheel.centre().x < 0.7; ++k) {
+    ASSERT_TRUE(wheel.advance().ok) << wheel.centre().x;
+    for (const PlanarTouch& t : wheel.contact().touches()) corner = corner || t.b >= 0;
+    const bool on_curb = std::any_of(wheel.contact().touches().begin(), wheel.contact().touches().end(),
+                                     [](const PlanarTouch& t) { return t.push_x < -0.1; });
+    if (on_curb && first == 0.0) first = wheel.centre().x;
+    highest = std::max(highest, wheel.centre().z);
+  }
+  // A rigid circle touches the edge at √(R² − (R − h)²) = 0.3 m before it.
+  EXPECT_NEAR(first, -0.3, 0.05);
+  EXPECT_TRUE(corner);
+  EXPECT_GT(highest, 0.58);
+}
+
 TEST(PlanarWheel, a_wheel_that_is_crushed_says_so) {
   PlanarParams p = stiff_wheel();
   p.tire = {300.0, 1e5, 0.4, 0.0};

@@ -1,6 +1,7 @@
 #include "vehicle/spec/read_vehicle.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,6 +9,7 @@
 #include "protocol/files/json_text.hpp"
 #include "vehicle/spec/spec_reader.hpp"
 #include "vehicle/spec/spec_rules.hpp"
+#include "vehicle/spec/suspension_abilities.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -65,10 +67,10 @@ CornerSpec read_right(JsonReader& reader, const CornerSpec& left, const Vec3& or
   for (const char* key : {"suspension", "wheel", "brake"}) right.skip(key);
   if (right.has("suspension")) {
     const auto suspension = read_type<SuspensionSpec>(right.child("suspension"));
-    if (std::holds_alternative<RigidAxleSpec>(left.suspension) || suspension.index() != left.suspension.index())
-      right.fail("suspension.type", std::holds_alternative<RigidAxleSpec>(left.suspension)
-                                        ? "is given for a rigid axle, expected that of the whole axle alone"
-                                        : "is not the left side's, expected the same");
+    const bool whole = can(kHasHousing, left.suspension);
+    if (whole || suspension.index() != left.suspension.index())
+      right.fail("suspension.type", whole ? "is given for a rigid axle, expected that of the whole axle alone"
+                                          : "is not the left side's, expected the same");
     check_side(right, suspension, kRight);
     corner.suspension = moved(suspension, origin);
   }
@@ -92,8 +94,9 @@ AxleSpec read_axle(JsonReader reader) {
     auto steering = read_type<SteeringSpec>(reader.child("steering"));
     // A Pitman arm's points are in axes of its own, its origin is in the vehicle's.
     axle.steering = std::holds_alternative<RackSpec>(steering) ? moved(steering, axle.origin) : steering;
-    if (!std::holds_alternative<DoubleWishboneSpec>(axle.corners[kLeft].suspension))
-      reader.fail("steering", "is given for a suspension without tie rods, expected the type double_wishbone");
+    if (!can(kHasTieRods, axle.corners[kLeft].suspension))
+      reader.fail("steering", fmt::format("is given for a suspension without tie rods, expected the type {}",
+                                          fmt::join(kinds_that_can(kHasTieRods), " or ")));
   }
   reader.finish();
   return axle;
@@ -119,7 +122,7 @@ void check_hosts(const VehicleSpec& vehicle, const JsonReader& reader) {
     const auto* fixed = std::get_if<FixedSpec>(&vehicle.axles[k].corners[kLeft].suspension);
     if (fixed == nullptr || !fixed->on) continue;
     const int host = vehicle.axle(*fixed->on);
-    if (host < 0 || !std::holds_alternative<TrailingArmSpec>(vehicle.axles[host].corners[kLeft].suspension))
+    if (host < 0 || !can(kHasArms, vehicle.axles[host].corners[kLeft].suspension))
       reader.fail(fmt::format("axles[{}].suspension.on", k),
                   "is '" + *fixed->on + "', expected the name of an axle with trailing arms");
   }

@@ -9,6 +9,7 @@
 
 #include "protocol/files/json_text.hpp"
 #include "vehicle/spec/spec_rules.hpp"
+#include "vehicle/spec/suspension_abilities.hpp"
 #include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
@@ -105,8 +106,7 @@ class ShaftGraph {
       const ShaftSpec& shaft = spec_.shafts[i];
       names_.push_back(shaft.name);
       const int axle = vehicle_.axle(shaft.carrier);
-      const bool housing =
-          axle >= 0 && std::holds_alternative<RigidAxleSpec>(vehicle_.axles[axle].corners[kLeft].suspension);
+      const bool housing = axle >= 0 && can(kHasHousing, vehicle_.axles[axle].corners[kLeft].suspension);
       if (shaft.carrier != "chassis" && !housing)
         reader_.fail(fmt::format("shafts[{}].carrier", i),
                      "is '" + shaft.carrier + "', expected 'chassis' or the name of a rigid axle");

@@ -1,6 +1,7 @@
 #include "vehicle/spec/read_vehicle.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "vehicle/spec/part_keys.hpp"
 #include "vehicle/spec/spec_reader.hpp"
 #include "vehicle/spec/spec_rules.hpp"
+#include "vehicle/spec/suspension_abilities.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -86,9 +88,9 @@ CornerSpec right_corner(const AxleKeys& axle, JsonReader reader) {
   if (!axle.right) return corner;
   const JsonReader right = reader.child("right");
   if (axle.right->suspension) {
-    const bool rigid = std::holds_alternative<RigidAxleSpec>(axle.suspension);
-    if (rigid || axle.right->suspension->index() != axle.suspension.index())
-      right.fail("suspension.type", rigid ? "is given for a rigid axle, expected that of the whole axle alone"
+    const bool whole = can(kHasHousing, axle.suspension);
+    if (whole || axle.right->suspension->index() != axle.suspension.index())
+      right.fail("suspension.type", whole ? "is given for a rigid axle, expected that of the whole axle alone"
                                           : "is not the left side's, expected the same");
     check_side(right, *axle.right->suspension, kRight);
     corner.suspension = moved(*axle.right->suspension, axle.origin);
@@ -110,8 +112,9 @@ AxleSpec read_axle(const JsonReader& reader) {
   // A Pitman arm's points are in axes of its own, its origin is in the vehicle's.
   axle.steering =
       std::holds_alternative<RackSpec>(*keys.steering) ? moved(*keys.steering, keys.origin) : *keys.steering;
-  if (!std::holds_alternative<DoubleWishboneSpec>(keys.suspension))
-    reader.fail("steering", "is given for a suspension without tie rods, expected the type double_wishbone");
+  if (!can(kHasTieRods, keys.suspension))
+    reader.fail("steering", fmt::format("is given for a suspension without tie rods, expected the type {}",
+                                        fmt::join(kinds_that_can(kHasTieRods), " or ")));
   return axle;
 }
 
@@ -135,7 +138,7 @@ void check_hosts(const VehicleSpec& vehicle, const JsonReader& reader) {
     const auto* fixed = std::get_if<FixedSpec>(&vehicle.axles[k].corners[kLeft].suspension);
     if (fixed == nullptr || !fixed->on) continue;
     const int host = vehicle.axle(*fixed->on);
-    if (host < 0 || !std::holds_alternative<TrailingArmSpec>(vehicle.axles[host].corners[kLeft].suspension))
+    if (host < 0 || !can(kHasArms, vehicle.axles[host].corners[kLeft].suspension))
       reader.fail(fmt::format("axles[{}].suspension.on", k),
                   "is '" + *fixed->on + "', expected the name of an axle with trailing arms");
   }

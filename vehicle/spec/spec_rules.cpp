@@ -7,18 +7,13 @@
 #include <cmath>
 
 #include "protocol/files/json_text.hpp"
+#include "vehicle/spec/part_rules.hpp"
 #include "vehicle/spec/value_rules.hpp"
 
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kSamePoint = 1e-6;      // m
 constexpr double kMostGyration = 100.0;  // radius of gyration of a body, m: that of points from their origin
-
-void apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key, const Vec3& other) {
-  if (!((point - other).norm() > kSamePoint))
-    reader.fail(key, fmt::format("is the point of {}, expected another one", reader.full(other_key)));
-}
 
 // A body has moments of inertia of which none is larger than the sum of the other two; equal for flat bodies.
 void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
@@ -58,13 +53,20 @@ void check_part(const JsonReader& reader, const char* strut, const std::optional
   reader.fail(key,
               *on == "chassis" ? "is 'chassis', the body of its other end" + expected : "is '" + *on + "'" + expected);
 }
-template <class T>
-void check_struts(const T& s, const JsonReader& reader, const std::vector<std::string>& parts) {
-  if (s.spring) check_part(reader, "spring", s.spring->on, parts);
-  if (s.shock) check_part(reader, "shock", s.shock->on, parts);
-}
 
 }  // namespace
+
+void check_apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key,
+                 const Vec3& other) {
+  if (!((point - other).norm() > kSamePoint))
+    reader.fail(key, fmt::format("is the point of {}, expected another one", reader.full(other_key)));
+}
+
+void check_struts(const JsonReader& reader, const std::optional<SpringSpec>& spring,
+                  const std::optional<ShockSpec>& shock, const std::vector<std::string>& parts) {
+  if (spring) check_part(reader, "spring", spring->on, parts);
+  if (shock) check_part(reader, "shock", shock->on, parts);
+}
 
 void check_spec(const BodySpec& s, const JsonReader& reader) { check_inertia(reader, s.inertia, s.mass); }
 
@@ -74,14 +76,18 @@ void check_spec(const WheelSpec& s, const JsonReader& reader) { check_inertia(re
 
 void check_spec(const ArmSpec& s, const JsonReader& reader) {
   check_inertia(reader, s.inertia, s.mass);
-  apart(reader, "chassis_back", s.chassis_back, "chassis_front", s.chassis_front);
+  check_apart(reader, "chassis_back", s.chassis_back, "chassis_front", s.chassis_front);
   const Vec3 hinge = (s.chassis_front - s.chassis_back).normalized();
   if (!(hinge.cross(s.upright - s.chassis_back).norm() > kSamePoint))
     reader.fail("upright", "lies on the hinge, expected a point beside it");
 }
 
-void check_spec(const TieRodSpec& s, const JsonReader& reader) { apart(reader, "outer", s.outer, "inner", s.inner); }
-void check_spec(const LinkSpec& s, const JsonReader& reader) { apart(reader, "axle", s.axle, "chassis", s.chassis); }
+void check_spec(const TieRodSpec& s, const JsonReader& reader) {
+  check_apart(reader, "outer", s.outer, "inner", s.inner);
+}
+void check_spec(const LinkSpec& s, const JsonReader& reader) {
+  check_apart(reader, "axle", s.axle, "chassis", s.chassis);
+}
 
 void check_spec(const StopSpec& s, const JsonReader& reader) {
   check_length(reader, s.shortest, s.longest);
@@ -91,7 +97,7 @@ void check_spec(const StopSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const SpringSpec& s, const JsonReader& reader) {
-  apart(reader, "end", s.end, "chassis", s.chassis);
+  check_apart(reader, "end", s.end, "chassis", s.chassis);
   if (s.rate && !s.force.empty()) reader.fail("force", "is given beside rate, expected one of the two");
   if (!s.rate && s.force.empty()) reader.fail("force", "is missing, expected a table of forces, or the key rate");
   if (s.force.empty()) return;
@@ -107,24 +113,26 @@ void check_spec(const OuterShockSpec& s, const JsonReader& reader) {
                                             number_text(s.blend_length), s.longest - s.shortest));
 }
 
-void check_spec(const ShockSpec& s, const JsonReader& reader) { apart(reader, "end", s.end, "chassis", s.chassis); }
+void check_spec(const ShockSpec& s, const JsonReader& reader) {
+  check_apart(reader, "end", s.end, "chassis", s.chassis);
+}
 
 void check_spec(const DoubleWishboneSpec& s, const JsonReader& reader) {
-  check_struts(s, reader, {"lower_arm", "upper_arm", "upright"});
+  check_struts(reader, s.spring, s.shock, {"lower_arm", "upper_arm", "upright"});
   if (!((s.upper_arm.upright - s.lower_arm.upright).norm() > kSamePoint))
     reader.fail("upper_arm.upright", "is the point of lower_arm.upright, expected another one");
 }
 
 void check_spec(const TrailingArmSpec& s, const JsonReader& reader) {
-  check_struts(s, reader, {"arm"});
-  apart(reader, "pivot_outer", s.pivot_outer, "pivot_inner", s.pivot_inner);
+  check_struts(reader, s.spring, s.shock, {"arm"});
+  check_apart(reader, "pivot_outer", s.pivot_outer, "pivot_inner", s.pivot_inner);
   const Vec3 hinge = (s.pivot_outer - s.pivot_inner).normalized();
   if (!(hinge.cross(s.spindle.center - s.pivot_inner).norm() > kSamePoint))
     reader.fail("spindle.center", "lies on the arm's hinge, expected a point beside it");
 }
 
 void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
-  check_struts(s, reader, {"housing"});
+  check_struts(reader, s.spring, s.shock, {"housing"});
   int rods = 0;
   for (const LinkSpec& link : s.links) rods += link.mirrored ? 2 : 1;
   check_names_once(reader, "links", s.links);
@@ -134,9 +142,9 @@ void check_spec(const RigidAxleSpec& s, const JsonReader& reader) {
 }
 
 void check_spec(const PitmanArmSpec& s, const JsonReader& reader) {
-  apart(reader, "arm_end", s.arm_end, "pivot", s.pivot);
-  apart(reader, "idler_end", s.idler_end, "idler", s.idler);
-  apart(reader, "idler_end", s.idler_end, "arm_end", s.arm_end);
+  check_apart(reader, "arm_end", s.arm_end, "pivot", s.pivot);
+  check_apart(reader, "idler_end", s.idler_end, "idler", s.idler);
+  check_apart(reader, "idler_end", s.idler_end, "arm_end", s.arm_end);
   if (!(std::abs(s.left_angle_deg) > 0.0 && std::abs(s.left_angle_deg) < 90.0))
     reader.fail("left_angle_deg", "is " + number_text(s.left_angle_deg) +
                                       ", expected -90 to 90, not 0: the arm at full lock to the left");

@@ -1,0 +1,41 @@
+// A small complete kind of suspension, made as CONTRIBUTING.md says: an upright that slides along a pillar of the
+// chassis, on a spring and a shock absorber.
+#pragma once
+
+#include <optional>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
+#include "protocol/core/vec.hpp"
+#include "protocol/files/json_reader.hpp"
+#include "vehicle/parts/suspension_kinds.hpp"
+#include "vehicle/spec/part_keys.hpp"
+#include "vehicle/spec/part_spec.hpp"
+
+namespace furrow::vehicle {
+
+struct SlidingPillarSpec {
+  static constexpr SchemaName kSchema{"sliding_pillar", "An upright on each side that slides along a pillar."};
+  static constexpr const char* kType = "sliding_pillar";
+  SpindleSpec spindle;
+  BodySpec upright;
+  Vec3 bottom = Vec3::Zero(), top = Vec3::Zero();  // of the pillar, m
+  std::optional<SpringSpec> spring;
+  std::optional<ShockSpec> shock;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SlidingPillarSpec> auto& s) {
+  visit(needed("spindle"), s.spindle);
+  visit(needed("upright"), s.upright);
+  visit(needed("bottom", "m", keys::kPoint, "Lower end of the pillar, from the axle's origin."), s.bottom);
+  visit(needed("top", "m", keys::kPoint, "Upper end of the pillar, from the axle's origin."), s.top);
+  visit(key("spring"), s.spring);
+  visit(key("shock"), s.shock);
+}
+
+/// @throws Error(bad_input) naming file, key and what was expected
+void check_spec(const SlidingPillarSpec& s, const JsonReader& reader);
+
+void add_suspension(AxleBuild& build, const Sides<SlidingPillarSpec>& sides);
+
+}  // namespace furrow::vehicle

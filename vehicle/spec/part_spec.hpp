@@ -1,0 +1,175 @@
+// Parts of which a vehicle file makes suspensions. Points are in m, in the vehicle's frame: x forward, y left, z up. A
+// file gives them from the origin of their axle; the reader adds it. Every Vec3 in here is a point.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
+#include "protocol/core/vec.hpp"
+#include "vehicle/spec/part_keys.hpp"
+
+namespace furrow::vehicle {
+
+/// Points of a function; x rises.
+using Points = std::vector<std::pair<double, double>>;
+
+struct BodySpec {
+  static constexpr SchemaName kSchema{"body", "A rigid body."};
+  double mass = 0.0;                   // kg
+  Vec3 center_of_mass = Vec3::Zero();  // m
+  Mat3 inertia = Mat3::Zero();         // about it, kg m²; in a file [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<BodySpec> auto& s) {
+  visit(keys::kMass, s.mass);
+  visit(keys::kCenterOfMass, s.center_of_mass);
+  visit(keys::kInertia, s.inertia);
+}
+
+/// What turns with the wheel, without the wheel; its centre of mass is the wheel's centre.
+struct SpindleSpec {
+  static constexpr SchemaName kSchema{"spindle", "The hub and what turns with it, without rim and tire."};
+  Vec3 center = Vec3::Zero();   // m
+  double mass = 0.0;            // kg
+  Mat3 inertia = Mat3::Zero();  // kg m², y along the spin axis
+  double camber_deg = 0.0;      // as drawn; positive: the wheel's top leans outward
+  double toe_deg = 0.0;         // as drawn; positive: toe-in
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SpindleSpec> auto& s) {
+  using namespace allowed;
+  visit(needed("center", "m", keys::kPoint, "Centre of the wheel, from the axle's origin."), s.center);
+  visit(keys::kMass, s.mass);
+  visit(keys::kInertia, s.inertia);
+  visit(key("camber_deg", "deg", above(-45).below(45), "Camber of the drawn wheel; positive: the top leans outward."),
+        s.camber_deg);
+  visit(key("toe_deg", "deg", above(-45).below(45), "Toe of the drawn wheel; positive: toe-in."), s.toe_deg);
+}
+
+/// Hinged to the chassis, with a ball at the upright. Its inertia is in axes of its own: x along the hinge from back to
+/// front, z normal to the plane of its three points, upward.
+struct ArmSpec {
+  static constexpr SchemaName kSchema{"arm",
+                                      "An arm that is hinged to the chassis, with a ball at the upright. Its inertia "
+                                      "is in axes with x along the hinge and z normal to its plane."};
+  double mass = 0.0;                                               // kg
+  Vec3 center_of_mass = Vec3::Zero();                              // m
+  Mat3 inertia = Mat3::Zero();                                     // kg m²
+  Vec3 chassis_front = Vec3::Zero(), chassis_back = Vec3::Zero();  // of the hinge, m
+  Vec3 upright = Vec3::Zero();                                     // ball, m
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ArmSpec> auto& s) {
+  visit(keys::kMass, s.mass);
+  visit(keys::kCenterOfMass, s.center_of_mass);
+  visit(keys::kInertia, s.inertia);
+  visit(needed("chassis_front", "m", keys::kPoint, "Front point of the hinge on the chassis, from the axle's origin."),
+        s.chassis_front);
+  visit(needed("chassis_back", "m", keys::kPoint, "Rear point of the hinge on the chassis, from the axle's origin."),
+        s.chassis_back);
+  visit(needed("upright", "m", keys::kPoint, "Ball joint at the upright, from the axle's origin."), s.upright);
+}
+
+/// A massless rod; its inner end is on the steering link or the rack, of an axle that is not steered on the chassis.
+struct TieRodSpec {
+  static constexpr SchemaName kSchema{"tie_rod",
+                                      "A massless rod. Its inner end is on the steering link or the rack, or on the "
+                                      "chassis if the axle is not steered."};
+  Vec3 inner = Vec3::Zero(), outer = Vec3::Zero();  // m
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<TieRodSpec> auto& s) {
+  visit(needed("inner", "m", keys::kPoint, "Inner end, from the axle's origin."), s.inner);
+  visit(needed("outer", "m", keys::kPoint, "Outer end on the upright, from the axle's origin."), s.outer);
+}
+
+/// Acts beyond `shortest` and `longest`, added to the spring.
+struct StopSpec {
+  static constexpr SchemaName kSchema{"stop",
+                                      "Stops that act below one length and above another, in addition to the spring."};
+  double shortest = 0.0, longest = 0.0;  // m
+  Points force;                          // N against m beyond the mark
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<StopSpec> auto& s) {
+  using namespace allowed;
+  visit(needed("shortest", "m", above(0), "Length below which it acts."), s.shortest);
+  visit(needed("longest", "m", above(0), "Length above which it acts."), s.longest);
+  visit(needed("force", "N", keys::kTable,
+               "Pairs of length beyond the mark, m, and force, N; begins with [0, 0] and rises."),
+        s.force);
+}
+
+/// A coil spring: either a rate or a table of force against deflection, which is an odd function.
+struct SpringSpec {
+  static constexpr SchemaName kSchema{
+      "spring", "A spring between the chassis and a part of the suspension; one of rate and force."};
+  Vec3 chassis = Vec3::Zero(), end = Vec3::Zero();  // m
+  std::optional<std::string> on;                    // the part that `end` is on
+  double free_length = 0.0;                         // m
+  std::optional<double> rate;                       // N/m
+  Points force;                                     // N against m
+  std::optional<StopSpec> stop;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<SpringSpec> auto& s) {
+  using namespace allowed;
+  visit(keys::kChassisEnd, s.chassis);
+  visit(keys::kEnd, s.end);
+  visit(keys::kOn, s.on);
+  visit(needed("free_length", "m", above(0), "Length without force."), s.free_length);
+  visit(key("rate", "N/m", above(0).to(1e10), "Stiffness."), s.rate);
+  visit(key("force", "N", keys::kTable,
+            "Pairs of deflection, m, and force, N, straight between them; begins with [0, 0] and rises; odd."),
+        s.force);
+  visit(key("stop"), s.stop);
+}
+
+/// Coefficients of a shock absorber outside two lengths; they change over `blend_length` about each.
+struct OuterShockSpec {
+  static constexpr SchemaName kSchema{"outer_shock", "Coefficients outside of two lengths."};
+  double shortest = 0.0, longest = 0.0;     // m
+  double blend_length = 0.0;                // m
+  double compression = 0.0, rebound = 0.0;  // N s/m
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<OuterShockSpec> auto& s) {
+  using namespace allowed;
+  visit(needed("shortest", "m", above(0), "Length below which these coefficients hold."), s.shortest);
+  visit(needed("longest", "m", above(0), "Length above which these coefficients hold."), s.longest);
+  visit(needed("blend_length", "m", above(0), "Length over which the coefficients change at each mark."),
+        s.blend_length);
+  visit(keys::kCompression, s.compression);
+  visit(keys::kRebound, s.rebound);
+}
+
+struct ShockSpec {
+  static constexpr SchemaName kSchema{"shock", "A shock absorber between the chassis and a part of the suspension."};
+  Vec3 chassis = Vec3::Zero(), end = Vec3::Zero();  // m
+  std::optional<std::string> on;                    // the part that `end` is on
+  double compression = 0.0, rebound = 0.0;          // N s/m
+  std::optional<OuterShockSpec> outer;
+};
+template <class Visit>
+void visit_fields(Visit&& visit, FieldsOf<ShockSpec> auto& s) {
+  visit(keys::kChassisEnd, s.chassis);
+  visit(keys::kEnd, s.end);
+  visit(keys::kOn, s.on);
+  visit(keys::kCompression, s.compression);
+  visit(keys::kRebound, s.rebound);
+  visit(key("outer"), s.outer);
+}
+
+/// An axle under construction: vehicle/parts/suspension_kinds.hpp.
+struct AxleBuild;
+
+/// The suspension of the left side and that of the right one.
+template <class Spec>
+using Sides = std::array<const Spec*, 2>;
+
+}  // namespace furrow::vehicle

@@ -13,8 +13,7 @@ struct ContactStatement {
   StepHeader header;
   StatedContact contact;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ContactStatement> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ContactStatement> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"contact", ""}, s.contact);
 }

@@ -35,8 +35,7 @@ struct Address {
   std::int32_t index = 0;  // which tire; which rank of a terrain, 0 being its leader; 0 for the rig
   bool operator==(const Address&) const = default;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Address> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Address> auto& s) {
   visit(Field{"role", ""}, s.role);
   visit(Field{"index"}, s.index);
 }
@@ -83,8 +82,7 @@ struct NodeCard {
   double tire_reach = 0.0;   // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
   std::int64_t size = 0;     // grains or coordinates, for the reports
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<NodeCard> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<NodeCard> auto& s) {
   visit(Field{"protocol_version"}, s.protocol_version);
   visit(Field{"self", ""}, s.self);
   visit(Field{"node_kind", ""}, s.node_kind);
@@ -111,8 +109,7 @@ struct SurfaceSetup {
   SurfaceMesh mesh;
   ContactMaterial material;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SurfaceSetup> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SurfaceSetup> auto& s) {
   visit(Field{"mesh", ""}, s.mesh);
   visit(Field{"material", ""}, s.material);
 }
@@ -126,8 +123,7 @@ struct TerrainSetup {
   double settle_wall_s = 0.0;
   std::int64_t grains = 0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TerrainSetup> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TerrainSetup> auto& s) {
   visit(Field{"top_height", "m"}, s.top_height);
   visit(Field{"mean_height", "m"}, s.mean_height);
   visit(Field{"floor_height", "m"}, s.floor_height);
@@ -140,8 +136,7 @@ struct StepHeader {
   std::int64_t step = 0;  // n
   double time = 0.0;      // t_n, s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StepHeader> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StepHeader> auto& s) {
   visit(Field{"step"}, s.step);
   visit(Field{"time", "s"}, s.time);
 }
@@ -163,8 +158,7 @@ struct RimMotion {
   Order order = Order::go_on;      // due at synchronization n + 1
   std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RimMotion> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RimMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"rim", ""}, s.rim);
   visit(Field{"order", ""}, s.order);
@@ -194,8 +188,7 @@ struct SpindleReport {
   double ledger = 0.0;                // |Σ| of the differences when last settled, N s
   double ledger_largest = 0.0;        // until now, N s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpindleReport> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SpindleReport> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"wrench", ""}, s.wrench);
   visit(Field{"spindle", ""}, s.spindle);
@@ -223,8 +216,7 @@ struct SurfaceMotion {
   Order order = Order::go_on;      // due now: the terrain gets it through the tires
   std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SurfaceMotion> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SurfaceMotion> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"surface", ""}, s.surface);
   visit(Field{"order", ""}, s.order);
@@ -237,8 +229,7 @@ struct TerrainForces {
   StepHeader header;
   NodalForces forces;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TerrainForces> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TerrainForces> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"forces", ""}, s.forces);
 }
@@ -250,8 +241,7 @@ struct TerrainReport {
   TerrainState state;
   std::vector<ContactSums> contact;  // one per tire
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TerrainReport> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TerrainReport> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"state", ""}, s.state);
   visit(Field{"contact", ""}, s.contact);
@@ -262,10 +252,7 @@ struct RunFolder {
   static constexpr MessageKind kKind = MessageKind::run_folder;
   std::string path;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RunFolder> auto& s) {
-  visit(Field{"path", ""}, s.path);
-}
+void visit_fields(auto&& visit, FieldsOf<RunFolder> auto& s) { visit(Field{"path", ""}, s.path); }
 
 /// Every node → rig once it has written its part of a checkpoint, or failed to.
 struct CheckpointPart {
@@ -275,8 +262,7 @@ struct CheckpointPart {
   std::string checksum;  // of the state it holds
   std::string problem;   // why it could not be written; empty: it was
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<CheckpointPart> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<CheckpointPart> auto& s) {
   visit(Field{"step"}, s.step);
   visit(Field{"file", ""}, s.file);
   visit(Field{"checksum", ""}, s.checksum);
@@ -296,8 +282,7 @@ struct FinalReport {
   std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;  // terrain
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<FinalReport> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<FinalReport> auto& s) {
   visit(Field{"self", ""}, s.self);
   visit(Field{"state_hash"}, s.state_hash);
   visit(Field{"cpu_s", "s"}, s.cpu_s);

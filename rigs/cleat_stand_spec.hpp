@@ -28,8 +28,7 @@ struct CleatStandOptions {
   double rim_spin_inertia = -1.0;  // kg m², about the axle
   double rim_diametral_inertia = -1.0;  // kg m²
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<CleatStandOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<CleatStandOptions> auto& s) {
   using namespace allowed;
   visit(keys::kSpeed, s.speed);
   visit(keys::kRamp, s.ramp);

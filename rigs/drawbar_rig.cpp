@@ -43,8 +43,7 @@ struct DrawbarRow {
   double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
   double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DrawbarRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<DrawbarRow> auto& r) {
   using namespace column;
   visit(mean("drawbar_pull_N", "N").following("slip"), r.pull);
   visit(mean("drawbar_pull_raw_N", "N").following("energy_error_J"), r.pull_raw);

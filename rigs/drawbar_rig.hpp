@@ -45,8 +45,7 @@ struct DrawbarRigOptions {
   Vec3 gravity = standard_gravity();    // m/s²
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
   using namespace allowed;
   visit(key("mode", "", words("fixed_angular_speed fixed_speed free_rolling"),
             "What is imposed. fixed_angular_speed: the carriage moves at v = angular_speed · R · (1 − slip). "

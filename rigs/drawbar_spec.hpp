@@ -22,8 +22,7 @@ struct DrawbarWheel {
   DrawbarRigOptions rig;
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DrawbarWheel> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DrawbarWheel> auto& s) {
   using namespace allowed;
   visit(key("lateral", "m", from(-1e3, 1e3), "Place along y of the wheel's mid-plane. The bin's is y = 0."),
         s.rig.lateral);
@@ -49,8 +48,7 @@ struct DrawbarKeys : DrawbarRigOptions {
   nlohmann::json wheels = nlohmann::json::array();  // each with the keys of DrawbarWheel
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DrawbarKeys> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DrawbarKeys> auto& s) {
   using namespace allowed;
   using Base = std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(s)>>, const DrawbarRigOptions,
                                   DrawbarRigOptions>;

@@ -42,8 +42,7 @@ struct HalfCarOptions {
   double rim_spin_inertia = -1.0;           // kg m², about the axle
   double rim_diametral_inertia = -1.0;      // kg m²
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<HalfCarOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<HalfCarOptions> auto& s) {
   using namespace allowed;
   visit(keys::kSpeed, s.speed);
   visit(keys::kRamp, s.ramp);
@@ -88,8 +87,7 @@ struct HalfCarBodyRow {
   double pitch_acceleration = 0.0;  // rad/s²
   double drive_force = 0.0;         // of what keeps the trolley at its speed, N
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<HalfCarBodyRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<HalfCarBodyRow> auto& r) {
   using namespace column;
   visit(instant("body_height_m", "m"), r.height);
   visit(mean("body_acceleration_m_per_s2", "m/s²"), r.acceleration);

@@ -32,8 +32,7 @@ struct QuarterCarOptions {
   double rim_spin_inertia = -1.0;      // kg m², about the axle
   double rim_diametral_inertia = -1.0;  // kg m²
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<QuarterCarOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<QuarterCarOptions> auto& s) {
   visit(keys::kSpeed, s.speed);
   visit(keys::kRamp, s.ramp);
   visit(keys::kMoveFrom, s.move_from);

@@ -12,8 +12,7 @@ struct RideRow {
   double force = 0.0;              // of the suspension upwards on the body, N
   double drive_force = 0.0;        // of what keeps the wheel at its speed, N
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RideRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<RideRow> auto& r) {
   visit(column::instant("body_height_m", "m"), r.body_height);
   visit(column::mean("body_acceleration_m_per_s2", "m/s²"), r.body_acceleration);
   visit(column::instant("suspension_travel_m", "m"), r.travel);

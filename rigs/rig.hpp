@@ -43,8 +43,7 @@ struct WheelReport {
   /// Weight on the undisturbed ground of all that the wheel carries, N.
   double load() const { return -carried_mass * gravity.z(); }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelReport> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WheelReport> auto& s) {
   visit(Field{"slip"}, s.slip);
   visit(Field{"speed", "m/s"}, s.speed);
   visit(Field{"spin", "rad/s"}, s.spin);

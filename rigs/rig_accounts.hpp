@@ -36,8 +36,7 @@ struct RigAccounts {
   /// All members 0, to count from.
   static RigAccounts none();
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RigAccounts> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RigAccounts> auto& s) {
   visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
   visit(Field{"potential_energy", "J"}, s.potential_energy);
   visit(Field{"drive_work", "J"}, s.drive_work);

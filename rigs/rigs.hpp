@@ -22,8 +22,7 @@ struct RigOptions {
   double drop_height = 0.0;  // of all tires above the ground at t = 0, m
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RigOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RigOptions> auto& s) {
   using namespace allowed;
   visit(key("type", "", "Kind of rig."), s.type);
   visit(key("substeps", "", from(1, 1000), "Number of steps that the rig takes in one communication step."),

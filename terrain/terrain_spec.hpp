@@ -39,8 +39,7 @@ struct CommonOptions {
   int ranks = 1;     // MPI ranks
   int substeps = 1;  // of the terrain in one communication step
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<CommonOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<CommonOptions> auto& s) {
   using namespace allowed;
   visit(key("engine", "", "Engine of the terrain."), s.engine);
   visit(key("ranks", "", from(1, 4096),

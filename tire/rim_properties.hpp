@@ -18,8 +18,7 @@ struct RimProperties {
   double carrier_mass = -1.0;       // what the wheel carries besides rim and tire, kg
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RimProperties> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RimProperties> auto& s) {
   constexpr Allowed kPositive = allowed::above(0).optional();
   visit(key("mass", "kg", kPositive, "Mass of the rim with its spindle, without the tire; rig.rim_mass overrides it."),
         s.mass);

@@ -36,8 +36,7 @@ class RimTrajectory {
   void restore(const Archive& archive);
 
  private:
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<RimTrajectory> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<RimTrajectory> auto& s) {
     visit(furrow::Field{"start", ""}, s.start_);
     visit(furrow::Field{"end", ""}, s.end_);
     visit(furrow::Field{"duration", "s"}, s.duration_);

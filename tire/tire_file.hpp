@@ -53,8 +53,7 @@ struct MaxwellBranch {
   double modulus = 0.0;  // g, relative to the long-term stiffness
   double time = 0.0;     // relaxation time, s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<MaxwellBranch> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<MaxwellBranch> auto& s) {
   visit(
       needed(
           "relative_modulus", "-", allowed::above(0),
@@ -98,8 +97,7 @@ struct TireFile {
 };
 
 /// The keys of our own layout. Materials, sections and profile refer to each other: read_tire_file.cpp reads them.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TireFile> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TireFile> auto& s) {
   using namespace allowed;
   visit(key("template", "", role::by_hand, shaped(R"({"const": "ancf_shell"})").required(), "Name of the layout."),
         s.path);

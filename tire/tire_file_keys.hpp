@@ -18,8 +18,7 @@ inline constexpr Key kContact = needed("contact");
 struct ContactBlock : ContactMaterial {
   static constexpr SchemaName kSchema{"contact", "What grains and ground feel of the tread."};
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ContactBlock> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ContactBlock> auto& s) {
   using namespace allowed;
   visit(needed("young_modulus", "Pa", above(0), "Young's modulus of the tread surface, law mindlin."), s.young_modulus);
   visit(needed("poisson_ratio", "-", from(0).below(0.5), "Poisson's ratio of the tread surface, law mindlin."),

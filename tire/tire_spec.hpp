@@ -34,8 +34,7 @@ struct TireOptions {
   int substeps = 1;                  // of the tire in one communication step
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TireOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TireOptions> auto& s) {
   using namespace allowed;
   visit(key("file", "", not_empty().required(),
             "Tire file, relative to the scenario, then to the folders rigs/ and tire/data/."),

@@ -36,8 +36,7 @@ struct CheckpointManifest {
   double write_s = 0.0;           // wall time that the run stood still for it, until this was written
 };
 /// All but scenario and segments, which have forms of their own in the manifest.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<CheckpointManifest> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<CheckpointManifest> auto& s) {
   visit(Field{"version", ""}, s.version);
   visit(Field{"build", ""}, s.build);
   visit(Field{"cpu", ""}, s.cpu);

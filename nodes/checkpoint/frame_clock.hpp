@@ -37,8 +37,7 @@ struct FrameClock {
     return (step + every - 1) / every;
   }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<FrameClock> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<FrameClock> auto& s) {
   visit(Field{"every"}, s.every);
   visit(Field{"first_step"}, s.first_step);
   visit(Field{"first_index"}, s.first_index);

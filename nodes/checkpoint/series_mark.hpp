@@ -13,8 +13,7 @@ struct SeriesMark {
   std::string checksum;               // of those bytes
   std::string subject;                // whose table it is: "wheel0", "vehicle"
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SeriesMark> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SeriesMark> auto& s) {
   visit(Field{"subject", ""}, s.subject);
   visit(Field{"bytes"}, s.bytes);
   visit(Field{"lines"}, s.lines);

@@ -22,8 +22,7 @@ struct AccountsRow {
   double residual = 0.0, turnover = 0.0;  // J
   Vec3 momentum_residual = Vec3::Zero();  // N s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<AccountsRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<AccountsRow> auto& r) {
   using column::cumulative;
   visit(column::instant("time_s", "s"), r.time);
   visit_fields(visit, r.energy.work);

@@ -30,8 +30,7 @@ struct TireAccount {
   Vec3 added_gravity_impulse = Vec3::Zero();  // of the same, N s
   Vec3 rim_velocity = Vec3::Zero();           // now, m/s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TireAccount> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TireAccount> auto& s) {
   visit(Field{"model", ""}, s.model);
   visit(Field{"terrain_work", "J"}, s.terrain_work);
   visit(Field{"rim_work", "J"}, s.rim_work);
@@ -54,8 +53,7 @@ struct Books {
   rigs::RigAccounts rig;
   std::vector<TireAccount> tires;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Books> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Books> auto& s) {
   visit(Field{"time", "s"}, s.time);
   visit(Field{"terrain", ""}, s.terrain);
   visit(Field{"grains", ""}, s.grains);
@@ -70,8 +68,7 @@ struct WorkAccount {
   double guide = 0.0;  // by rails and steering
   double walls = 0.0;  // by walls and floor on the terrain
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WorkAccount> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WorkAccount> auto& s) {
   using column::cumulative;
   visit(cumulative("drive_work_J", "J"), s.drive);
   visit(cumulative("tow_work_J", "J"), s.tow);
@@ -86,8 +83,7 @@ struct StoredAccount {
   double tire_kinetic = 0.0, tire_elastic = 0.0, tire_pressure = 0.0, tire_potential = 0.0;
   double rig_kinetic_and_potential = 0.0;  // without the tires' added masses
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StoredAccount> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StoredAccount> auto& s) {
   using column::instant;
   visit(instant("terrain_kinetic_J", "J"), s.terrain_kinetic);
   visit(instant("terrain_rotational_J", "J"), s.terrain_rotational);
@@ -111,8 +107,7 @@ struct LostAccount {
   double surface_lag = 0.0;  // at the contact surface, where forces come one step late
   double rim_lag = 0.0;      // at the rim likewise
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LostAccount> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LostAccount> auto& s) {
   using column::cumulative;
   visit(cumulative("sliding_loss_J", "J"), s.sliding);
   visit(cumulative("normal_damping_loss_J", "J"), s.normal_damping);

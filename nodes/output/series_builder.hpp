@@ -74,8 +74,7 @@ class SeriesBuilder {
   Memory memory_;
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SeriesBuilder::Memory> auto& m) {
+void visit_fields(auto&& visit, FieldsOf<SeriesBuilder::Memory> auto& m) {
   visit(Field{"started"}, m.started);
   visit(Field{"rolled", "m/s"}, m.rolled);
   visit(Field{"last_terrain_work", "J"}, m.last_terrain_work);

@@ -60,8 +60,7 @@ struct WheelRow {
 };
 
 /// The columns in the order of the files; those that users script against come first and keep their place.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<WheelRow> auto& r) {
   using namespace column;
   visit(instant("time_s", "s"), r.time);
   visit(mean("slip"), r.slip);

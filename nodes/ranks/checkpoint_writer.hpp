@@ -10,8 +10,7 @@ namespace furrow::ranks {
 struct NodeCost {
   double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<NodeCost> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<NodeCost> auto& s) {
   visit(Field{"cpu_s", "s"}, s.cpu_s);
   visit(Field{"compute_s", "s"}, s.compute_s);
   visit(Field{"communicate_s", "s"}, s.communicate_s);

@@ -36,8 +36,7 @@ class ImpulseLedger {
   void restore(const Archive& archive);
 
  private:
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<ImpulseLedger> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<ImpulseLedger> auto& s) {
     visit(Field{"settled", "N s"}, s.settled_);
     visit(Field{"largest", "N s"}, s.largest_);
   }

@@ -22,18 +22,14 @@ inline constexpr char kGrainsBegin[] = "setup/grains_begin";
 struct MeasureOrder {
   std::vector<Vec3> rims;  // where they will stand, m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<MeasureOrder> auto& s) {
-  visit(Field{"rims", "m"}, s.rims);
-}
+void visit_fields(auto&& visit, FieldsOf<MeasureOrder> auto& s) { visit(Field{"rims", "m"}, s.rims); }
 
 /// Now attach the tires' surfaces.
 struct AttachOrder {
   std::vector<SurfaceSetup> surfaces;
   std::vector<SurfaceState> start;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<AttachOrder> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<AttachOrder> auto& s) {
   visit(Field{"surfaces", ""}, s.surfaces);
   visit(Field{"start", ""}, s.start);
 }
@@ -45,8 +41,7 @@ struct AdvanceOrder {
   std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end
   std::vector<SurfaceState> targets;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<AdvanceOrder> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<AdvanceOrder> auto& s) {
   visit(Field{"header", ""}, s.header);
   visit(Field{"order", ""}, s.order);
   visit(Field{"ends_at", ""}, s.ends_at);

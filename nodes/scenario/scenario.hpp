@@ -30,8 +30,7 @@ struct RunOptions {
   std::int64_t steps_in(double interval) const;
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RunOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RunOptions> auto& s) {
   using namespace allowed;
   visit(key("step", "s", above(0).to(0.1).usual(1e-7, 1e-3),
             "Communication step: the interval at which all nodes exchange motions and forces."),
@@ -58,8 +57,7 @@ struct OutputOptions {
   double frame_interval = 0.02;   // s; 0: none
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<OutputOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<OutputOptions> auto& s) {
   using namespace allowed;
   visit(key("series_interval", "s", above(0).to(1e5),
             "Time between lines of timeseries.csv. In a line forces are means over the interval, positions, energies "
@@ -80,8 +78,7 @@ struct CheckpointOptions {
   bool at_end = true;
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<CheckpointOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<CheckpointOptions> auto& s) {
   using namespace allowed;
   visit(
       key("wall_interval", "s", role::harmless, from(0, 1e7),
@@ -109,8 +106,7 @@ struct PressKeys {
   double cleat_position = 0.0;                       // of its middle, forward of the axle, m
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PressKeys> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PressKeys> auto& s) {
   using namespace allowed;
   visit(key("on", "", role::harmless, words("plate cleat"),
             "Obstacle. plate: flat. cleat: a flat-topped bar across the direction of travel. A profile is given on the "
@@ -146,8 +142,7 @@ struct ExpectedResult {
   double rut_depth_spread = 0.0;     // ± m
 };
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ExpectedResult> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ExpectedResult> auto& s) {
   using namespace allowed;
   visit(key("drawbar_pull", "N", role::harmless, from(-1e9, 1e9).required(), "Mean drawbar pull."), s.drawbar_pull);
   visit(key("drawbar_pull_spread", "N", role::harmless, from(0, 1e9).required(),

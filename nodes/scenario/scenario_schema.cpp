@@ -22,8 +22,7 @@ struct Head {
   std::string schema, description, completed_by;
   int format_version = 1;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Head> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Head> auto& s) {
   using namespace allowed;
   visit(key("$schema", "", optional(), "Schema for editors. The program ignores it."), s.schema);
   visit(key("description", "", optional(), "What the scenario is about. The program ignores it."), s.description);

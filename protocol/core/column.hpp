@@ -1,8 +1,7 @@
 // Columns of result tables: what they are called, and how a line is made of what is measured at every synchronization.
 // A struct whose fields are all columns has one list of them:
 //
-//   template <class Visit>
-//   void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {
+//   void visit_fields(auto&& visit, FieldsOf<VehicleRow> auto& r) {
 //     visit(column::mean("speed_m_per_s", "m/s"), r.speed);
 //   }
 //

@@ -4,8 +4,7 @@
 //   struct GroundOptions {
 //     double stiffness = 4e8;  // N/m³
 //   };
-//   template <class Visit>
-//   void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
+//   void visit_fields(auto&& visit, FieldsOf<GroundOptions> auto& s) {
 //     visit(Field{"stiffness", "N/m³"}, s.stiffness);
 //   }
 //

@@ -4,8 +4,7 @@
 //   struct GroundOptions {
 //     double stiffness = 4e8;
 //   };
-//   template <class Visit>
-//   void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
+//   void visit_fields(auto&& visit, FieldsOf<GroundOptions> auto& s) {
 //     visit(key("stiffness", "N/m³", allowed::above(0).to(1e15), "Pressure per depth."), s.stiffness);
 //   }
 //

@@ -12,8 +12,7 @@ struct StatedContact {
       false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
   NodalForces forces;  // on the tire, for the terrain's next interval; without tangents
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StatedContact> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StatedContact> auto& s) {
   visit(Field{"given", ""}, s.given);
   visit(Field{"forces", ""}, s.forces);
 }

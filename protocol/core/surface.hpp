@@ -16,8 +16,7 @@ struct RimState {
   Vec3 velocity = Vec3::Zero();          // of the rim centre, m/s, W
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RimState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RimState> auto& s) {
   visit(Field{"position", "m"}, s.position);
   visit(Field{"orientation"}, s.orientation);
   visit(Field{"velocity", "m/s"}, s.velocity);
@@ -29,8 +28,7 @@ struct Wrench {
   Vec3 force = Vec3::Zero();   // N
   Vec3 moment = Vec3::Zero();  // N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Wrench> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Wrench> auto& s) {
   visit(Field{"force", "N"}, s.force);
   visit(Field{"moment", "N m"}, s.moment);
 }
@@ -40,8 +38,7 @@ struct SurfaceMesh {
   int vertex_count = 0;
   std::vector<std::array<int, 3>> triangles;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SurfaceMesh> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SurfaceMesh> auto& s) {
   visit(Field{"vertex_count"}, s.vertex_count);
   visit(Field{"triangles"}, s.triangles);
 }
@@ -51,8 +48,7 @@ struct SurfaceState {
   std::vector<Vec3> position;
   std::vector<Vec3> velocity;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SurfaceState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SurfaceState> auto& s) {
   visit(Field{"position", "m"}, s.position);
   visit(Field{"velocity", "m/s"}, s.velocity);
 }
@@ -65,8 +61,7 @@ struct ContactTangent {
   Vec3 position = Vec3::Zero();   // of the vertex as the terrain moved it, m
   Vec3 velocity = Vec3::Zero();   // m/s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ContactTangent> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ContactTangent> auto& s) {
   visit(Field{"stiffness", "N/m"}, s.stiffness);
   visit(Field{"damping", "N s/m"}, s.damping);
   visit(Field{"position", "m"}, s.position);
@@ -86,8 +81,7 @@ struct NodalForces {
     tangent.clear();
   }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<NodalForces> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<NodalForces> auto& s) {
   visit(Field{"vertex"}, s.vertex);
   visit(Field{"force", "N"}, s.force);
   visit(Field{"tangent", ""}, s.tangent);
@@ -98,8 +92,7 @@ struct MassProperties {
   double mass = 0.0;            // kg
   Mat3 inertia = Mat3::Zero();  // about the rim centre, rim axes, kg m²
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<MassProperties> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<MassProperties> auto& s) {
   visit(Field{"mass", "kg"}, s.mass);
   visit(Field{"inertia", "kg m²"}, s.inertia);
 }
@@ -115,8 +108,7 @@ struct ContactMaterial {
   double cohesion = 0.0;          // Pa; the tire's is zero
   double area_density = 0.0;      // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ContactMaterial> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ContactMaterial> auto& s) {
   visit(Field{"young_modulus", "Pa"}, s.young_modulus);
   visit(Field{"poisson_ratio"}, s.poisson_ratio);
   visit(Field{"friction"}, s.friction);

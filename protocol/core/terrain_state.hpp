@@ -20,8 +20,7 @@ struct ContactSums {
   double work = 0.0;                      // this interval: Σ_substeps f·Δx̃ of the vertices, J
   std::int64_t contacts = 0;              // of the last substep
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ContactSums> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ContactSums> auto& s) {
   visit(Field{"force", "N"}, s.force);
   visit(Field{"normal", "N"}, s.normal);
   visit(Field{"tangential", "N"}, s.tangential);
@@ -59,8 +58,7 @@ struct TerrainEnergies {
   /// What is stored now.
   double stored() const { return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion; }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TerrainEnergies> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TerrainEnergies> auto& s) {
   visit(Field{"kinetic", "J"}, s.kinetic);
   visit(Field{"rotational", "J"}, s.rotational);
   visit(Field{"potential", "J"}, s.potential);
@@ -88,8 +86,7 @@ struct TerrainMomenta {
   Vec3 surface_impulse = Vec3::Zero();  // by tires on the terrain, N s
   Vec3 sleep_impulse = Vec3::Zero();    // by what holds resting parts that are not stepped, N s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TerrainMomenta> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TerrainMomenta> auto& s) {
   visit(Field{"grains", "kg m/s"}, s.grains);
   visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
   visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
@@ -120,8 +117,7 @@ struct TerrainState {
   TerrainEnergies energies{};
   TerrainMomenta momenta{};
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TerrainState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TerrainState> auto& s) {
   visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
   visit(Field{"elastic_energy", "J"}, s.elastic_energy);
   visit(Field{"floor_force", "N"}, s.floor_force);
@@ -142,8 +138,7 @@ struct HeightField {
   std::int32_t nx = 0, ny = 0;
   std::vector<double> height;  // m, [ix * ny + iy]
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<HeightField> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<HeightField> auto& s) {
   visit(Field{"x0", "m"}, s.x0);
   visit(Field{"y0", "m"}, s.y0);
   visit(Field{"cell", "m"}, s.cell);

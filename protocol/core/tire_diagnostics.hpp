@@ -30,8 +30,7 @@ struct TireDiagnostics {
   double stored() const { return kinetic_energy + strain_energy() + potential_energy; }
   double losses() const { return dissipation + numerical_loss + solver_loss; }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TireDiagnostics> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TireDiagnostics> auto& s) {
   visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
   visit(Field{"elastic_energy", "J"}, s.elastic_energy);
   visit(Field{"pressure_energy", "J"}, s.pressure_energy);

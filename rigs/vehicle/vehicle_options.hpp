@@ -30,8 +30,7 @@ struct VehicleRigOptions {
   double stop_before_wall =
       -1.0;  // left between a tire and the end wall when the run ends before it, m; negative: open
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VehicleRigOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<VehicleRigOptions> auto& s) {
   using namespace allowed;
   visit(key("vehicle", "", not_empty().or_null(),
             "Vehicle file, relative to the scenario, then to the folders rigs/ and vehicle/data/. Its wheels name "

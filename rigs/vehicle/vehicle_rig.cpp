@@ -30,8 +30,7 @@ struct VehicleRecord {
   RigAccounts accounts = RigAccounts::none();
   vehicle::DriverInputs inputs;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VehicleRecord> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<VehicleRecord> auto& s) {
   visit(Field{"row", ""}, s.row);
   visit(Field{"accounts", ""}, s.accounts);
   visit(Field{"inputs", ""}, s.inputs);

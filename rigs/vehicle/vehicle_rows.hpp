@@ -17,8 +17,7 @@ struct VehicleWheelRow {
   double shock_force = 0.0;     // N
   double brake_torque = 0.0;    // on the wheel about its axle, N m; part of spindle_torque_Nm
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VehicleWheelRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<VehicleWheelRow> auto& r) {
   using namespace column;
   visit(instant("sinkage_in_rut_m", "m").following("sinkage_m"), r.sinkage_in_rut);
   visit(instant("suspension_travel_m", "m"), r.travel);
@@ -60,8 +59,7 @@ struct VehicleRow {
   double lowering_heat = 0.0;  // of the damper that lets the vehicle down, J
   double spring_energy = 0.0;  // J
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VehicleRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<VehicleRow> auto& r) {
   using namespace column;
   visit(instant("x_m", "m"), r.x);
   visit(instant("y_m", "m"), r.y);

@@ -17,8 +17,7 @@ struct WheelRecord {
   VehicleWheelRow row;
   double load = 0.0;  // at rest, N
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelRecord> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WheelRecord> auto& s) {
   visit(Field{"report", ""}, s.report);
   visit(Field{"row", ""}, s.row);
   visit(Field{"load", "N"}, s.load);

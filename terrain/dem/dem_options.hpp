@@ -52,8 +52,7 @@ struct DemOptions : TerrainContext {
 };
 
 /// The order of those with role::soil is the order in which messages list what a soil file may say.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DemOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DemOptions> auto& s) {
   using namespace allowed;
   constexpr unsigned kBed = role::key | role::bed, kSoil = role::key | role::soil, kBoth = kBed | kSoil;
   visit(key("law", "", kBoth, words("mindlin hertz_tanh"),

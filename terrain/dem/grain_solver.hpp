@@ -78,8 +78,7 @@ struct Accounts {
   Vec3 momentum_removed = Vec3::Zero();
   std::int64_t active = 0;  // grains awake, last step
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Accounts> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Accounts> auto& s) {
   visit(Field{"contact_work", "J"}, s.contact_work);
   visit(Field{"elastic", "J"}, s.elastic);
   visit(Field{"elastic_start", "J"}, s.elastic_start);

@@ -80,8 +80,7 @@ struct Parcel {
   MotionTotals motion;
 };
 /// What a saved state keeps of a parcel where strips are cut; its part follows from the lists.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Parcel> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Parcel> auto& s) {
   visit(Field{"asleep", ""}, s.asleep);
   visit(Field{"stale", ""}, s.stale);
   visit(Field{"calm"}, s.calm);

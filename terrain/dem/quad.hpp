@@ -12,8 +12,7 @@ using namespace simd;
 struct alignas(32) Quad {
   double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Quad> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Quad> auto& s) {
   visit(Field{"x", ""}, s.x);
   visit(Field{"y", ""}, s.y);
   visit(Field{"z", ""}, s.z);

@@ -33,8 +33,7 @@ struct WallContact {
   Quad tangential;  // history: spring force, N; w = √δ of the step before, 0 when apart
   Quad rolling;     // history: rolling spring, N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WallContact> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WallContact> auto& s) {
   visit(Field{"grain"}, s.grain);
   visit(Field{"wall"}, s.wall);
   visit(Field{"tangential", "N"}, s.tangential);
@@ -97,8 +96,7 @@ struct Strip {
 };
 /// What a saved state keeps of a strip besides its lists. Sums too: those of strips that sleep stay. Where strips are
 /// cut, Parcel's fields stand beside these.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Strip> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Strip> auto& s) {
   visit(Field{"first"}, s.first);
   visit(Field{"last"}, s.last);
   visit(Field{"pairs"}, s.pairs);

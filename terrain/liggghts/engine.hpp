@@ -86,8 +86,7 @@ struct MotionSums {
     for (int k = 0; k < 3; ++k) speed[k] += of_volume * v[k], place[k] += of_volume * x[k];
   }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<MotionSums> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<MotionSums> auto& s) {
   visit(Field{"volume"}, s.volume);
   visit(Field{"speed2", "m²/s²"}, s.speed2);
   visit(Field{"spin2", "rad²/s²"}, s.spin2);

@@ -18,8 +18,7 @@ struct LiggghtsOptions : dem::DemOptions {
 /// Resting grains never sleep, and every contact is computed in double precision.
 constexpr bool is_key_of_dem_only(std::string_view name) { return name == "activity" || name == "precision"; }
 
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LiggghtsOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LiggghtsOptions> auto& s) {
   using Base =
       std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(s)>>, const dem::DemOptions, dem::DemOptions>;
   visit_fields(

@@ -32,8 +32,7 @@ struct RankSums {
   double contacts = 0.0;                // last step
   MotionSums motion;                    // now
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RankSums> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RankSums> auto& s) {
   visit(Field{"elastic", "J"}, s.elastic);
   visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
   visit(Field{"surface_impulse", "N s"}, s.surface_impulse);

@@ -17,8 +17,7 @@ struct IntervalReport {
   double share = 0.0;              // largest overlap over a diameter, -
   Vec3 hardest_at = Vec3::Zero();  // m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<IntervalReport> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<IntervalReport> auto& s) {
   visit(Field{"lost"}, s.lost);
   visit(Field{"lost_at", "m"}, s.lost_at);
   visit(Field{"overlap", "m"}, s.overlap);

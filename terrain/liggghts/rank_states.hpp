@@ -14,8 +14,7 @@ struct StateReport {
   double error2 = 0.0;       // of the losses by sampling, J²
   double list_builds = 0.0;  // weighted by the rank's share of the grains
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StateReport> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StateReport> auto& s) {
   visit(Field{"grains"}, s.grains);
   visit(Field{"sums", ""}, s.sums);
   visit(Field{"lost", ""}, s.lost);

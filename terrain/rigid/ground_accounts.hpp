@@ -19,8 +19,7 @@ struct GroundLosses {
   double tangential_damping = 0.0;
   double opening = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<GroundLosses> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<GroundLosses> auto& s) {
   visit(Field{"sliding", "J"}, s.sliding);
   visit(Field{"normal_damping", "J"}, s.normal_damping);
   visit(Field{"tangential_damping", "J"}, s.tangential_damping);

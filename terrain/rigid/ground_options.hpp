@@ -26,8 +26,7 @@ struct GroundOptions : TerrainContext {
   double road_from = 5.0;                // x where it begins, m
   double road_length = 100.0;            // m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<GroundOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<GroundOptions> auto& s) {
   using namespace allowed;
   visit(keys::kFriction, s.friction);
   visit(keys::kFrictionVelocityScale, s.friction_velocity_scale);

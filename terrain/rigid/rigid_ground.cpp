@@ -84,8 +84,7 @@ class RigidGround final : public Terrain {
   std::size_t attached() const override { return surfaces_.size(); }
   std::size_t vertices(std::size_t k) const override { return surfaces_[k].last.size(); }
 
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<RigidGround> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<RigidGround> auto& s) {
     visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
     visit(Field{"surface_work", "J"}, s.surface_work_);
     visit(Field{"losses", "J"}, s.losses_);

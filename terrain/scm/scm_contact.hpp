@@ -23,8 +23,7 @@ struct SoilLosses {
   double sliding = 0.0;
   double opening = 0.0;  // springs and shear given up where loads change and end
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SoilLosses> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SoilLosses> auto& s) {
   visit(Field{"compaction", "J"}, s.compaction);
   visit(Field{"damping", "J"}, s.damping);
   visit(Field{"sliding", "J"}, s.sliding);
@@ -38,8 +37,7 @@ struct ContactNode {
   double limit = 0.0;             // τ_max × A/|n_z|, N
   Vec3 mobilized = Vec3::Zero();  // m, along the surface
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ContactNode> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ContactNode> auto& s) {
   visit(Field{"node"}, s.node);
   visit(Field{"sinkage", "m"}, s.sinkage);
   visit(Field{"limit", "N"}, s.limit);

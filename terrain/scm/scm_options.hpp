@@ -31,8 +31,7 @@ struct ScmOptions : TerrainContext {
   double unloading_stiffness_rate = 0.0;  // A_u, N/m⁴
   double rebound_damping = 1e4;           // N s/m³, below the yield pressure only
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ScmOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ScmOptions> auto& s) {
   using namespace allowed;
   constexpr unsigned kSoil = role::key | role::soil;
   visit(keys::kMaterial, s.material);

@@ -20,8 +20,7 @@ struct HeldHubOptions {
   double lowering = 0.1;  // speed until then, m/s
   double spin = 0.0;      // about the hub's y axis, rad/s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<HeldHubOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<HeldHubOptions> auto& s) {
   visit(key("depth", "m", allowed::from(0), "Depth by which the hub is lowered in all."), s.depth);
   visit(key("lowering", "m/s", allowed::above(0), "Speed at which it is lowered."), s.lowering);
   visit(key("spin", "rad/s", "Spin about the hub's y axis."), s.spin);
@@ -31,10 +30,7 @@ void visit_fields(Visit&& visit, FieldsOf<HeldHubOptions> auto& s) {
 struct HeldHubRow {
   double hub_load = 0.0;  // with which the hub presses the wheel down, N
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<HeldHubRow> auto& r) {
-  visit(column::mean("hub_load_N", "N"), r.hub_load);
-}
+void visit_fields(auto&& visit, FieldsOf<HeldHubRow> auto& r) { visit(column::mean("hub_load_N", "N"), r.hub_load); }
 
 /// @pre the section was checked against the schema
 std::unique_ptr<RigSpec> read_held_hub(const nlohmann::json& section, const ReadContext& context);

@@ -23,8 +23,7 @@ struct SlidingPillarSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SlidingPillarSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SlidingPillarSpec> auto& s) {
   visit(needed("spindle"), s.spindle);
   visit(needed("upright"), s.upright);
   visit(needed("bottom", "m", keys::kPoint, "Lower end of the pillar, from the axle's origin."), s.bottom);

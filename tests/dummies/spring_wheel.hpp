@@ -28,8 +28,7 @@ struct SpringWheelOptions {
   double damping = 200.0;  // of one vertex, N s/m
   double mass = 30.0;      // kg, a solid cylinder's
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpringWheelOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SpringWheelOptions> auto& s) {
   using namespace allowed;
   visit(needed("radius", "m", from(0.01), "Undeformed radius."), s.radius);
   visit(needed("width", "m", from(0.01), "Width."), s.width);

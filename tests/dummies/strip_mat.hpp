@@ -24,8 +24,7 @@ struct StripMatOptions {
   double stiffness = 4e8;             // κ, N/m³
   double damping = 2.5e4;             // d, N s/m³
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StripMatOptions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StripMatOptions> auto& s) {
   visit(Field{"length", "m", role::key}, s.length);
   visit(Field{"width", "m", role::key}, s.width);
   visit(Field{"ground_stiffness", "N/m³", role::key}, s.stiffness);

@@ -34,8 +34,7 @@ struct SpringRow {
   double spring_work = 0.0;   // J
   double double_heave = 0.0;  // m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpringRow> auto& r) {
+void visit_fields(auto&& visit, FieldsOf<SpringRow> auto& r) {
   visit(column::mean("spring_force_N", "N").following("slip").negative(), r.spring_force);
   visit(column::instant("heave_m", "m"), r.heave);
   visit(column::cumulative("spring_work_J", "J").following("slip"), r.spring_work);

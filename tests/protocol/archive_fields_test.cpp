@@ -18,8 +18,7 @@ enum class Mood : std::int32_t { calm = 0, wild = 7 };
 struct Point {
   double x = 0.0, y = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Point> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Point> auto& s) {
   visit(Field{"x", "m"}, s.x);
   visit(Field{"y", "m"}, s.y);
 }
@@ -39,8 +38,7 @@ struct Sample {
   std::vector<std::array<int, 3>> triangles;
   std::vector<Point> path;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Sample> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Sample> auto& s) {
   visit(Field{"count"}, s.count);
   visit(Field{"hash"}, s.hash);
   visit(Field{"on"}, s.on);
@@ -60,8 +58,7 @@ void visit_fields(Visit&& visit, FieldsOf<Sample> auto& s) {
 struct LaterPoint {
   double y = 0.0, x = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LaterPoint> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LaterPoint> auto& s) {
   visit(Field{"y", "m"}, s.y);
   visit(Field{"x", "m"}, s.x);
 }

@@ -79,8 +79,7 @@ class SectorFactor {
   void restore(const Archive& archive);
 
  private:
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<SectorFactor> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<SectorFactor> auto& s) {
     visit(furrow::Field{"valid", ""}, s.valid_);
     visit(furrow::Field{"step", "s"}, s.h_);
     visit(furrow::Field{"excess"}, s.excess_);

@@ -94,8 +94,7 @@ class ShellIntegrator {
   void restore(const Archive& archive);
 
  private:
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<ShellIntegrator> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<ShellIntegrator> auto& s) {
     visit(furrow::Field{"reference", "N"}, s.reference_);
     visit(furrow::Field{"unit_force", "N/Pa"}, s.unit_force_);
     visit(furrow::Field{"elastic", "J"}, s.elastic_);

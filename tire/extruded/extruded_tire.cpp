@@ -62,8 +62,7 @@ class ExtrudedTire final : public Tire {
   Outcome run(const RimTrajectory& rim, const WheelPlane& plane, int steps, PlaneSums& sums);
   void book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning, const PlaneSums& sums);
 
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<ExtrudedTire> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<ExtrudedTire> auto& s) {
     visit(Field{"rim", ""}, s.rim_);
     visit(Field{"spindle", ""}, s.spindle_);
     visit(Field{"dissipation", "J"}, s.dissipation_);

@@ -17,8 +17,7 @@ struct ScalingFactors {
          lxal = 1.0, lyka = 1.0, lvyka = 1.0, ls = 1.0, lsgkp = 1.0, lsgal = 1.0, lgyr = 1.0, lmx = 1.0, lvmx = 1.0,
          lmy = 1.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ScalingFactors> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ScalingFactors> auto& s) {
   visit(Field{"LFZO"}, s.lfzo);
   visit(Field{"LCX"}, s.lcx);
   visit(Field{"LMUX"}, s.lmux);
@@ -55,8 +54,7 @@ struct LongitudinalCoefficients {
          pkx2 = 0.0, pkx3 = 0.0, phx1 = 0.0, phx2 = 0.0, pvx1 = 0.0, pvx2 = 0.0, rbx1 = 0.0, rbx2 = 0.0, rcx1 = 0.0,
          rex1 = 0.0, rex2 = 0.0, rhx1 = 0.0, ptx1 = 0.0, ptx2 = 0.0, ptx3 = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LongitudinalCoefficients> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LongitudinalCoefficients> auto& s) {
   visit(Field{"PCX1"}, s.pcx1);
   visit(Field{"PDX1"}, s.pdx1);
   visit(Field{"PDX2"}, s.pdx2);
@@ -87,8 +85,7 @@ void visit_fields(Visit&& visit, FieldsOf<LongitudinalCoefficients> auto& s) {
 struct OverturningCoefficients {
   double qsx1 = 0.0, qsx2 = 0.0, qsx3 = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<OverturningCoefficients> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<OverturningCoefficients> auto& s) {
   visit(Field{"QSX1"}, s.qsx1);
   visit(Field{"QSX2"}, s.qsx2);
   visit(Field{"QSX3"}, s.qsx3);
@@ -101,8 +98,7 @@ struct LateralCoefficients {
          rby1 = 0.0, rby2 = 0.0, rby3 = 0.0, rcy1 = 0.0, rey1 = 0.0, rey2 = 0.0, rhy1 = 0.0, rhy2 = 0.0, rvy1 = 0.0,
          rvy2 = 0.0, rvy3 = 0.0, rvy4 = 0.0, rvy5 = 0.0, rvy6 = 0.0, pty1 = 0.0, pty2 = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LateralCoefficients> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LateralCoefficients> auto& s) {
   visit(Field{"PCY1"}, s.pcy1);
   visit(Field{"PDY1"}, s.pdy1);
   visit(Field{"PDY2"}, s.pdy2);
@@ -143,8 +139,7 @@ void visit_fields(Visit&& visit, FieldsOf<LateralCoefficients> auto& s) {
 struct RollingCoefficients {
   double qsy1 = 0.0, qsy2 = 0.0, qsy3 = 0.0, qsy4 = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RollingCoefficients> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RollingCoefficients> auto& s) {
   visit(Field{"QSY1"}, s.qsy1);
   visit(Field{"QSY2"}, s.qsy2);
   visit(Field{"QSY3"}, s.qsy3);
@@ -159,8 +154,7 @@ struct AligningCoefficients {
          qez3 = 0.0, qez4 = 0.0, qez5 = 0.0, qhz1 = 0.0, qhz2 = 0.0, qhz3 = 0.0, qhz4 = 0.0, ssz1 = 0.0, ssz2 = 0.0,
          ssz3 = 0.0, ssz4 = 0.0, qtz1 = 0.0, mbelt = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<AligningCoefficients> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<AligningCoefficients> auto& s) {
   visit(Field{"QBZ1"}, s.qbz1);
   visit(Field{"QBZ2"}, s.qbz2);
   visit(Field{"QBZ3"}, s.qbz3);
@@ -201,8 +195,7 @@ struct VerticalCoefficients {
   double breff = 0.0, dreff = 0.0, freff = 0.0;  // of the effective rolling radius
   double fnomin = 0.0;                           // F_z0, N
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VerticalCoefficients> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<VerticalCoefficients> auto& s) {
   visit(Field{"VERTICAL_STIFFNESS", "N/m"}, s.vertical_stiffness);
   visit(Field{"VERTICAL_DAMPING", "N s/m"}, s.vertical_damping);
   visit(Field{"BREFF"}, s.breff);
@@ -219,8 +212,7 @@ struct Dimensions {
   double rim_radius = 0.0;       // m
   double rim_width = 0.0;        // m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Dimensions> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Dimensions> auto& s) {
   visit(Field{"UNLOADED_RADIUS", "m"}, s.unloaded_radius);
   visit(Field{"WIDTH", "m"}, s.width);
   visit(Field{"ASPECT_RATIO"}, s.aspect_ratio);
@@ -234,8 +226,7 @@ struct TireInertia {
   double ixx = 0.0;   // about a diameter, kg m²
   double iyy = 0.0;   // about the axle, kg m²
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TireInertia> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TireInertia> auto& s) {
   visit(Field{"MASS", "kg"}, s.mass);
   visit(Field{"IXX", "kg m²"}, s.ixx);
   visit(Field{"IYY", "kg m²"}, s.iyy);

@@ -27,8 +27,7 @@ struct HandlingFile {
   double spin_inertia = 0.0;       // about the axle, kg m²
   double diametral_inertia = 0.0;  // kg m²
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<HandlingFile> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<HandlingFile> auto& s) {
   constexpr Allowed kPositive = allowed::above(0).optional();
   visit(needed("tir", "", "Tire property file, relative to this file."), s.tir);
   visit(key("mass", "kg", kPositive, "Mass of the tire; without it MASS of [INERTIA]."), s.mass);

@@ -51,8 +51,7 @@ class HandlingTire final : public Tire {
   void do_place(const RimState& rim) override;
   Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   void do_restore(const Archive& archive) override;
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<HandlingTire> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<HandlingTire> auto& s) {
     visit(Field{"rim", ""}, s.rim_);
     visit(Field{"spindle", ""}, s.spindle_);
     visit(Field{"patch", ""}, s.patch_);

@@ -30,8 +30,7 @@ namespace furrow::tire::handling {
 struct PatchState {
   double along = 0.0, across = 0.0;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PatchState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PatchState> auto& s) {
   visit(Field{"along", "m"}, s.along);
   visit(Field{"across", "m"}, s.across);
 }

@@ -67,8 +67,7 @@ class PlanarCarcass final : public PlaneModel {
   void hold(double h, double angle);
   void renew();
 
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<PlanarCarcass> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<PlanarCarcass> auto& s) {
     visit(Field{"centre_velocity_x", "m/s"}, s.centre_.x);
     visit(Field{"centre_velocity_z", "m/s"}, s.centre_.z);
     visit(Field{"step_limit", "s"}, s.limit_);

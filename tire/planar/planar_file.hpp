@@ -26,8 +26,7 @@ struct PlanarFile {
   PlanarVolume volume = PlanarVolume::element;  // options.averaged of the parameters
   ContactBlock contact;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PlanarFile> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PlanarFile> auto& s) {
   using namespace allowed;
   auto& p = s.params;
   visit(needed("radius", "m", keys::kSize, "Radius of the undeformed tire."), p.size.radius);

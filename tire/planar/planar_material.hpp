@@ -26,8 +26,7 @@ struct PlanarMaterial {
   double poisson_ratio = 0.0;
   double viscosity = 0.0;  // ξ, Pa s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PlanarMaterial> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PlanarMaterial> auto& s) {
   using namespace allowed;
   visit(needed("density", "kg/m³", above(0), "Density."), s.density);
   visit(needed("young_modulus", "Pa", above(0), "Young's modulus."), s.young_modulus);

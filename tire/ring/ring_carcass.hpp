@@ -89,8 +89,7 @@ class RingCarcass final : public PlaneModel {
             PlaneSums& sums);
   void lay_out();
 
-  template <class Visit>
-  friend void visit_fields(Visit&& visit, FieldsOf<RingCarcass> auto& s) {
+  friend void visit_fields(auto&& visit, FieldsOf<RingCarcass> auto& s) {
     visit(Field{"angle", "rad"}, s.angle_);
     visit(Field{"spin", "rad/s"}, s.spin_);
     visit(Field{"centre_velocity_x", "m/s"}, s.centre_.x);

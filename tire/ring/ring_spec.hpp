@@ -27,8 +27,7 @@ struct RingFile {
   double diametral_inertia = 0.0;    // kg m²
   ContactBlock contact;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RingFile> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RingFile> auto& s) {
   using namespace allowed;
   auto& p = s.params;
   auto& m = s.motion;

@@ -43,8 +43,7 @@ struct KinematicsRow {
   double wheel_rate = kNone;  // N/m
   double ackermann = kNone;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<KinematicsRow> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<KinematicsRow> auto& s) {
   visit(Field{"motion", ""}, s.motion);
   visit(Field{"wheel", ""}, s.wheel);
   visit(Field{"steering"}, s.steering);

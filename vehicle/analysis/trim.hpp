@@ -30,8 +30,7 @@ struct StrutTrim {
   double to_shortest = 0.0,
          to_longest = 0.0;  // m to its stops or marks, negative beyond; infinite where it has none
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StrutTrim> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StrutTrim> auto& s) {
   visit(Field{"length", "m"}, s.length);
   visit(Field{"force", "N"}, s.force);
   visit(Field{"to_shortest", "m"}, s.to_shortest);
@@ -48,8 +47,7 @@ struct WheelTrim {
   double camber = 0.0, toe = 0.0;  // rad
   std::optional<StrutTrim> spring, shock;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelTrim> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WheelTrim> auto& s) {
   visit(Field{"name", ""}, s.name);
   visit(Field{"load", "N"}, s.load);
   visit(Field{"deflection", "m"}, s.deflection);
@@ -69,8 +67,7 @@ struct TrimMode {
   double frequency = 0.0;  // undamped, Hz
   double damping = 0.0;    // share of critical, with the mean of the shocks' coefficients for small speeds
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TrimMode> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TrimMode> auto& s) {
   visit(Field{"name", ""}, s.name);
   visit(Field{"frequency", "Hz"}, s.frequency);
   visit(Field{"damping"}, s.damping);
@@ -83,8 +80,7 @@ struct Trim {
   double pitch = 0.0, roll = 0.0;  // of the chassis, rad; positive: nose down, right side down
   std::vector<TrimMode> modes;     // lowest frequency first
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Trim> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Trim> auto& s) {
   visit(Field{"wheels", ""}, s.wheels);
   visit(Field{"axle_loads", "N"}, s.axle_loads);
   visit(Field{"height", "m"}, s.height);

@@ -29,8 +29,7 @@ struct VehiclePage {
   std::vector<double> tire_masses, loaded_radii;  // of each wheel, kg; under its load, m
   Trim trim;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VehiclePage> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<VehiclePage> auto& s) {
   visit(Field{"name", ""}, s.name);
   visit(Field{"file", ""}, s.file);
   visit(Field{"mass", "kg"}, s.mass);

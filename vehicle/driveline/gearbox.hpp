@@ -34,8 +34,7 @@ struct GearboxState {
   double hand_over = 0.0;                     // torque of the new gear at the end of the torque phase, N m
   int redundant = 0;                          // redundant constraints before the shift
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<GearboxState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<GearboxState> auto& s) {
   visit(Field{"gear"}, s.gear);
   visit(Field{"old_gear"}, s.old_gear);
   visit(Field{"phase", ""}, s.phase);

@@ -24,9 +24,6 @@ struct ShiftLogic {
     return next;
   }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ShiftLogic> auto& s) {
-  visit(Field{"last_shift", "s"}, s.last_shift);
-}
+void visit_fields(auto&& visit, FieldsOf<ShiftLogic> auto& s) { visit(Field{"last_shift", "s"}, s.last_shift); }
 
 }  // namespace furrow::vehicle

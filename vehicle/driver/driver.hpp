@@ -34,8 +34,7 @@ struct DriverInputs {
   double steering = 0.0;               // −1 to 1, positive to the left
   int gear = gear_request::automatic;  // or reverse, neutral, 1, 2, …
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DriverInputs> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DriverInputs> auto& s) {
   visit(Field{"throttle", "-", role::column}, s.throttle);
   visit(Field{"brake", "-", role::column}, s.brake);
   visit(Field{"steering", "-", role::column}, s.steering);
@@ -52,8 +51,7 @@ struct DriverCar {
   double drive_force = 0.0;    // largest at the wheels: the smaller of engine's and grip's, N
   double brake_force = 0.0;    // largest at the wheels, N
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DriverCar> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DriverCar> auto& s) {
   visit(Field{"wheelbase", "m"}, s.wheelbase);
   visit(Field{"steering_lock", "rad"}, s.steering_lock);
   visit(Field{"width", "m"}, s.width);
@@ -72,8 +70,7 @@ struct DriverRecord {
   bool path_ended = false;     // its last point was passed
   double path_end_time = 0.0;  // when that was first seen, s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DriverRecord> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DriverRecord> auto& s) {
   visit(Field{"inputs", ""}, s.inputs);
   visit(Field{"target_speed", "m/s", role::column}, s.target_speed);
   visit(Field{"path_distance", "m", role::column}, s.path_distance);

@@ -28,8 +28,7 @@ struct InputSpec {
   DriverPoints steering;         // −1 to 1, positive to the left
   DriverPoints gear;             // gear_request, or 1, 2, …
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<InputSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<InputSpec> auto& s) {
   using namespace allowed;
   visit(key("throttle", "-", role::by_hand, keys::kSeries, "0 to 1"), s.throttle);
   visit(key("brake", "-", role::by_hand, keys::kSeries, "0 to 1"), s.brake);
@@ -45,8 +44,7 @@ struct SpeedSpec {
   double hysteresis = 0.05;    // of throttle, between the pedals
   double stop_speed = 0.1;     // below which it stops and holds, when the target is 0, m/s; 0 for never
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpeedSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SpeedSpec> auto& s) {
   using namespace allowed;
   visit(key("target", "m/s", role::by_hand, keys::kSeries.required(),
             "0 to 100; a CSV file has the columns time_s and speed_m_s"),
@@ -71,8 +69,7 @@ struct StraightPath {
   static constexpr const char* kName = "straight";
   double length = 0.0;  // m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StraightPath> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StraightPath> auto& s) {
   using namespace allowed;
   visit(needed("length", "m", above(0).to(keys::kMostLength), "Length of the path."), s.length);
 }
@@ -84,8 +81,7 @@ struct CirclePath {
   double angle_deg = 360.0;
   std::string turn = "left";  // or "right"
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<CirclePath> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<CirclePath> auto& s) {
   using namespace allowed;
   visit(key("lead_in", "m", from(0, keys::kMostLength), "Straight before the circle."), s.lead_in);
   visit(needed("radius", "m", above(0).to(keys::kMostLength), "Radius of the circle."), s.radius);
@@ -98,8 +94,7 @@ struct LaneChangePath {
   std::string track = "iso_3888_1";      // a name in kLaneChangeTracks (lane_change.hpp)
   double lead_in = 0.0, lead_out = 0.0;  // straight before and after the track, m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LaneChangePath> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LaneChangePath> auto& s) {
   using namespace allowed;
   visit(key("track", "", words("iso_3888_1 iso_3888_2"),
             "ISO 3888-1 (125 m) or ISO 3888-2 (61 m), centre lines of the lanes for the vehicle's width."),
@@ -112,8 +107,7 @@ struct WaypointPath {
   static constexpr const char* kName = "waypoints";
   DriverPoints points;  // (x, y), m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WaypointPath> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WaypointPath> auto& s) {
   using namespace allowed;
   visit(key("points", "m", role::by_hand,
             shaped(R"({"anyOf": [{"type": "string"},
@@ -133,8 +127,7 @@ struct PurePursuit {
   double lookahead_time = 0.6;       // s
   double lookahead_distance = -1.0;  // at least, m; below zero: one and a half wheelbases
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PurePursuit> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PurePursuit> auto& s) {
   using namespace allowed;
   visit(key("lookahead_time", "s", from(0, 100), "Times the speed it is the distance to look ahead."),
         s.lookahead_time);
@@ -148,8 +141,7 @@ struct Stanley {
   double gain = 2.5;        // 1/s
   double soft_speed = 1.0;  // m/s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Stanley> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Stanley> auto& s) {
   using namespace allowed;
   visit(key("gain", "1/s", above(0).to(1e3), "Gain of the cross-track error."), s.gain);
   visit(key("soft_speed", "m/s", above(0).to(100), "Added to the speed."), s.soft_speed);
@@ -164,8 +156,7 @@ struct Preview {
   double side_slip = 0.015;         // gradient S of the rear axle, rad s²/m
   double yaw_damping = 0.1;         // s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Preview> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Preview> auto& s) {
   using namespace allowed;
   visit(
       key("preview_time", "s", from(0, 100), "Times the speed it is how far ahead the path's curvature is looked at."),
@@ -195,8 +186,7 @@ struct PathSteeringSpec {
   SteeringLaw law;
   double rate = 1.0;  // largest, of steering, 1/s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PathSteeringSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PathSteeringSpec> auto& s) {
   using namespace allowed;
   visit(key("rate", "1/s", above(0).to(1e6),
             "Largest change of steering: at 1 the wheel turns from the middle to its stop in 1 s."),
@@ -211,8 +201,7 @@ struct PathSpec {
   double heading_deg = 0.0;  // of its x axis
   PathSteeringSpec steering;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PathSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PathSpec> auto& s) {
   using namespace allowed;
   visit(key("x", "m", from(-keys::kMostLength, keys::kMostLength), "x of the path's origin."), s.x);
   visit(key("y", "m", from(-keys::kMostLength, keys::kMostLength), "y of the path's origin."), s.y);

@@ -16,8 +16,7 @@ struct FileDriverState {
   PathState path;
   DriverRecord record;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<FileDriverState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<FileDriverState> auto& s) {
   visit(Field{"speed", ""}, s.speed);
   visit(Field{"path", ""}, s.path);
   visit(Field{"record", ""}, s.record);

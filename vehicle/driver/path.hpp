@@ -24,8 +24,7 @@ struct PathPlace {
   int piece = 0;          // counted from 0
   double fraction = 0.0;  // of the piece, 0 to 1
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PathPlace> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PathPlace> auto& s) {
   visit(Field{"piece"}, s.piece);
   visit(Field{"fraction"}, s.fraction);
 }

@@ -41,8 +41,7 @@ struct PathState {
   double steering = 0.0;  // then
   PathPlace place;        // that the axle has reached; never goes back
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PathState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PathState> auto& s) {
   visit(Field{"begun", ""}, s.begun);
   visit(Field{"time", "s"}, s.time);
   visit(Field{"steering"}, s.steering);

@@ -33,8 +33,7 @@ struct SpeedState {
   bool braking = false;   // the foot is on the brake
   bool stopped = false;   // and holds
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpeedState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SpeedState> auto& s) {
   visit(Field{"begun", ""}, s.begun);
   visit(Field{"time", "s"}, s.time);
   visit(Field{"error", "m/s"}, s.error);

@@ -16,8 +16,7 @@ struct BodyState {
   Vec3 velocity = Vec3::Zero();          // m/s, W
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<BodyState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<BodyState> auto& s) {
   visit(Field{"position", "m"}, s.position);
   visit(Field{"orientation"}, s.orientation);
   visit(Field{"velocity", "m/s"}, s.velocity);
@@ -44,8 +43,7 @@ struct Body {
   }
 };
 /// What a saved state keeps of a body; the rest follows, or is the builder's.
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Body> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Body> auto& s) {
   visit(Field{"state", ""}, s.state);
   visit(Field{"angular_momentum", "kg m²/s"}, s.angular_momentum);
 }

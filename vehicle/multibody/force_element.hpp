@@ -40,8 +40,7 @@ struct ElementEnergy {
   double elastic = 0.0;     // work that the elastic part has done since the start, J
   double dissipated = 0.0;  // what the other part has taken since the start, J
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ElementEnergy> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ElementEnergy> auto& s) {
   visit(Field{"stored", "J"}, s.stored);
   visit(Field{"elastic", "J"}, s.elastic);
   visit(Field{"dissipated", "J"}, s.dissipated);

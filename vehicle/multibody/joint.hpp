@@ -43,8 +43,7 @@ struct Reaction {
   Vec3 force = Vec3::Zero();   // N
   Vec3 moment = Vec3::Zero();  // N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Reaction> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Reaction> auto& s) {
   visit(Field{"force", "N"}, s.force);
   visit(Field{"moment", "N m"}, s.moment);
 }

@@ -52,8 +52,7 @@ struct RateControl {
          upper = std::numeric_limits<double>::infinity();  // N m
   double torque = 0.0;                                     // N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RateControl> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RateControl> auto& s) {
   visit(Field{"mode", ""}, s.mode);
   visit(Field{"target", "rad/s"}, s.target);
   visit(Field{"lower", "N m"}, s.lower);
@@ -66,8 +65,7 @@ struct RateState {
   double torque = 0.0;  // λ, mean over the last step, N m
   double work = 0.0;    // ∫ λ u dt since the start, J; negative: taken from the system
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RateState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RateState> auto& s) {
   visit(Field{"side"}, s.side);
   visit(Field{"torque", "N m"}, s.torque);
   visit(Field{"work", "J"}, s.work);

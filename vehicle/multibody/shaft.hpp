@@ -15,8 +15,7 @@ struct ShaftState {
   double angle = 0.0;  // ∫ Ω dt, rad
   double speed = 0.0;  // Ω, rad/s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ShaftState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ShaftState> auto& s) {
   visit(Field{"angle", "rad"}, s.angle);
   visit(Field{"speed", "rad/s"}, s.speed);
 }

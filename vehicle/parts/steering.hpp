@@ -17,8 +17,7 @@ struct SteeringState {
   double since = 0.0;                            // s; below, at that time
   double value = 0.0, rate = 0.0, target = 0.0;  // s, s′ (1/s), s*
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SteeringState> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SteeringState> auto& s) {
   visit(Field{"since", "s"}, s.since);
   visit(Field{"value"}, s.value);
   visit(Field{"rate", "1/s"}, s.rate);

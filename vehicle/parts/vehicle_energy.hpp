@@ -23,8 +23,7 @@ struct VehicleEnergy {
   double stored() const { return kinetic + gravity + springs; }
   double lost() const { return converter_heat + clutch_heat + shift_heat + brake_heat + shock_heat; }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<VehicleEnergy> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<VehicleEnergy> auto& s) {
   visit(Field{"kinetic", "J"}, s.kinetic);
   visit(Field{"gravity", "J"}, s.gravity);
   visit(Field{"springs", "J"}, s.springs);

@@ -16,8 +16,7 @@ struct ShaftSpec {
   Vec3 axis = Vec3::UnitX();        // a direction in the vehicle's frame
   std::string carrier = "chassis";  // or the name of an axle with a housing
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ShaftSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ShaftSpec> auto& s) {
   using namespace allowed;
   visit(needed("name", "", not_empty(), "Name of the shaft, by which other parts refer to it."), s.name);
   visit(needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia."), s.inertia);
@@ -33,8 +32,7 @@ struct EngineSpec {
   double idle_rpm = 0.0;         // below which the governor opens the throttle
   double idle_band_rpm = 100.0;  // over which it opens fully
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<EngineSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<EngineSpec> auto& s) {
   using namespace allowed;
   visit(needed("shaft", "", not_empty(), "Shaft that is the engine's crankshaft."), s.shaft);
   visit(needed("torque", "N m", keys::kTable, "Torque at full throttle: pairs of rpm and N m."), s.torque);
@@ -53,8 +51,7 @@ struct ConverterSpec {
   Points capacity;      // (rad/s)/√(N m) against the speed ratio, 0 to 1
   Points torque_ratio;  // against the speed ratio
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ConverterSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ConverterSpec> auto& s) {
   using namespace allowed;
   visit(needed("in", "", not_empty(), "Shaft of the impeller."), s.in);
   visit(needed("out", "", not_empty(), "Shaft of the turbine."), s.out);
@@ -70,8 +67,7 @@ struct ClutchSpec {
   double torque = 0.0;                      // closed, N m
   double open_rpm = 0.0, closed_rpm = 0.0;  // of the input
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ClutchSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ClutchSpec> auto& s) {
   using namespace allowed;
   visit(keys::kIn, s.in);
   visit(keys::kOut, s.out);
@@ -89,8 +85,7 @@ struct GearboxSpec {
   double up_rpm = 0.0, down_rpm = 0.0;  // of the input
   double latency = 1.0;                 // between the starts of two shifts, s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<GearboxSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<GearboxSpec> auto& s) {
   using namespace allowed;
   visit(keys::kIn, s.in);
   visit(keys::kOut, s.out);
@@ -114,8 +109,7 @@ struct GearSpec {
   std::string in, out;  // shafts
   double ratio = 1.0;   // output over input
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<GearSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<GearSpec> auto& s) {
   using namespace allowed;
   visit(needed("name", "", not_empty(), "Name of the joint in messages."), s.name);
   visit(keys::kIn, s.in);
@@ -131,8 +125,7 @@ struct DifferentialSpec {
   double share = 0.5;                 // of the torque that goes to the first output
   std::optional<double> lock_torque;  // of the clutch between the outputs, when locked, N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DifferentialSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DifferentialSpec> auto& s) {
   using namespace allowed;
   visit(needed("name", "", not_empty(), "Name of the differential in messages."), s.name);
   visit(needed("box", "", not_empty(), "Shaft that drives the differential's housing."), s.box);
@@ -151,8 +144,7 @@ struct WheelShaftSpec {
   std::string shaft;
   std::string axle, side;  // side: left or right
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelShaftSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WheelShaftSpec> auto& s) {
   using namespace allowed;
   visit(needed("shaft", "", not_empty(), "Shaft that turns with the wheel."), s.shaft);
   visit(needed("axle", "", not_empty(), "Name of the wheel's axle."), s.axle);
@@ -170,8 +162,7 @@ struct MotorSpec {
   double stall_torque = 0.0;  // of the motor, N m
   double no_load_rpm = 0.0;   // of the motor
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<MotorSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<MotorSpec> auto& s) {
   using namespace allowed;
   visit(needed("axle", "", not_empty(), "Name of the axle."), s.axle);
   visit(needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia of the rotor."), s.inertia);
@@ -200,8 +191,7 @@ struct DrivelineSpec {
     return -1;
   }
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DrivelineSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DrivelineSpec> auto& s) {
   using namespace allowed;
   visit(key("shafts", "", "All shafts, but the rotors of motors."), s.shafts);
   visit(key("engine"), s.engine);

@@ -24,8 +24,7 @@ struct BodySpec {
   Vec3 center_of_mass = Vec3::Zero();  // m
   Mat3 inertia = Mat3::Zero();         // about it, kg m²; in a file [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<BodySpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<BodySpec> auto& s) {
   visit(keys::kMass, s.mass);
   visit(keys::kCenterOfMass, s.center_of_mass);
   visit(keys::kInertia, s.inertia);
@@ -40,8 +39,7 @@ struct SpindleSpec {
   double camber_deg = 0.0;      // as drawn; positive: the wheel's top leans outward
   double toe_deg = 0.0;         // as drawn; positive: toe-in
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpindleSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SpindleSpec> auto& s) {
   using namespace allowed;
   visit(needed("center", "m", keys::kPoint, "Centre of the wheel, from the axle's origin."), s.center);
   visit(keys::kMass, s.mass);
@@ -63,8 +61,7 @@ struct ArmSpec {
   Vec3 chassis_front = Vec3::Zero(), chassis_back = Vec3::Zero();  // of the hinge, m
   Vec3 upright = Vec3::Zero();                                     // ball, m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ArmSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ArmSpec> auto& s) {
   visit(keys::kMass, s.mass);
   visit(keys::kCenterOfMass, s.center_of_mass);
   visit(keys::kInertia, s.inertia);
@@ -82,8 +79,7 @@ struct TieRodSpec {
                                       "chassis if the axle is not steered."};
   Vec3 inner = Vec3::Zero(), outer = Vec3::Zero();  // m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TieRodSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TieRodSpec> auto& s) {
   visit(needed("inner", "m", keys::kPoint, "Inner end, from the axle's origin."), s.inner);
   visit(needed("outer", "m", keys::kPoint, "Outer end on the upright, from the axle's origin."), s.outer);
 }
@@ -95,8 +91,7 @@ struct StopSpec {
   double shortest = 0.0, longest = 0.0;  // m
   Points force;                          // N against m beyond the mark
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StopSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StopSpec> auto& s) {
   using namespace allowed;
   visit(needed("shortest", "m", above(0), "Length below which it acts."), s.shortest);
   visit(needed("longest", "m", above(0), "Length above which it acts."), s.longest);
@@ -116,8 +111,7 @@ struct SpringSpec {
   Points force;                                     // N against m
   std::optional<StopSpec> stop;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SpringSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SpringSpec> auto& s) {
   using namespace allowed;
   visit(keys::kChassisEnd, s.chassis);
   visit(keys::kEnd, s.end);
@@ -137,8 +131,7 @@ struct OuterShockSpec {
   double blend_length = 0.0;                // m
   double compression = 0.0, rebound = 0.0;  // N s/m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<OuterShockSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<OuterShockSpec> auto& s) {
   using namespace allowed;
   visit(needed("shortest", "m", above(0), "Length below which these coefficients hold."), s.shortest);
   visit(needed("longest", "m", above(0), "Length above which these coefficients hold."), s.longest);
@@ -155,8 +148,7 @@ struct ShockSpec {
   double compression = 0.0, rebound = 0.0;          // N s/m
   std::optional<OuterShockSpec> outer;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<ShockSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<ShockSpec> auto& s) {
   visit(keys::kChassisEnd, s.chassis);
   visit(keys::kEnd, s.end);
   visit(keys::kOn, s.on);

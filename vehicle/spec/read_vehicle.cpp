@@ -32,8 +32,7 @@ struct RightKeys {
   std::optional<WheelSpec> wheel;
   std::optional<BrakeSpec> brake;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RightKeys> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RightKeys> auto& s) {
   visit(key("suspension", "", "Suspension of the right side."), s.suspension);
   visit(key("wheel"), s.wheel);
   visit(key("brake"), s.brake);
@@ -50,8 +49,7 @@ struct AxleKeys {
   std::optional<SteeringSpec> steering;
   std::optional<RightKeys> right;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<AxleKeys> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<AxleKeys> auto& s) {
   visit(needed("name", "", allowed::not_empty(), "Name of the axle, in messages and for the driveline."), s.name);
   visit(
       needed("origin", "m", keys::kPoint, "Origin from which the axle's points are measured, in the vehicle's frame."),

@@ -24,8 +24,7 @@ struct PitmanArmSpec {
   double left_angle_deg = 0.0;                          // of the arm about z, with the wheel fully to the left
   double response_time = 0.05;                          // with which it follows the steering wheel, s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<PitmanArmSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<PitmanArmSpec> auto& s) {
   using namespace allowed;
   visit(needed("origin", "m", keys::kPoint, "Origin of the linkage in the vehicle's frame."), s.origin);
   visit(needed("pitch_deg", "deg", from(-90, 90), "Turn of the linkage's axes about y; positive: x points downward."),
@@ -50,8 +49,7 @@ struct RackSpec {
   double left_travel = 0.0;     // along y with the wheel fully to the left, m
   double response_time = 0.05;  // with which it follows the steering wheel, s
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RackSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RackSpec> auto& s) {
   using namespace allowed;
   visit(needed("rack"), s.rack);
   visit(needed("left_travel", "m", from(-10, 10),

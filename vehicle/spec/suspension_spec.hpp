@@ -25,8 +25,7 @@ struct DoubleWishboneSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<DoubleWishboneSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<DoubleWishboneSpec> auto& s) {
   visit(needed("spindle"), s.spindle);
   visit(needed("upright"), s.upright);
   visit(needed("upper_arm"), s.upper_arm);
@@ -50,8 +49,7 @@ struct TrailingArmSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<TrailingArmSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<TrailingArmSpec> auto& s) {
   visit(needed("spindle"), s.spindle);
   visit(needed("arm"), s.arm);
   visit(needed("pivot_inner", "m", keys::kPoint, "Inner pivot on the chassis, from the axle's origin."), s.pivot_inner);
@@ -68,8 +66,7 @@ struct LinkSpec {
   Vec3 chassis = Vec3::Zero(), axle = Vec3::Zero();  // m
   bool mirrored = true;                              // there is one on the right, too
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<LinkSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<LinkSpec> auto& s) {
   using namespace allowed;
   visit(needed("name", "", not_empty(), "Name of the rod in messages."), s.name);
   visit(keys::kChassisEnd, s.chassis);
@@ -87,8 +84,7 @@ struct RigidAxleSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<RigidAxleSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<RigidAxleSpec> auto& s) {
   visit(needed("spindle"), s.spindle);
   visit(needed("housing"), s.housing);
   visit(needed("links", "", "Four rods; a mirrored one counts twice."), s.links);
@@ -105,8 +101,7 @@ struct FixedSpec {
   SpindleSpec spindle;
   std::optional<std::string> on;  // name of the axle
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<FixedSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<FixedSpec> auto& s) {
   using namespace allowed;
   visit(needed("spindle"), s.spindle);
   visit(key("on", "", not_empty(),
@@ -124,8 +119,7 @@ struct WheelSpec {
   std::string tire;             // name of a tire file
   bool rigid = false;           // the tire is not to deform
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<WheelSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<WheelSpec> auto& s) {
   using namespace allowed;
   visit(needed("mass", "kg", above(0).to(1e7), "Rim without tire."), s.mass);
   visit(keys::kInertia, s.inertia);
@@ -138,8 +132,7 @@ struct BrakeSpec {
   static constexpr SchemaName kSchema{"brake", "Dry friction between the spindle and what carries its bearing."};
   double torque = 0.0;  // with the pedal fully down, N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<BrakeSpec> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<BrakeSpec> auto& s) {
   using namespace allowed;
   visit(needed("torque", "N m", above(0).to(1e8), "Torque of the brake with the pedal fully down."), s.torque);
 }

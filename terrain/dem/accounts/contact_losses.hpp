@@ -14,8 +14,7 @@ struct LossesOf {
   T sliding{}, normal_damping{}, tangential_damping{}, rolling{}, opening{};
 };
 using Losses = LossesOf<double>;
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Losses> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Losses> auto& s) {
   visit(Field{"sliding", ""}, s.sliding);
   visit(Field{"normal_damping", ""}, s.normal_damping);
   visit(Field{"tangential_damping", ""}, s.tangential_damping);
@@ -42,8 +41,7 @@ struct StoredOf {
   T tangential{};  // tangential and rolling springs
 };
 using Stored = StoredOf<double>;
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Stored> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Stored> auto& s) {
   visit(Field{"cohesion", "J"}, s.cohesion);
   visit(Field{"tangential", "J"}, s.tangential);
 }

@@ -87,8 +87,7 @@ class EnergyAccounts {
   State state_;
   std::vector<Stored> stored_;  // per strip, when it was last part of a sample
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<EnergyAccounts::State> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<EnergyAccounts::State> auto& s) {
   visit(Field{"lost", "J"}, s.lost);
   visit(Field{"power", "W"}, s.power);
   visit(Field{"since", "s"}, s.since);

@@ -84,8 +84,7 @@ class StepRefinement {
   std::vector<double> limits_;  // by level, m
   State state_;
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<StepRefinement::State> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<StepRefinement::State> auto& s) {
   visit(Field{"level"}, s.level);
   visit(Field{"calm"}, s.calm);
   visit(Field{"added"}, s.added);

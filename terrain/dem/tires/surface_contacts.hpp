@@ -27,8 +27,7 @@ struct SurfaceHistory {
   Quad tangential;  // spring force on the grain, N; w = √δ
   Quad rolling;     // N m
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<SurfaceHistory> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<SurfaceHistory> auto& s) {
   visit(Field{"grain"}, s.grain);
   visit(Field{"surface"}, s.surface);
   visit(Field{"normal"}, s.normal);

@@ -12,8 +12,7 @@ namespace {
 struct Strut {
   double length = 0.2, room = std::numeric_limits<double>::infinity();
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Strut> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Strut> auto& s) {
   visit(Field{"length", "m"}, s.length);
   visit(Field{"room", "m"}, s.room);
 }
@@ -26,8 +25,7 @@ struct Wheel {
   std::optional<Strut> spring = Strut{}, shock;
   std::vector<double> loads = {1.0, 2.0};
 };
-template <class Visit>
-void visit_fields(Visit&& visit, FieldsOf<Wheel> auto& s) {
+void visit_fields(auto&& visit, FieldsOf<Wheel> auto& s) {
   visit(Field{"name", ""}, s.name);
   visit(Field{"bodies", ""}, s.bodies);
   visit(Field{"rate", "N/m"}, s.rate);

@@ -392,7 +392,7 @@ std::filesystem::path find_mpirun() {
 LaunchResult supervise(const Launch& launch, ProgressDisplay& display) {
   FURROW_ASSERT(catches_stop_signals());
   catch_pause();
-  if (geteuid() == 0) display.say("furrow: runs as root: mpirun is given Open MPI's option --allow-run-as-root");
+  if (geteuid() == 0) display.say("furrow: runs as root, with Open MPI's option --allow-run-as-root");
   return Supervisor(launch, display).run();
 }
 

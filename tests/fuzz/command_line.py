@@ -119,7 +119,7 @@ def finding(arguments, code, out, err):
     """What is wrong with an answer; None when nothing is."""
     if code not in CODES:
         return f"exit code {code}" if code >= 0 else f"killed by {signal.Signals(-code).name}"
-    for word in ("fault of the program", "Traceback", "terminate called", "Sanitizer",
+    for word in ("error: fault of the program", "Traceback", "terminate called", "Sanitizer",
                  "runtime error", "nlohmann", "bad_alloc", "basic_string"):
         if word in err or word in out:
             return f"says '{word}'"

@@ -175,7 +175,8 @@ class Handling(SystemTest):
                 ({"start": "hmmwv_ring.json"}, "key 'start': is 'hmmwv_ring.json', expected a tire property file"),
                 ({"parameters": {"PKY9": {}}}, "key 'parameters.PKY9'"),
                 ({"targets": [{"data": "sweep_lumped.csv"}]}, "key 'targets[0].of': is missing"),
-                ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]}, "key 'targets[0].of': is 'fw', expected"),
+                ({"targets": [{"data": "sweep_lumped.csv", "of": "fw"}]},
+                 "key 'targets[0].of': 'fw' is unknown, expected 'fx'?"),
                 ({"targets": [{"data": "no.csv", "of": "fy"}]}, "no.csv"),
                 ({"targets": [{"data": "sweep_lumped.csv", "of": "fy", "on": "plate"}]}, "key 'targets[0].on'")):
             write_json(self.folder / "fit.json", {**good, **change})

@@ -237,7 +237,7 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
   grow(s.loads.torque, last - first + ahead);
   const Loads all{s.loads.force.data(), s.loads.torque.data()};
   // Of the parcels of strip k whose loads are complete.
-  const auto set_aside = [&](LoadBuffer& buffer, int k, int offset) {
+  const auto keep_loads = [&](LoadBuffer& buffer, int k, int offset) {
     grow(buffer.force, strips_[k].grains());
     grow(buffer.torque, strips_[k].grains());
     activity_.each_row(k, Activity::kLoads, [&](int from, int to) {
@@ -261,12 +261,12 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
     }
     if (!activity_.complete(k)) continue;
     if (k == chunk.from) {
-      set_aside(chunk.own, k, offset);
+      keep_loads(chunk.own, k, offset);
     } else {
       finish_strip(k, all.from(offset), part, wanted);
     }
   }
-  if (gathered && activity_.complete(beyond)) set_aside(chunk.ahead, beyond, last - first);
+  if (gathered && activity_.complete(beyond)) keep_loads(chunk.ahead, beyond, last - first);
 }
 
 void GrainSolver::finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, Wanted wanted) {

@@ -24,7 +24,7 @@ constexpr double kLeastAcross = 4.0;  // nodes under the width of a surface: few
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 /// One attached surface and the buffers of its substeps.
-struct GroundSurface {
+struct SoilSurface {
   SurfaceMesh mesh;
   ContactMaterial material;
   ShearLaw shear;
@@ -79,11 +79,11 @@ class ScmGround final : public Terrain {
   template <class Use>
   void each_node(double x_min, double x_max, double y_min, double y_max, Use&& use) const;
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
-  Outcome set_motion(GroundSurface& surface, const SurfaceState& target, double duration, std::size_t k) const;
+  Outcome set_motion(SoilSurface& surface, const SurfaceState& target, double duration, std::size_t k) const;
 
   ScmOptions options_;
   SoilField soil_;
-  std::vector<GroundSurface> surfaces_;
+  std::vector<SoilSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
   SoilLosses losses_;
@@ -164,8 +164,7 @@ void ScmGround::do_attach(const SurfaceMesh& mesh, const ContactMaterial& materi
 }
 
 /// Where the vertices will be at the end of the interval, and their velocity.
-Outcome ScmGround::set_motion(GroundSurface& surface, const SurfaceState& target, double duration,
-                              std::size_t k) const {
+Outcome ScmGround::set_motion(SoilSurface& surface, const SurfaceState& target, double duration, std::size_t k) const {
   const std::size_t count = surface.last.size();
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3 end = target.position[v] + duration * target.velocity[v];
@@ -183,7 +182,7 @@ Outcome ScmGround::do_advance(std::span<const SurfaceState> targets, double dura
                               std::span<NodalForces> forces, std::span<ContactSums> contact) {
   const double dt = duration / substeps;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    GroundSurface& surface = surfaces_[k];
+    SoilSurface& surface = surfaces_[k];
     if (Outcome moved = set_motion(surface, targets[k], duration, k); !moved.ok) return moved;
     for (int s = 0; s < substeps; ++s) {
       const double share = (s + 0.5) / substeps;
@@ -205,7 +204,7 @@ Outcome ScmGround::do_advance(std::span<const SurfaceState> targets, double dura
 
 TerrainState ScmGround::gather_state() const {
   TerrainState state;
-  for (const GroundSurface& surface : surfaces_) {
+  for (const SoilSurface& surface : surfaces_) {
     state.energies.elastic_normal += soil_.pressed(surface.bearing);
     state.energies.elastic_tangential += soil_.sheared(surface.shear, surface.bearing);
     state.floor_force += surface.floor_force;
@@ -234,7 +233,7 @@ void ScmGround::save(Archive& archive) const {
   archive.put("ground/stiffness", stiffness);
   archive.put("ground/surfaces", static_cast<std::int64_t>(surfaces_.size()));
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    const GroundSurface& surface = surfaces_[k];
+    const SoilSurface& surface = surfaces_[k];
     const Archive::Scope scope(archive, "ground/surface_" + std::to_string(k) + "/");
     save_fields(archive, "mesh", surface.mesh);
     save_fields(archive, "material", surface.material);
@@ -263,7 +262,7 @@ void ScmGround::do_restore(const Archive& archive) {
     restore_fields(archive, "material", material);
     restore_value(archive, "last", last, mesh.vertex_count);
     add_surface(mesh, material, std::move(last));
-    GroundSurface& surface = surfaces_.back();
+    SoilSurface& surface = surfaces_.back();
     restore_value(archive, "bearing", surface.bearing);
     for (const ContactNode& one : surface.bearing)
       if (one.node < 0 || one.node >= soil_.grid().count())

@@ -86,7 +86,7 @@ class DemTerrain : public Terrain {
   }
 
   void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
-    dem::check_surface_start(options_, solver_.params().bin, mesh, material, start, solver_.surfaces().count());
+    dem::check_surface_start(options_, solver_.params().bin, material, start, solver_.surfaces().count());
     solver_.surfaces().attach(mesh, material, dem::surface_coefficients(options_, material, part_), start);
   }
 

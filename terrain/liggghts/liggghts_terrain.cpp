@@ -100,7 +100,7 @@ class LiggghtsTerrain final : public Terrain {
   }
 
   void do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) override {
-    dem::check_surface_start(options_, contacts_.params().bin, mesh, material, start, contacts_.tires());
+    dem::check_surface_start(options_, contacts_.params().bin, material, start, contacts_.tires());
     contacts_.attach(mesh, material, start);
   }
 

@@ -8,8 +8,8 @@
 
 namespace furrow::terrain::dem {
 
-void check_surface_start(const DemOptions& options, const Bin& bin, const SurfaceMesh& mesh,
-                         const ContactMaterial& material, const SurfaceState& start, int index) {
+void check_surface_start(const DemOptions& options, const Bin& bin, const ContactMaterial& material,
+                         const SurfaceState& start, int index) {
   check_material(material, law_from(options.law), index);
   for (const Vec3& x : start.position)
     if (const char* wall = side_crossed(bin, {x, x}))

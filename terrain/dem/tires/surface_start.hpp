@@ -8,9 +8,8 @@
 namespace furrow::terrain::dem {
 
 /// @param index of the tire, for messages
-/// @throws Error(bad_input) when mesh and positions do not belong together, the law has no use for the material, or the
-/// surface starts beyond a side of the bin
-void check_surface_start(const DemOptions& options, const Bin& bin, const SurfaceMesh& mesh,
-                         const ContactMaterial& material, const SurfaceState& start, int index);
+/// @throws Error(bad_input) when the law has no use for the material, or the surface starts beyond a side of the bin
+void check_surface_start(const DemOptions& options, const Bin& bin, const ContactMaterial& material,
+                         const SurfaceState& start, int index);
 
 }  // namespace furrow::terrain::dem

@@ -55,7 +55,7 @@ TEST(GrainSolver, sliding_sphere_rolls_at_five_sevenths) {
     few.options.friction_velocity_scale = 500.0;
     few.gravity = kStandardGravity;
     const double load = grain_properties(kRadius, 2500).mass * kStandardGravity;
-    const double delta = std::pow(load / few.coefficients().floor.stiffness, 2.0 / 3.0);
+    const double delta = std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
     GrainSolver s = few.make({{0.1, 0, kRadius - delta}});
     set_velocity(s, 0, {0.4, 0, 0});
     for (int k = 0; k < 20000; ++k) s.step(1e-5);

@@ -96,6 +96,7 @@ def difference(a, b):
     if a.shape != b.shape:
         return f"shape {a.shape} | {b.shape}"
     if text or a.dtype.kind not in "fiub":
+        a, b = np.atleast_1d(a), np.atleast_1d(b)
         if not len(at := np.flatnonzero(a != b)):
             return ""
         same = text and all(same_number(a[k], b[k]) for k in at)

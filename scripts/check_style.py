@@ -13,7 +13,8 @@ import re
 import subprocess
 import sys
 
-WIDTH = 120
+from check_includes import sources, width_problems
+
 LETTERS = 72
 SOURCE = re.compile(r"(\.(cpp|hpp|py|sh|cmake|mjs|js|css)|CMakeLists\.txt|\.ci/run)$")
 MADE = ("scripts/report/bundle/",)  # by scripts/report/build.sh
@@ -27,12 +28,10 @@ def git(root, *words):
 
 
 def wide_lines(root):
-    for file in git(root, "ls-files", "--cached", "--others", "--exclude-standard"):
-        if not SOURCE.search(file) or file.startswith(MADE) or not (root / file).is_file():
-            continue
-        for number, line in enumerate((root / file).read_text().split("\n"), 1):
-            if len(line) > WIDTH:
-                yield f"{file}:{number}: is {len(line)} columns wide, expected at most {WIDTH}"
+    """Of what check_includes.py does not look at."""
+    rest = set(git(root, "ls-files", "--cached", "--others", "--exclude-standard")) - set(sources(root))
+    return width_problems(root, sorted(file for file in rest if SOURCE.search(file) and not file.startswith(MADE)
+                                       and (root / file).is_file()))
 
 
 def first_commit(root):

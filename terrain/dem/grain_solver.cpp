@@ -97,6 +97,14 @@ void GrainSolver::wake(int grain) {
     }
 }
 
+void GrainSolver::wake_all() {
+  for (int k = 0; k < strips_.count(); ++k) {
+    strips_[k].stale = false;
+    for (Parcel& parcel : strips_[k].parcels) Activity::wake(parcel);
+    strips_.sleep_changed(k);
+  }
+}
+
 double GrainSolver::rebuilds() const { return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count); }
 
 /// @pre room for `last`

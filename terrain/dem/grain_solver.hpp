@@ -151,6 +151,7 @@ class GrainSolver {
   void reset_accounts();
   /// Wakes the parcel of a grain whose motion was set from outside.
   void wake(int grain);
+  void wake_all();
   /// The direction against gravity, a unit vector, along which heights are measured; z without gravity.
   const Vec3& up() const { return up_; }
   /// Σ m / m₀ of all grains.

@@ -67,12 +67,6 @@ void bound_calm(Strip& strip) {
   for (Parcel& parcel : strip.parcels) parcel.calm = std::clamp(parcel.calm, 0, kCalmSteps);
 }
 
-/// The next step evaluates it all.
-void wake_all(Strip& strip) {
-  strip.asleep = strip.stale = false;
-  for (Parcel& parcel : strip.parcels) Activity::wake(parcel);
-}
-
 }  // namespace
 
 void GrainSolver::save(Archive& archive) const {
@@ -177,7 +171,6 @@ void GrainSolver::restore(const Archive& archive) {
     if (pressed) strip.motion.max_net_force = (*pressed)[k];
     take_parcels(strip, strips_.across(), parcels);
     bound_calm(strip);
-    if (!same_parcels || !params_.activity) wake_all(strip);
     strip.cell_start.assign(cells.begin() + k * per_strip, cells.begin() + (k + 1) * per_strip);
     strips_.size_lists(strip, strip.pairs);
     for (int p = 0; p < strip.pairs; ++p) {
@@ -195,6 +188,7 @@ void GrainSolver::restore(const Archive& archive) {
     pair += strip.pairs;
     group += strip.touching.size();
   }
+  if (!same_parcels || !params_.activity) wake_all();
   surfaces_.resize(static_cast<int>(count));
   surfaces_.restore(archive, strips_);
 }

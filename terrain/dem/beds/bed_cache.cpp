@@ -17,7 +17,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 5;         // raise when the bits of a bed or its digest may change
+constexpr std::int64_t kBedFormat = 6;         // raise when the bits of a bed or its digest may change
 constexpr const char* kDigest = "bed/digest";  // in files of the cache alone
 
 constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, ""};

@@ -21,11 +21,6 @@ DemOptions with_impulse_limit(DemOptions options) {
   return options;
 }
 
-void wake_all(GrainSolver& solver) {
-  for (int k = 0; k < solver.strips().count(); ++k)
-    if (solver.strips()[k].grains() > 0) solver.wake(solver.strips()[k].first);
-}
-
 }  // namespace
 
 double settle_step(const DemOptions& options) {
@@ -75,11 +70,12 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
       solver.set_drag(std::max(kRestDrag, drag));
     }
     const bool rests = speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
-                       result.force_ratio < kSettledForceRatio && result.floor_error < kSettledFloorError;
-    result.settled = rests && all_awake;
-    if (solver.params().activity) {
-      all_awake = rests;
-      if (rests) wake_all(solver);
+                       result.force_ratio < kSettledForceRatio;
+    result.settled = rests && result.floor_error < kSettledFloorError && all_awake;
+    // From the first rest on no grain sleeps: those asleep may hold up what the floor does not bear yet.
+    if (solver.params().activity && (rests || all_awake)) {
+      all_awake = true;
+      solver.wake_all();
     }
     best = std::min(best, std::max(result.force_ratio, result.floor_error));
     const double decades = std::log10(1.0 / std::max(best, kSettledForceRatio)) / 3.0;

@@ -20,12 +20,13 @@ void Activity::spread(const Strips& strips, Need from, Need to, const int (&besi
   }
 }
 
-void Activity::plan(const Strips& strips) {
+void Activity::plan(const Strips& strips, int sway_steps) {
   // A list names grains of its own parcel, of the next one across, and of three in the next strip.
   static constexpr int kAround[9][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   static constexpr int kListedBy[5][2] = {{0, 0}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}};
   static constexpr int kListed[5][2] = {{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   constexpr Need kAwake{8};
+  sway_steps_ = sway_steps;
   if (planned_ == strips.changes()) return;
   planned_ = strips.changes();
   across_ = strips.across();
@@ -44,10 +45,48 @@ void Activity::plan(const Strips& strips) {
   spread(strips, kList, kMotion, kListed);
 }
 
-bool Activity::calm(const Parcel& parcel) const {
+void Activity::add_drift(const Parcel& parcel, Drift* drift, const Quad* velocity) const {
+  const int step = parcel.window;
+  if (step % kDriftEvery != kDriftEvery / 2) return;
+  const auto w = static_cast<float>(weight(step));
+  const bool first = step < kDriftEvery;
+  for (int g = 0; g < parcel.part.grains(); ++g) {
+    const Quad& v = velocity[g];
+    const Drift before = first ? Drift{} : drift[g];
+    drift[g] = {before.x + w * static_cast<float>(v.x), before.y + w * static_cast<float>(v.y),
+                before.z + w * static_cast<float>(v.z)};
+  }
+}
+
+bool Activity::drifts_slowly(const Strip& strip, const Parcel& parcel, const Grains& grains) const {
+  double weights = 0.0, sum2 = 0.0, most2 = 0.0;
+  for (int step = kDriftEvery / 2; step < sway_steps_; step += kDriftEvery) weights += weight(step);
+  const auto first = grains.drift.begin() + strip.first;
+  for (auto d = first + parcel.part.first; d != first + parcel.part.last; ++d) {
+    const double drift2 =
+        static_cast<double>(d->x) * d->x + static_cast<double>(d->y) * d->y + static_cast<double>(d->z) * d->z;
+    sum2 += drift2;
+    most2 = std::max(most2, drift2);
+  }
+  const double mean = weights * limits_.mean_speed, most = weights * limits_.speed;
+  return sum2 <= mean * mean * parcel.part.grains() && most2 < most * most;
+}
+
+bool Activity::rests(const Strip& strip, Parcel& parcel, const Grains& grains, bool counts) const {
   const MotionTotals& m = parcel.motion;
-  return m.speed2 <= limits_.mean_speed * limits_.mean_speed * parcel.part.grains() && m.max_speed < limits_.speed &&
-         m.max_net_force < limits_.sleep_force;
+  parcel.window += counts ? 1 : 0;
+  if (parcel.window >= sway_steps_) {
+    parcel.sways = drifts_slowly(strip, parcel, grains);
+    parcel.window = 0;
+  }
+  const bool slow = m.speed2 <= limits_.mean_speed * limits_.mean_speed * parcel.part.grains();
+  const bool moves = parcel.sways ? !(m.max_speed < limits_.sway_speed) : !(slow && m.max_speed < limits_.speed);
+  if (moves || !(m.max_net_force < limits_.sleep_force)) {
+    parcel.calm = 0;
+  } else {
+    parcel.calm += counts ? 1 : 0;
+  }
+  return parcel.calm >= kCalmSteps;
 }
 
 void Activity::put_to_sleep(const Strip& strip, Parcel& parcel, Grains& grains) {
@@ -62,7 +101,7 @@ void Activity::put_to_sleep(const Strip& strip, Parcel& parcel, Grains& grains) 
   parcel.motion = {};
   parcel.motion.height = before.height;
   parcel.motion.held = before.held;
-  parcel.asleep = true;
+  parcel.asleep = parcel.sways = true;
 }
 
 void Activity::wake_moving(const Resorted& range, Strips& strips, const Grains& grains) {

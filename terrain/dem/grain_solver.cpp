@@ -67,7 +67,7 @@ void GrainSolver::make_chunks() {
 }
 
 void GrainSolver::place(const std::vector<Quad>& positions) {
-  grains_.resize(static_cast<int>(positions.size()));
+  grains_.resize(static_cast<int>(positions.size()), params_.activity);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Quad& p = grains_.position[i] = positions[i];
     if (p.w == 0.0) p.w = params_.grain.radius;
@@ -310,10 +310,17 @@ void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, 
   if (!strip.asleep) strip.travel += part.dt * strip.motion.max_speed;
 }
 
+int GrainSolver::sway_steps(double dt) const {
+  constexpr double kNever = 1e9;
+  if (drag_ > 0.0) return static_cast<int>(kNever);  // a bed that settles must come to rest, and drag stops what sways
+  const double steps = kSwayTime * std::sqrt(params_.grain.radius / params_.gravity.norm()) / dt;
+  return static_cast<int>(std::min(std::ceil(steps), kNever));
+}
+
 void GrainSolver::change_activity(bool counts) {
   if (!params_.activity) return;
   const double speed = std::sqrt(params_.gravity.norm() * params_.grain.radius);
-  activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSleepForce * mean_contact_force_,
+  activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSwaySpeed * speed, kSleepForce * mean_contact_force_,
                    kWakeForce * mean_contact_force_});
   const double margin = 2.0 * strips_.options().reach;
   const auto near = [&](const Strip& strip, const auto& also) {
@@ -377,7 +384,7 @@ int GrainSolver::step_part(const StepPart& part, bool measure) {
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
   const bool sample = sample_now();
   const Wanted wanted{.forces = measure || sample, .losses = energies_.due()};
-  activity_.plan(strips_);
+  activity_.plan(strips_, sway_steps(part.whole));
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
     evaluate<float>(part, wanted);

@@ -226,6 +226,8 @@ class GrainSolver {
   template <bool kMaySleep, bool kSizes>
   void integrate(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part, Wanted wanted);
   void load_sleeper(const Strip& strip, Parcel& parcel, const Loads& loads) const;
+  /// Of the window over which the drift of a grain is a mean.
+  int sway_steps(double dt) const;
   void change_activity(bool counts);
   void bound_overlaps(double dt);
   /// After strips were sorted again: what was listed by one may be listed by another.
@@ -233,6 +235,7 @@ class GrainSolver {
   /// Σ |F| of a strip, N: now, or by its last sample where it is not evaluated; a saved state keeps no other.
   double measured_force(int k) const;
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
+  void restore_drift(const Archive& archive);
   /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
   /// moves there.
   void take_samples();

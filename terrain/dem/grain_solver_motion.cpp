@@ -96,6 +96,8 @@ void GrainSolver::integrate(const Strip& strip, Parcel& parcel, const Loads& loa
   sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
   store(sums.held, mass * pushed);
   sums.net_force = net[0];
+  if constexpr (kMaySleep)
+    if (part.last) activity_.add_drift(parcel, &grains_.drift[first], &grains_.velocity[first]);
 }
 
 }  // namespace furrow::terrain::dem

@@ -62,9 +62,21 @@ void take_parcels(Strip& strip, int across, std::optional<ColumnReader<Parcel>>&
   }
 }
 
+constexpr int kLongestWindow = 1'000'000'000;
+
 /// Counts of steps are followed no further.
 void bound_calm(Strip& strip) {
-  for (Parcel& parcel : strip.parcels) parcel.calm = std::clamp(parcel.calm, 0, kCalmSteps);
+  for (Parcel& parcel : strip.parcels) {
+    parcel.calm = std::clamp(parcel.calm, 0, kCalmSteps);
+    parcel.window = std::clamp(parcel.window, 0, kLongestWindow);
+  }
+}
+
+/// Calls f(drift) for the grains of a parcel whose window has begun to take them in.
+template <class GrainsT, class F>
+void each_drift(GrainsT& grains, const Strip& strip, const Parcel& parcel, F&& f) {
+  if (parcel.window <= kDriftEvery / 2 || grains.drift.empty()) return;
+  for (int g = parcel.part.first; g < parcel.part.last; ++g) f(grains.drift[strip.first + g]);
 }
 
 }  // namespace
@@ -97,14 +109,17 @@ void GrainSolver::save(Archive& archive) const {
   std::vector<std::int32_t> walls, cells;
   std::vector<std::uint64_t> partners;
   std::vector<std::uint8_t> touching;
-  std::vector<double> tangential, rolling;
+  std::vector<double> tangential, rolling, drifts;
   ColumnWriter<Strip> strips;
   ColumnWriter<Parcel> parcels;
   ColumnWriter<WallContact> wall_contacts;
   for (int k = 0; k < strips_.count(); ++k) {
     const Strip& strip = strips_[k];
     strips.add(strip);
-    for (const Parcel& parcel : strip.parcels) parcels.add(parcel);
+    for (const Parcel& parcel : strip.parcels) {
+      parcels.add(parcel);
+      each_drift(grains_, strip, parcel, [&](const Drift& d) { drifts.insert(drifts.end(), {d.x, d.y, d.z}); });
+    }
     walls.push_back(static_cast<std::int32_t>(strip.walls.size()));
     cells.insert(cells.end(), strip.cell_start.begin(), strip.cell_start.end());
     for (int p = 0; p < strip.pairs; ++p) partners.push_back(std::uint64_t{strip.i[p]} << 32 | strip.j[p]);
@@ -124,13 +139,14 @@ void GrainSolver::save(Archive& archive) const {
   archive.put("pairs/tangential", tangential);
   archive.put("pairs/rolling", rolling);
   wall_contacts.put(archive, "walls");
+  if (!drifts.empty()) archive.put("drift", drifts);
   surfaces_.save(archive);
 }
 
 void GrainSolver::restore(const Archive& archive) {
   check_solver_state(archive, strips_, params_.smallest_radius(), params_.largest_radius());
   const auto n = static_cast<std::size_t>(archive.get_int("count"));
-  grains_.resize(static_cast<int>(n));
+  grains_.resize(static_cast<int>(n), params_.activity);
   get_quads(archive, "position", grains_.position.data(), n);
   get_quads(archive, "velocity", grains_.velocity.data(), n);
   get_quads(archive, "spin", grains_.spin.data(), n);
@@ -189,13 +205,26 @@ void GrainSolver::restore(const Archive& archive) {
     group += strip.touching.size();
   }
   if (!same_parcels || !params_.activity) wake_all();
+  restore_drift(archive);
   surfaces_.resize(static_cast<int>(count));
   surfaces_.restore(archive, strips_);
 }
 
+void GrainSolver::restore_drift(const Archive& archive) {
+  std::vector<Drift*> swaying;
+  for (int k = 0; k < strips_.count(); ++k)
+    for (const Parcel& parcel : strips_[k].parcels)
+      each_drift(grains_, strips_[k], parcel, [&](Drift& drift) { swaying.push_back(&drift); });
+  if (swaying.empty()) return;
+  const double* from = archive.get<double>("drift", 3 * swaying.size()).data();
+  const auto next = [&] { return static_cast<float>(*from++); };
+  for (Drift* const drift : swaying) drift->x = next(), drift->y = next(), drift->z = next();
+}
+
 std::size_t GrainSolver::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) + strips_.bytes();
+  std::size_t sum = of(grains_.position) + of(grains_.velocity) + of(grains_.spin) + of(grains_.id) +
+                    of(grains_.drift) + strips_.bytes();
   for (const Chunk& chunk : chunks_)
     for (const LoadBuffer* buffer : {&chunk.own, &chunk.ahead}) sum += of(buffer->force) + of(buffer->torque);
   const auto scratch = [&](const auto& all) {

@@ -9,7 +9,13 @@
 
 namespace furrow::terrain::dem {
 
-/// Bytes per grain: 3 × 32 + 4. `position` has kBeyond entries more, so that four can be read from any grain on.
+/// Σ w v of one grain over the window of its parcel so far, m/s (activity.hpp).
+struct alignas(16) Drift {
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+};
+
+/// Bytes per grain: 3 × 32 + 4, and 16 where grains may sleep. `position` has kBeyond entries more, so that four can be
+/// read from any grain on.
 struct Grains {
   static constexpr int kBeyond = 3;
   int count = 0;
@@ -17,10 +23,12 @@ struct Grains {
   std::vector<Quad> velocity;    // m/s
   std::vector<Quad> spin;        // rad/s
   std::vector<std::int32_t> id;  // 0 … count − 1 in order of generation
+  std::vector<Drift> drift;      // empty unless grains may sleep
 
-  void resize(int n) {
+  void resize(int n, bool may_sleep = false) {
     FURROW_ASSERT(n >= 0, n);
     count = n;
+    drift.assign(may_sleep ? n : 0, Drift{});
     position.assign(n + kBeyond, Quad{});
     velocity.assign(n, Quad{});
     spin.assign(n, Quad{});

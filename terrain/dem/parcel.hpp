@@ -72,7 +72,9 @@ struct Parcel {
   StripPart part;
   bool asleep = false;  // its grains rest and are not stepped, activity.hpp
   bool stale = false;   // it sleeps, but other grains belong to it than when its sums were taken
-  int calm = 0;         // steps for which it could have slept
+  int calm = 0;         // steps since it was last pushed or, unless it only sways, fast
+  bool sways = false;   // its grains may be fast, but over the last window they went nowhere
+  int window = 0;       // steps since its last window ended
   // Only while it is asleep, or about to be: an awake one is evaluated together with those beside it.
   ContactTotals contact;
   double measured_force = 0.0;  // contact.contact_force when last measured, N
@@ -84,6 +86,8 @@ void visit_fields(auto&& visit, FieldsOf<Parcel> auto& s) {
   visit(Field{"asleep", ""}, s.asleep);
   visit(Field{"stale", ""}, s.stale);
   visit(Field{"calm"}, s.calm);
+  visit(Field{"sways", ""}, s.sways);
+  visit(Field{"window"}, s.window);
   visit(Field{"elastic", "J"}, s.contact.elastic);
   visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
   visit(Field{"wall_force", "N"}, s.contact.wall_force);

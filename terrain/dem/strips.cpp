@@ -103,7 +103,8 @@ void Strips::restore_shape(int cells_z, std::int64_t resorted) {
 
 std::size_t Strips::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof v[0]; };
-  std::size_t sum = of(scratch_.cell) + of(scratch_.start) + of(scratch_.ids) + of(scratch_.quads);
+  std::size_t sum =
+      of(scratch_.cell) + of(scratch_.start) + of(scratch_.ids) + of(scratch_.quads) + of(scratch_.drifts);
   for (const auto* strips : {&strips_, &old_})
     for (const Strip& s : *strips)
       sum += sizeof s + of(s.cell_start) + of(s.i) + of(s.j) + of(s.touching) + of(s.walls) + of(s.single.tangential) +
@@ -146,6 +147,7 @@ void Strips::sort(Grains& grains, Resorted& range, int threads) {
   for (auto* array : {&grains.position, &grains.velocity, &grains.spin})
     permute(*array, range, scratch_.quads, threads);
   permute(grains.id, range, scratch_.ids, threads);
+  if (!grains.drift.empty()) permute(grains.drift, range, scratch_.drifts, threads);
 }
 
 void Strips::size_lists(Strip& strip, int pairs) const {

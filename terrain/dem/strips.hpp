@@ -106,6 +106,8 @@ void visit_fields(auto&& visit, FieldsOf<Strip> auto& s) {
   visit(Field{"z_max", "m"}, s.z_max);
   visit(Field{"asleep", ""}, s.asleep);
   visit(Field{"calm"}, s.parcels.front().calm);
+  visit(Field{"sways", ""}, s.parcels.front().sways);
+  visit(Field{"window"}, s.parcels.front().window);
   visit(Field{"elastic", "J"}, s.contact.elastic);
   visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
   visit(Field{"wall_force", "N"}, s.contact.wall_force);
@@ -229,6 +231,7 @@ class Strips {
   struct Scratch {
     std::vector<std::int32_t> cell, start, ids;
     std::vector<Quad> quads;
+    std::vector<Drift> drifts;
   } scratch_;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "protocol/core/constants.hpp"
@@ -123,6 +124,50 @@ TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
   const TerrainEnergies energies = s.reported_energies();
   EXPECT_NEAR(energies.sleep_loss / (1.5 * mass * speed * speed), 1.0, 1e-6);
   EXPECT_EQ(energies.kinetic + energies.rotational, 0.0);
+}
+
+/// Steps of one window of drift.
+int window(const DemOptions& options) {
+  return static_cast<int>(std::ceil(kSwayTime * std::sqrt(options.radius / kStandardGravity) / options.step));
+}
+
+// The lowest shear mode of a layer on a floor, u ∝ sin(π z/2h): neighbours move together, so contacts damp it little.
+TEST(Activity, bed_that_only_sways_falls_asleep) {
+  const DemOptions options = bed_options(40e3);
+  const Archive archive = settled(options);
+  GrainSolver solver = bed(options, archive, true), awake = bed(options, archive, false);
+  const double unit = std::sqrt(kStandardGravity * options.radius), height = solver.top();
+  for (GrainSolver* s : {&solver, &awake})
+    for (int g = 0; g < s->grains().count; ++g)
+      s->grains().velocity[g].y += 0.08 * unit * std::sin(0.5 * std::numbers::pi * s->grains().position[g].z / height);
+  double rms = 1.0;
+  int steps = 0;
+  for (; steps < 3 * window(options) && solver.accounts().active > 0; ++steps) {
+    ASSERT_EQ(solver.step(options.step), -1);
+    ASSERT_EQ(awake.step(options.step), -1);
+    const double mass = awake.params().grain.mass * awake.grains().count;
+    if (steps % kCalmSteps == 0) rms = 0.0;
+    rms = std::max(rms, std::sqrt(2.0 * awake.accounts().kinetic / mass) / unit);
+  }
+  EXPECT_EQ(solver.accounts().active, 0);
+  EXPECT_GT(rms, 1.2 * kSleepMeanSpeed) << "after " << steps << " steps: it did not sway";
+}
+
+TEST(Activity, grains_that_drift_stay_awake_however_even_their_motion) {
+  FewGrains few;
+  few.options.friction = 0.0;
+  few.options.step = 1e-4;
+  few.options.periodic_x = true;
+  few.gravity = kStandardGravity;
+  few.activity = true;
+  const double load = grain_properties(few.options.radius, few.options.density).mass * kStandardGravity;
+  const double z = few.options.radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
+  GrainSolver s = few.make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
+  const double speed = 1.5 * kSleepMeanSpeed * std::sqrt(kStandardGravity * few.options.radius);
+  for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));
+  for (int k = 0; k < 4 * window(few.options); ++k) s.step(few.options.step);
+  EXPECT_EQ(s.accounts().active, 3);
+  EXPECT_NEAR(s.accounts().velocity.x(), 3 * speed, 1e-9 * speed);
 }
 
 TEST(Activity, mean_contact_force_follows_the_load) {

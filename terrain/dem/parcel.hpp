@@ -13,8 +13,8 @@
 
 namespace furrow::terrain::dem {
 
-inline constexpr int kParcelColumns = 4;   // of cells across, the fewest of a parcel
-inline constexpr int kFewestParcels = 12;  // of a strip that is cut; it is whole where they would be fewer
+inline constexpr int kParcelColumns = 4;  // of cells across, the fewest of a parcel
+inline constexpr int kFewestParcels = 3;  // of a strip that is cut; it is whole where they would be fewer
 
 /// Into how many parcels a strip of that many columns is cut. A narrower bed is whole: what a wheel stirs is as wide
 /// as it is.

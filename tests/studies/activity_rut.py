@@ -1,13 +1,11 @@
 #!/usr/bin/python3
-"""Compares the ruts of the runs of activity.json with and without sleeping grains: rut cross-sections at the end.
-Writes activity_rut.csv beside this script, after run_study.py activity.json.
+"""Compares the runs of activity.json with and without sleeping grains, bed by bed: forces, and the rut 1 s after the
+wheel. Writes activity_rut.csv beside this script, after run_study.py activity.json.
 
-One row per seed and strip of the bin along y: mean depth of the rut from 0.3 to 0.55 m behind the axle, both runs, m.
-On the screen, in grain radii: root mean square of the difference with and without sleep for each seed, of the
-difference between seeds without sleep as the yardstick, and of the difference of the profiles' means over the seeds.
+One row per bed and quantity: with sleep, without, and their difference. The rows without a bed hold the mean over beds
+and in `half_width` the half-width of its 95 % interval, from the spread of the differences. `rut_later_mm` is the depth
+of the rut, mean over 0.24 m across and from 1.3 to 1.6 m behind the axle, where the wheel was about 1 s before the end.
 """
-import itertools
-
 import h5py
 import numpy as np
 
@@ -15,7 +13,10 @@ import driver
 import provenance
 
 RUNS = driver.RESULTS / "activity"
-WINDOW = (0.3, 0.55)  # behind the axle, m
+LATER = (1.3, 1.6)  # behind the axle, m
+FIGURES = {"pull_N": ("drawbar_pull_N", 1.0), "sinkage_mm": ("sinkage_m", 1e3), "rut_depth_mm": ("rut_depth_m", 1e3),
+           "effort_N": ("tractive_effort_N", 1.0), "active_share": ("active_share_mean", 1.0),
+           "wall_s": ("wall_s", 1.0)}
 
 
 def depths(folder):
@@ -27,30 +28,27 @@ def depths(folder):
     return x0 + cell * np.arange(depth.shape[0]), y0 + cell * np.arange(depth.shape[1]), depth, axle
 
 
-def profile(folder):
-    """(y, mean depth) across the rut behind the axle, m."""
+def figures(folder):
     x, y, depth, axle = depths(folder)
-    return y, np.nanmean(depth[(x > axle - WINDOW[1]) & (x < axle - WINDOW[0])], axis=0)
-
-
-def rms(difference):
-    return np.sqrt((difference**2).mean())
+    later = depth[(x > axle - LATER[1]) & (x < axle - LATER[0])][:, abs(y) < 0.12]
+    summary = driver.summary(folder)
+    return {name: scale * driver.mean_of(summary[key]) for name, (key, scale) in FIGURES.items()} | {
+        "rut_later_mm": 1e3 * float(np.nanmean(later))}
 
 
 def main():
-    radius = driver.options(__doc__, radius={"type": float, "default": 0.01, "help": "of the grains, m"})
-    radius = radius.parse_args().radius
-    seeds = [folder.name.split("_")[1] for folder in sorted(RUNS.glob("seed_*_on"))]
-    driver.finished_runs(RUNS, [f"seed_{seed}_on" for seed in seeds])
-    on, off = ([profile(RUNS / f"seed_{seed}_{sleep}") for seed in seeds] for sleep in ("on", "off"))
-    rows = [{"seed": seed, "y_m": f"{at:.4g}", "depth_activity_on_m": f"{a:.5g}", "depth_activity_off_m": f"{b:.5g}"}
-            for seed, (y, asleep), (_, awake) in zip(seeds, on, off) for at, a, b in zip(y, asleep, awake)]
-    asleep, awake = ([depth / radius for _, depth in profiles] for profiles in (on, off))
-    for seed, a, b in zip(seeds, asleep, awake):
-        print(f"seed {seed}, on against off: {rms(a - b):.2f}")
-    print("between seeds, off:", *(f"{rms(a - b):.2f}" for a, b in itertools.combinations(awake, 2)))
-    print(f"means over seeds, on against off: {rms(np.mean(asleep, axis=0) - np.mean(awake, axis=0)):.2f}")
-    driver.write("activity_rut.csv", rows, provenance.origin_of_runs(sorted(RUNS.glob("seed_*_o*"))))
+    driver.options(__doc__).parse_args()
+    seeds = sorted(int(folder.name.split("_")[1]) for folder in RUNS.glob("seed_*_on"))
+    driver.finished_runs(RUNS, [f"seed_{seed}_{sleep}" for seed in seeds for sleep in ("on", "off")])
+    on, off = ([figures(RUNS / f"seed_{seed}_{sleep}") for seed in seeds] for sleep in ("on", "off"))
+    rows, columns = [], ("asleep", "awake", "difference")
+    for name in on[0]:
+        of = [(a[name], b[name], a[name] - b[name]) for a, b in zip(on, off)]
+        rows += [{"bed": seed, "quantity": name, **dict(zip(columns, row))} for seed, row in zip(seeds, of)]
+        means, halves = zip(*(driver.over_beds(values) for values in zip(*of)))
+        rows.append({"quantity": name, **dict(zip(columns, means)), "half_width": halves[2]})
+        print(rows[-1])
+    driver.write("activity_rut.csv", rows, provenance.origin_of_runs(sorted(RUNS.glob("seed_*_o*"))), digits=5)
 
 
 if __name__ == "__main__":

@@ -61,17 +61,12 @@ ContactMaterial rubber() {
 class SpringWheel final : public Tire {
  public:
   SpringWheel(const SpringWheelOptions& options, TireShape shape)
-      : options_(options), shape_(std::move(shape)), deflection_(shape_.vertex.size()), rate_(shape_.vertex.size()) {}
+      : Tire(kGravity, std::move(shape)),
+        options_(options),
+        deflection_(shape_.vertex.size()),
+        rate_(shape_.vertex.size()) {}
 
-  const SurfaceMesh& mesh() const override { return shape_.mesh; }
-  ContactMaterial material() const override { return shape_.material; }
-  MassProperties mass_properties() const override { return shape_.mass; }
-  double radius() const override { return shape_.radius; }
-  double tread_width() const override { return shape_.tread_width; }
-  Vec3 gravity() const override { return kGravity; }
   int coordinates() const override { return static_cast<int>(deflection_.size()); }
-
-  void set_pressure(double) override {}
 
   void do_place(const RimState& rim) override {
     rim_ = rim;

@@ -111,8 +111,6 @@ class SpringWheel final : public Tire {
     return {};
   }
 
-  Wrench spindle_wrench() const override { return spindle_; }
-
   TireDiagnostics diagnostics() const override {
     TireDiagnostics d;
     d.momentum = shape_.mass.mass * rim_.velocity;
@@ -174,9 +172,6 @@ class SpringWheel final : public Tire {
   }
 
   SpringWheelOptions options_;
-  TireShape shape_;
-  RimState rim_;                                     // now
-  Wrench spindle_;                                   // of the last advance
   std::vector<double> deflection_, rate_;            // u, m; u̇, m/s
   double dissipation_ = 0.0, numerical_loss_ = 0.0;  // J
 };

@@ -23,10 +23,7 @@ vehicle::MotionFunction AssembledRig::from_rest(double speed) const {
 
 int AssembledRig::add_joint(vehicle::JointKind kind, const std::string& name, int a, int b, const Vec3& point,
                             const Vec3& axis) {
-  vehicle::JointPlace place;
-  place.point = point;
-  place.axis = axis;
-  return system_->add_joint(kind, name, a, b, place);
+  return system_->add_joint(kind, name, a, b, {.point = point, .axis = axis});
 }
 
 void AssembledRig::add_rim(AssembledWheel& wheel, const std::string& name, double mass, const Vec3& inertia,

@@ -18,19 +18,11 @@ using nlohmann::json;
 
 DrawbarRigOptions drawbar_of(const CleatStandOptions& stand) {
   DrawbarRigOptions rig;
+  static_cast<RailOptions&>(rig) = stand;
   rig.mode = "free_rolling";
   rig.slip = 0.0;
-  rig.speed = stand.speed;
-  rig.ramp = stand.ramp;
-  rig.move_from = stand.move_from;
   rig.touchdown_time = stand.hold_axle_from;
-  rig.lowering_speed = stand.lowering_speed;
-  rig.start = stand.start;
-  rig.load = stand.load;
   rig.carrier_mass = stand.carrier_mass;
-  rig.rim_mass = stand.rim_mass;
-  rig.rim_spin_inertia = stand.rim_spin_inertia;
-  rig.rim_diametral_inertia = stand.rim_diametral_inertia;
   return rig;
 }
 

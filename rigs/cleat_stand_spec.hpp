@@ -15,18 +15,9 @@
 namespace furrow::rigs {
 
 /// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
-struct CleatStandOptions {
-  double speed = 4.0;              // of the axle, m/s
-  double ramp = 0.15;              // smooth (C²) start from rest, s; 0: full speed from t = 0
-  double move_from = 0.0;          // when it starts, s
-  double hold_axle_from = 0.5;     // until then the wheel is let down, from then on its axle keeps its height, s
-  double lowering_speed = -1.0;    // at which it is let down, m/s
-  double start = 0.0;              // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
-  double load = -1.0;              // weight of all that the ground carries, tire included, until the axle is held, N
-  double carrier_mass = -1.0;      // wheel carrier with ballast, kg; in place of the load
-  double rim_mass = -1.0;          // kg
-  double rim_spin_inertia = -1.0;  // kg m², about the axle
-  double rim_diametral_inertia = -1.0;  // kg m²
+struct CleatStandOptions : RailOptions {
+  double hold_axle_from = 0.5;  // until then the wheel is let down, from then on its axle keeps its height, s
+  double carrier_mass = -1.0;   // wheel carrier with ballast, kg; in place of the load
 };
 void visit_fields(auto&& visit, FieldsOf<CleatStandOptions> auto& s) {
   using namespace allowed;

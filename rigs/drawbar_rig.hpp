@@ -16,33 +16,23 @@ namespace furrow::rigs {
 /// Every field but the gravity is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`. What is
 /// negative here is open: RigSpec::mount fills it in from the tire (drawbar_mount.hpp), and a rig is made of given
 /// values alone.
-struct DrawbarRigOptions {
+struct DrawbarRigOptions : RailOptions {
   std::string mode = "fixed_angular_speed";  // fixed_angular_speed: ω given, v = ω r (1 − s)
                                              // fixed_speed: v given, ω = v / (r (1 − s))
                                              // free_rolling: v given, no spindle torque, ω free
   double slip = 0.3;                         // -, below 1 for fixed_speed
   double angular_speed = 8.56;               // rad/s
-  double speed = 4.0;                        // carriage speed, m/s, modes fixed_speed and free_rolling
-  double ramp = 0.15;               // smooth (C²) ramp of both motions from rest, s; 0: from t = 0 at full speed
-  double move_from = 0.0;           // when both motions begin, s: until then the wheel is lowered and stands
-  double touchdown_damping = -1.0;  // N s/m, vertical damper between set-toe and carrier
-  double touchdown_time = -1.0;     // s, how long it acts
-  double lowering_speed = -1.0;     // m/s, at which that damper lets the load down; in place of its constant
-  double toe_angle = 0.0;           // rad, about +z
-  double toe_time = 0.0;            // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
-  double toe_ramp = 0.01;           // s, how long that takes
-  double camber_angle = 0.0;        // rad, about the wheel's forward axis: positive leans the top to the right
-  double travel_sign = 1.0;         // +1 along +x, −1 along −x (mirrored travel)
-  double start = 0.0;               // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
-  double lateral = 0.0;             // y of the wheel's mid-plane, m
-  double load = -1.0;               // weight of all that the ground carries, tire included, N
-  double carrier_mass = -1.0;       // wheel carrier with ballast, kg; in place of the load
-  double chassis_mass = 1.0;        // kg, rides on the rail
-  double set_toe_mass = 1.0;        // kg, rides on the rail
-  double rim_mass = -1.0;           // kg
-  double rim_spin_inertia = -1.0;   // kg m², about the axle
-  double rim_diametral_inertia = -1.0;  // kg m²
-  Vec3 gravity = standard_gravity();    // m/s²
+  double touchdown_damping = -1.0;           // N s/m, vertical damper between set-toe and carrier
+  double toe_angle = 0.0;                    // rad, about +z
+  double toe_time = 0.0;              // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
+  double toe_ramp = 0.01;             // s, how long that takes
+  double camber_angle = 0.0;          // rad, about the wheel's forward axis: positive leans the top to the right
+  double travel_sign = 1.0;           // +1 along +x, −1 along −x (mirrored travel)
+  double lateral = 0.0;               // y of the wheel's mid-plane, m
+  double carrier_mass = -1.0;         // wheel carrier with ballast, kg; in place of the load
+  double chassis_mass = 1.0;          // kg, rides on the rail
+  double set_toe_mass = 1.0;          // kg, rides on the rail
+  Vec3 gravity = standard_gravity();  // m/s²
 };
 
 void visit_fields(auto&& visit, FieldsOf<DrawbarRigOptions> auto& s) {

@@ -15,32 +15,19 @@
 #include "protocol/core/column.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/key.hpp"
+#include "rigs/quarter_car_rig.hpp"
 #include "rigs/rig.hpp"
 #include "rigs/rig_keys.hpp"
 
 namespace furrow::rigs {
 
 /// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
-struct HalfCarOptions {
-  double speed = 4.0;            // of the trolley, m/s
-  double ramp = 0.15;            // smooth (C²) start from rest, s; 0: full speed from t = 0
-  double move_from = 0.0;        // when it starts, s
-  double touchdown_time = -1.0;  // how long the damper lets the wheels down, s
-  double lowering_speed = -1.0;  // m/s, at which it does
-  double start = 0.0;            // x of the front axle at t = 0, m; where the scenario does not say it, it is filled in
-  double wheelbase = 2.7;        // a + b, m
-  double front_share = 0.5;      // of the body's weight, on the front wheel: b/(a + b)
-  double load = -1.0;            // weight of all that the ground carries, N
-  double body_mass = -1.0;       // kg; in place of the load
-  double pitch_inertia = -1.0;   // J of the body about its centre, kg m²
-  double unsprung_mass = -1.0;   // of each carrier, kg: what hangs under a spring beside rim and tire
-  double suspension_stiffness = -1.0;       // k of the front, N/m
-  double suspension_damping = -1.0;         // c of the front, N s/m
+struct HalfCarOptions : QuarterCarOptions {
+  double wheelbase = 2.7;                   // a + b, m
+  double front_share = 0.5;                 // of the body's weight, on the front wheel: b/(a + b)
+  double pitch_inertia = -1.0;              // J of the body about its centre, kg m²
   double rear_suspension_stiffness = -1.0;  // k of the rear, N/m
   double rear_suspension_damping = -1.0;    // c of the rear, N s/m
-  double rim_mass = -1.0;                   // of each rim, kg
-  double rim_spin_inertia = -1.0;           // kg m², about the axle
-  double rim_diametral_inertia = -1.0;      // kg m²
 };
 void visit_fields(auto&& visit, FieldsOf<HalfCarOptions> auto& s) {
   using namespace allowed;

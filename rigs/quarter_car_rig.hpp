@@ -16,21 +16,11 @@
 namespace furrow::rigs {
 
 /// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
-struct QuarterCarOptions {
-  double speed = 4.0;                  // of the trolley, m/s
-  double ramp = 0.15;                  // smooth (C²) start from rest, s; 0: full speed from t = 0
-  double move_from = 0.0;              // when it starts, s
-  double touchdown_time = -1.0;        // how long the damper lets the wheel down, s
-  double lowering_speed = -1.0;        // m/s, at which it does
-  double start = 0.0;                  // x of the axle at t = 0, m; where the scenario does not say it, it is filled in
-  double load = -1.0;                  // weight of all that the ground carries, N
+struct QuarterCarOptions : RailOptions {
   double body_mass = -1.0;             // m_b, kg; in place of the load
   double unsprung_mass = -1.0;         // of the carrier, kg: what hangs under the spring beside rim and tire
   double suspension_stiffness = -1.0;  // k, N/m
   double suspension_damping = -1.0;    // c, N s/m
-  double rim_mass = -1.0;              // kg
-  double rim_spin_inertia = -1.0;      // kg m², about the axle
-  double rim_diametral_inertia = -1.0;  // kg m²
 };
 void visit_fields(auto&& visit, FieldsOf<QuarterCarOptions> auto& s) {
   visit(keys::kSpeed, s.speed);

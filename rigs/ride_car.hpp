@@ -47,9 +47,7 @@ class RideCar : public AssembledRig {
   /// The trolley. @returns its state, with which other bodies begin
   vehicle::BodyState add_trolley(const Vec3& position) {
     constexpr double kTrolleyMass = 1.0;  // kg
-    vehicle::BodyState state;
-    state.position = position;
-    state.velocity = at_first(options_.speed) * forward_;
+    const vehicle::BodyState state{.position = position, .velocity = at_first(options_.speed) * forward_};
     trolley_ = system_->add_body("trolley", kTrolleyMass, guided(), state);
     total_mass_ = kTrolleyMass;
     for (int k = 0; k < wheel_count(); ++k) {

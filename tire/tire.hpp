@@ -1,7 +1,8 @@
 // The interface of every tire model: a deformable (or rigid) body held by a rim and pressed on by a terrain.
 #pragma once
 
-#include <string>
+#include <utility>
+#include <vector>
 
 #include "protocol/core/archive.hpp"
 #include "protocol/core/hash.hpp"
@@ -16,20 +17,30 @@ namespace furrow::tire {
 
 using furrow::TireDiagnostics;
 
+/// The undeformed tire in rim axes, origin at the rim's centre.
+struct TireShape {
+  SurfaceMesh mesh;
+  std::vector<Vec3> vertex;  // m
+  ContactMaterial material;
+  MassProperties mass;
+  double radius = 0.0;       // m
+  double tread_width = 0.0;  // m
+};
+
 class Tire {
  public:
   virtual ~Tire() = default;
 
-  virtual const SurfaceMesh& mesh() const = 0;
-  virtual ContactMaterial material() const = 0;
-  virtual MassProperties mass_properties() const = 0;
-  virtual double radius() const = 0;       // of the undeformed contact surface, m
-  virtual double tread_width() const = 0;  // m
-  virtual Vec3 gravity() const = 0;        // that it was made for, W, m/s²
-  virtual int coordinates() const = 0;     // unknowns
+  const SurfaceMesh& mesh() const { return shape_.mesh; }
+  ContactMaterial material() const { return shape_.material; }
+  MassProperties mass_properties() const { return shape_.mass; }
+  double radius() const { return shape_.radius; }            // of the undeformed contact surface, m
+  double tread_width() const { return shape_.tread_width; }  // m
+  Vec3 gravity() const { return gravity_; }                  // that it was made for, W, m/s²
+  virtual int coordinates() const = 0;                       // unknowns
 
-  /// Gauge pressure from now on, Pa. Ignored by rigid tires.
-  virtual void set_pressure(double pressure) = 0;
+  /// Gauge pressure from now on, Pa. Ignored by tires without air.
+  virtual void set_pressure(double) {}
 
   /// Puts the tire on the rim, inflated, with the velocity field of a rigid body moving with the rim.
   /// @throws Error(physics) when inflation does not converge.
@@ -52,7 +63,7 @@ class Tire {
   /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance;
   /// complete, with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the
   /// tire as a whole.
-  virtual Wrench spindle_wrench() const = 0;
+  Wrench spindle_wrench() const { return spindle_; }
 
   /// Replaces the forces that the last advance was given by the means of what acted. They differ where tangents came
   /// with them.
@@ -74,8 +85,16 @@ class Tire {
   void restore(const Archive& archive);
 
  protected:
+  /// A model that makes its shape itself sets it in its constructor.
+  explicit Tire(const Vec3& gravity, TireShape shape = {}) : shape_(std::move(shape)), gravity_(gravity) {}
+
   /// It was placed or restored.
   bool placed() const { return placed_; }
+
+  TireShape shape_;
+  Vec3 gravity_;    // m/s²
+  RimState rim_;    // now
+  Wrench spindle_;  // of the last advance
 
  private:
   virtual void do_place(const RimState& rim) = 0;

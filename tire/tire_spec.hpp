@@ -102,16 +102,6 @@ struct TireDescription {
   NamedValues model;  // what else there is to know of this model: "layers"
 };
 
-/// The undeformed tire in rim axes, origin at the rim's centre.
-struct TireShape {
-  SurfaceMesh mesh;
-  std::vector<Vec3> vertex;  // m
-  ContactMaterial material;
-  MassProperties mass;
-  double radius = 0.0;       // m
-  double tread_width = 0.0;  // m
-};
-
 /// How a model computes, and under which gravity; what is not given is as the model takes it on its own.
 struct TireContext {
   int threads = 1;

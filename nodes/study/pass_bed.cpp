@@ -13,14 +13,14 @@
 
 namespace furrow::study {
 
-terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
-                                       const std::filesystem::path& file) {
+terrain::dem::SettleResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
+                                         const std::filesystem::path& file) {
   const checkpoint::ResumePoint point = checkpoint::last_checkpoint(run);
   const scenario::Scenario scenario = scenario::load_scenario(run / "scenario.json", {});
   const terrain::dem::DemOptions grains = scenario.grains("only grains keep a rut");
   if (point.manifest.step != checkpoint::finished_at(run))
     throw input_error(run.string(), "", "has no checkpoint of its end, expected checkpoint.at_end");
-  terrain::dem::RestResult result;
+  terrain::dem::SettleResult result;
   std::vector<Archive> parts;
   for (int rank = 0; rank < scenario.terrain_ranks; ++rank)
     parts.push_back(read_archive(point.folder / checkpoint::part_name({Role::terrain, rank})));

@@ -11,7 +11,7 @@ namespace furrow::study {
 /// @param rest  simulated time that the bed lies before the next pass, s
 /// @param file  receives the bed, for `terrain.bed`
 /// @throws Error
-terrain::dem::RestResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
-                                       const std::filesystem::path& file);
+terrain::dem::SettleResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,
+                                         const std::filesystem::path& file);
 
 }  // namespace furrow::study

@@ -251,7 +251,7 @@ bool Sweep::prepare_bed(Run& run) try {
       if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed rested");
       display_.show({.phase = what, .share = share});
     };
-    const terrain::dem::RestResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
+    const terrain::dem::SettleResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
     tell(run, fmt::format("begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
                           rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
   }

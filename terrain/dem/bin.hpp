@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "terrain/dem/quad.hpp"
 
@@ -21,7 +22,8 @@ struct Bin {
 
   bool has_wall(int wall) const { return wall == kFloor || !(wall < 2 ? periodic_x : periodic_y); }
   /// Distance of a point from wall w, m.
-  double distance(int wall, const Quad& p) const {
+  template <class Point>
+  auto distance(int wall, const Point& p) const -> std::remove_cvref_t<decltype(p.x)> {
     switch (wall) {
       case 0:
         return p.x;
@@ -38,6 +40,11 @@ struct Bin {
   static Triple<double> normal(int wall) {
     constexpr Triple<double> kNormal[kWalls] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
     return kNormal[wall];
+  }
+  static const char* name(int wall) {
+    constexpr const char* kName[kWalls] = {"the wall x = 0", "the wall x = length", "the wall y = -width/2",
+                                           "the wall y = width/2", "the floor"};
+    return kName[wall];
   }
   /// Whether a centre is within the walls, and a number.
   bool holds(const Quad& p) const {

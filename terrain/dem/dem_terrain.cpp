@@ -32,7 +32,6 @@ constexpr double kMostGrains = 2e9;            // numbers of grains are of 32 bi
 constexpr double kLooseFraction = 0.50;        // solid fraction of a bed that settled with cohesion, estimate
 constexpr double kBytesPerGrain = 900.0;       // state, list with history, and what a rebuild holds twice
 constexpr double kBytesPerFrameGrain = 20.0;   // position, speed, radius in single precision
-constexpr char kRefinement[] = "refinement";   // in the saved state
 constexpr double kBytesPerSavedGrain = 300.0;  // in a checkpoint: state, pair list, contact history
 
 void check(const DemOptions& o) {
@@ -123,9 +122,7 @@ class DemTerrain : public Terrain {
     s.contacts = a.contacts;
     s.active = a.active;
     s.list_rebuilds = std::llround(solver_.rebuilds());
-    s.substeps_added = refinement_.state().added;
-    s.refined_time = refinement_.state().time;
-    s.most_parts = 1 << refinement_.state().finest;
+    refinement_.report(s);
     s.energies = solver_.reported_energies();
     s.energies.surface_work = surface_work_;  // walls stand still: they do none
     s.momenta = {mass * a.velocity, solver_.gravity_impulse(), a.wall_impulse, a.surface_impulse, -a.momentum_removed};
@@ -157,7 +154,7 @@ class DemTerrain : public Terrain {
     archive.put("stable_overlap", stable_overlap_);
     archive.put("surface_work", surface_work_);
     // Left out while there is nothing to say: a run that never needs it has the state that it always had.
-    if (refinement_.used()) save_fields(archive, kRefinement, refinement_.state());
+    refinement_.save(archive);
     solver_.save(archive);
   }
 
@@ -168,9 +165,7 @@ class DemTerrain : public Terrain {
     set_step(archive.get_double("step"));
     stable_overlap_ = archive.get_double("stable_overlap");
     surface_work_ = archive.get_double("surface_work");
-    dem::StepRefinement::State refined;
-    if (archive.has(std::string(kRefinement) + "/level")) restore_fields(archive, kRefinement, refined);
-    refinement_.restore(refined);
+    refinement_.restore(archive);
   }
 
  private:

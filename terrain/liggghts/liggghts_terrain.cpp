@@ -38,11 +38,8 @@ namespace {
 
 using namespace liggghts;
 
-constexpr double kMostImbalance = 0.05;       // above it the borders move
-constexpr int kBalanceEvery = 500;            // intervals: moving borders costs about as much as ten steps
-constexpr char kRefinement[] = "refinement";  // in the saved state
-
-Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+constexpr double kMostImbalance = 0.05;  // above it the borders move
+constexpr int kBalanceEvery = 500;       // intervals: moving borders costs about as much as ten steps
 
 class LiggghtsTerrain final : public Terrain {
  public:
@@ -120,7 +117,7 @@ class LiggghtsTerrain final : public Terrain {
     run(steps, part);
     contacts_.end_interval(duration, forces, sums);
     for (int s = 0; s < substeps; ++s) refinement_.count(parts);
-    SharedReports shared = share_reports(group(), own_interval(), own_state(), forces, sums);
+    SharedReports shared = share_reports(group(), contacts_.interval(), own_state(), forces, sums);
     states_ = std::move(shared.states);
     if (Outcome outcome = judge(shared.intervals); !outcome.ok) return outcome;
     for (const ContactSums& one : sums) surface_work_ -= one.work;
@@ -133,9 +130,7 @@ class LiggghtsTerrain final : public Terrain {
     if (engine_)
       for (const StateReport& one : states_.empty() ? gather_states(group(), own_state()) : states_) add(all, one);
     TerrainState s = terrain_state(all, contacts_.grain(), options_.gravity, surface_work_);
-    s.substeps_added = refinement_.state().added;
-    s.refined_time = refinement_.state().time;
-    s.most_parts = 1 << refinement_.state().finest;
+    refinement_.report(s);
     return s;
   }
 
@@ -157,7 +152,7 @@ class LiggghtsTerrain final : public Terrain {
     archive.put("borders", borders_);
     archive.put("since_balance", static_cast<std::int64_t>(since_balance_));
     archive.put("exchange_due", static_cast<std::int64_t>(engine_->exchange_due() ? 1 : 0));
-    if (refinement_.used()) save_fields(archive, kRefinement, refinement_.state());
+    refinement_.save(archive);
     contacts_.save(archive);
     save_grains(*engine_, contacts_.carried(engine_->own()), archive);
   }
@@ -171,9 +166,7 @@ class LiggghtsTerrain final : public Terrain {
     borders_ = archive.get<double>("borders", static_cast<std::size_t>(ranks() - 1));
     since_balance_ = static_cast<int>(archive.get_int("since_balance"));
     refinement_.set_step(dt_);
-    dem::StepRefinement::State refined;
-    if (archive.has(std::string(kRefinement) + "/level")) restore_fields(archive, kRefinement, refined);
-    refinement_.restore(refined);
+    refinement_.restore(archive);
     contacts_.restore(archive);
     size_ = archive.get_int("grains/all");
     start(read_grains(archive, size_), true, archive.get_int("exchange_due") != 0);
@@ -252,16 +245,6 @@ class LiggghtsTerrain final : public Terrain {
                                                  error.on_all ? "" : " on this rank", error.what()));
   }
 
-  IntervalReport own_interval() const {
-    IntervalReport own;
-    if (const auto& lost = contacts_.lost()) own.lost = lost->id, own.lost_at = vec(lost->position);
-    own.overlap = contacts_.interval_overlap();
-    own.share = contacts_.hardest_share();
-    own.hardest_at = vec(contacts_.hardest_at());
-    return own;
-  }
-
-  /// How the interval ended, alike on all ranks.
   Outcome judge(std::span<const IntervalReport> reports) {
     dem::HardContacts hard;
     for (const IntervalReport& one : reports) {

@@ -75,15 +75,9 @@ void RankContacts::set_step(double dt) {
 }
 
 void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
-  Tire tire;
-  tire.collider = std::make_unique<SurfaceCollider>(mesh, params_.largest_radius() + look_room());
-  tire.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, options_.contact_tangents);
-  tire.material = material;
-  tire.coefficients = dem::surface_coefficients(options_, material, options_.step);
-  tire.mass_share = dem::mass_share(params_.grain, material);
-  tire.start = tire.end = start.position;
-  tire.collider->set_motion(tire.start, tire.end, 1.0);
-  tires_.push_back(std::move(tire));
+  tires_.emplace_back(mesh, params_.largest_radius() + look_room(), options_.contact_tangents, params_.grain, material,
+                      start);
+  tires_.back().coefficients = dem::surface_coefficients(options_, material, options_.step);
 }
 
 void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps) {
@@ -93,20 +87,12 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
   grains.lo.array() -= room, grains.hi.array() += room;
   for (std::size_t k = 0; k < tires_.size(); ++k) {
     Tire& tire = tires_[k];
-    tire.start.swap(tire.end);
-    double way2 = 0.0;
-    for (std::size_t a = 0; a < tire.end.size(); ++a) {
-      tire.end[a] = targets[k].position[a] + duration * targets[k].velocity[a];
-      way2 = std::max(way2, (tire.end[a] - tire.start[a]).squaredNorm());
-    }
-    tire.way = std::sqrt(way2) / steps;
-    tire.collider->set_motion(tire.start, tire.end, duration);
-    tire.collider->restrict_to(grains);
+    tire.way = tire.set_target(targets[k], duration) / steps;
+    tire.collider.restrict_to(grains);
   }
   steps_ = steps;
   step_ = 0;
-  lost_.reset();
-  interval_overlap_ = hardest_share_ = 0.0;
+  interval_ = {};
 }
 
 void RankContacts::lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) {
@@ -129,11 +115,8 @@ void RankContacts::lists_made(const OwnGrains& grains, std::span<const std::int3
 }
 
 StepWish RankContacts::begin_step() {
-  const Vec3 r = Vec3::Constant(params_.largest_radius());
   for (Tire& tire : tires_) {
-    tire.collider->move_to(static_cast<double>(step_) / steps_);
-    tire.near = tire.collider->bounds();
-    tire.near.lo -= r, tire.near.hi += r;
+    tire.move_to(static_cast<double>(step_) / steps_, params_.largest_radius());
     tire.moved += tire.way;
     tire.forces.clear();
   }
@@ -189,7 +172,7 @@ void RankContacts::touch_tires(const OwnGrains& grains, Touchable& t, bool losse
     if (!inside(tires_[k].near, x)) continue;
     const int* const begin_of = &near_begin_[t.near + k];
     const std::span<const int> among(near_.data() + begin_of[0], near_.data() + begin_of[1]);
-    const int count = tires_[k].collider->hits({x[0], x[1], x[2]}, r, among, hits);
+    const int count = tires_[k].collider.hits({x[0], x[1], x[2]}, r, among, hits);
     if (count == 0) continue;
     if (!begun) begin();
     touch_tire<Law, kRolling>(grains, t.grain, k, std::span(hits).first(count), losses);
@@ -202,13 +185,13 @@ void RankContacts::touch_tires(const OwnGrains& grains, Touchable& t, bool losse
     if (taken_[p]) continue;
     const Tire& tire = tires_[static_cast<int>(past_[p].partner) - dem::kWalls];
     now_.sample.power.opening +=
-        Law::held(coefficients<Law>(tire, r), 0.0, history_of(past_[p])).tangential / times_.since;
+        Law::held(tire.against<Law>(params_.grain.radius, r), 0.0, history_of(past_[p])).tangential / times_.since;
   }
 }
 
 void RankContacts::note_lost(const OwnGrains& grains, int g) {
   const double* const x = grains.position[g];
-  if (!lost_) lost_ = LostGrain{grains.id[g] - 1, {x[0], x[1], x[2]}};
+  if (interval_.lost < 0.0) interval_.lost = grains.id[g] - 1, interval_.lost_at = {x[0], x[1], x[2]};
 }
 
 /// Most grains touch nothing but each other. From one making of the lists to the next they move by a skin against where
@@ -224,7 +207,7 @@ void RankContacts::look(const OwnGrains& grains) {
   const double room = look_room();
   for (Tire& t : tires_) {
     t.moved = 0.0;
-    t.grid = t.collider->grid_rebuilds();
+    t.grid = t.collider.grid_rebuilds();
     t.looked_for.lo = t.near.lo.array() - room, t.looked_for.hi = t.near.hi.array() + room;
   }
   // Whoever carries a history with a tire was found before, unless the numbers of grains were others then.
@@ -264,7 +247,7 @@ void RankContacts::look_at(const OwnGrains& grains, int first, int last) {
     const std::size_t before = near_.size(), begin = near_begin_.size();
     for (const Tire& t : tires_) {
       near_begin_.push_back(static_cast<int>(near_.size()));
-      t.collider->near({x[0], x[1], x[2]}, grains.radius[g] + room, near_);
+      t.collider.near({x[0], x[1], x[2]}, grains.radius[g] + room, near_);
     }
     near_begin_.push_back(static_cast<int>(near_.size()));
     if (carries || near_.size() > before)
@@ -278,15 +261,13 @@ double RankContacts::look_room() const { return (1.0 + kTireRoom) * params_.skin
 
 bool RankContacts::looked_far_enough() const {
   return looked_ && std::all_of(tires_.begin(), tires_.end(), [&](const Tire& t) {
-           return t.moved <= kTireRoom * params_.skin && t.grid == t.collider->grid_rebuilds();
+           return t.moved <= kTireRoom * params_.skin && t.grid == t.collider.grid_rebuilds();
          });
 }
 
 void RankContacts::note(double overlap, double share, const double* at) {
   now_.max_overlap = std::max(now_.max_overlap, overlap);
-  if (share <= hardest_share_) return;
-  hardest_share_ = share;
-  hardest_at_ = {at[0], at[1], at[2]};
+  if (share > interval_.share) interval_.share = share, interval_.hardest_at = {at[0], at[1], at[2]};
 }
 
 template <class Law, bool kRolling>
@@ -295,11 +276,11 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
   const double r = grains.radius[g];
   const Vec3 centre(grains.position[g][0], grains.position[g][1], grains.position[g][2]);
   const int partner = dem::kWalls + k;
-  const auto c = coefficients<Law>(tire, r);
+  const auto c = tire.against<Law>(params_.grain.radius, r);
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (const SurfaceHit& hit : hits) {
     const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
-    const dem::ContactMotion<double> motion = dem::motion_at(*tire.collider, hit, arm, v, w);
+    const dem::ContactMotion<double> motion = dem::motion_at(tire.collider, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     double cosine = dem::kSameNormal;
     int nearest = -1;
@@ -346,15 +327,16 @@ void RankContacts::sum_motion(const OwnGrains& grains) {
 
 void RankContacts::end_step(const PairSums& pairs, const MotionSums& motion, bool losses) {
   const double dt = times_.kick;
-  for (Tire& tire : tires_) tire.sum->add_substep(tire.forces, *tire.collider, dt, times_.dt);
+  for (Tire& tire : tires_) tire.sum.add_substep(tire.forces, tire.collider, dt, times_.dt);
   sums_.elastic = pairs.elastic + now_.elastic;
   sums_.wall_impulse += dt * Vec3(now_.wall_force.x, now_.wall_force.y, now_.wall_force.z);
   sums_.surface_impulse += dt * on_grains_;
   sums_.gravity_time += dt;
   sums_.floor_force = now_.floor_force;
   sums_.contacts = pairs.contacts + static_cast<double>(now_.contacts);
-  interval_overlap_ = std::max({interval_overlap_, pairs.max_overlap, now_.max_overlap});
-  if (pairs.max_share > hardest_share_) hardest_share_ = pairs.max_share, hardest_at_ = pairs.hardest_at;
+  interval_.overlap = std::max({interval_.overlap, pairs.max_overlap, now_.max_overlap});
+  if (pairs.max_share > interval_.share)
+    interval_.share = pairs.max_share, interval_.hardest_at = Vec3::Map(pairs.hardest_at.data());
   if (losses) {
     dem::ContactSample all = pairs.sample;
     add(all, now_.sample);
@@ -367,8 +349,8 @@ void RankContacts::end_step(const PairSums& pairs, const MotionSums& motion, boo
 void RankContacts::end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums) {
   FURROW_ASSERT(forces.size() == tires_.size() && sums.size() == tires_.size(), forces.size(), sums.size());
   for (std::size_t k = 0; k < tires_.size(); ++k) {
-    tires_[k].collider->move_to(1.0);
-    tires_[k].sum->finish(duration, forces[k], sums[k]);
+    tires_[k].collider.move_to(1.0);
+    tires_[k].sum.finish(duration, forces[k], sums[k]);
   }
 }
 
@@ -381,34 +363,15 @@ void RankContacts::begin_accounts(const dem::Stored& stored, double elastic) {
 }
 
 void RankContacts::save(Archive& archive) const {
-  archive.put("tires/count", static_cast<std::int64_t>(tires_.size()));
-  for (std::size_t k = 0; k < tires_.size(); ++k) {
-    const Archive::Scope scope(archive, "tire" + std::to_string(k) + "/");
-    save_fields(archive, "mesh", tires_[k].collider->mesh());
-    save_value(archive, "position", tires_[k].end);
-    save_fields(archive, "material", tires_[k].material);
-  }
+  dem::save_surfaces(archive, "tire", tires_);
   save_fields(archive, "sums", sums_);
   energies_.save(archive);
 }
 
 void RankContacts::restore(const Archive& archive) {
-  const auto count = archive.get_int("tires/count");
-  if (count < 0 || (!tires_.empty() && static_cast<std::size_t>(count) != tires_.size()))
-    throw Error(ExitCode::io,
-                "saved state holds " + std::to_string(count) + " tires, expected " + std::to_string(tires_.size()));
-  tires_.clear();
-  for (std::int64_t k = 0; k < count; ++k) {
-    const Archive::Scope scope(archive, "tire" + std::to_string(k) + "/");
-    SurfaceMesh mesh;
-    SurfaceState start;
-    ContactMaterial material;
-    restore_fields(archive, "mesh", mesh);
-    restore_value(archive, "position", start.position, mesh.vertex_count);
-    restore_fields(archive, "material", material);
-    check_surface(mesh, start, static_cast<int>(k));
+  dem::restore_surfaces(archive, "tire", tires_, [this](const auto& mesh, const auto& material, const auto& start) {
     attach(mesh, material, start);
-  }
+  });
   restore_fields(archive, "sums", sums_);
   energies_.restore(archive, 1);
 }

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,11 +12,10 @@
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/parcel.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "terrain/dem/tires/tire_surface.hpp"
 #include "terrain/dem/wall_forces.hpp"
 #include "terrain/liggghts/engine.hpp"
 #include "terrain/liggghts/wall_contacts.hpp"
-#include "terrain/surface/surface_collider.hpp"
-#include "terrain/surface/surface_forces.hpp"
 
 namespace furrow::terrain::liggghts {
 
@@ -42,11 +39,21 @@ void visit_fields(auto&& visit, FieldsOf<RankSums> auto& s) {
   visit(Field{"motion", ""}, s.motion);
 }
 
-/// A grain that left the bin or is not finite.
-struct LostGrain {
-  int id = -1;
-  std::array<double, 3> position{};  // m
+/// What decides how an interval ended. All ranks receive that of all.
+struct IntervalReport {
+  double lost = -1.0;              // number of a grain; −1: none
+  Vec3 lost_at = Vec3::Zero();     // m
+  double overlap = 0.0;            // largest, m
+  double share = 0.0;              // largest overlap over a diameter, -
+  Vec3 hardest_at = Vec3::Zero();  // m
 };
+void visit_fields(auto&& visit, FieldsOf<IntervalReport> auto& s) {
+  visit(Field{"lost"}, s.lost);
+  visit(Field{"lost_at", "m"}, s.lost_at);
+  visit(Field{"overlap", "m"}, s.overlap);
+  visit(Field{"share", "-"}, s.share);
+  visit(Field{"hardest_at", "m"}, s.hardest_at);
+}
 
 class RankContacts final : public StepWork {
  public:
@@ -58,7 +65,7 @@ class RankContacts final : public StepWork {
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start);
   std::size_t vertices(int k) const { return tires_.at(k).end.size(); }
   int tires() const { return static_cast<int>(tires_.size()); }
-  SurfaceBox swept_bounds(int k) const { return tires_.at(k).collider->swept_bounds(); }
+  SurfaceBox swept_bounds(int k) const { return tires_.at(k).collider.swept_bounds(); }
 
   /// Declares the motion of the coming interval of `steps` steps.
   void begin_interval(std::span<const SurfaceState> targets, double duration, int steps);
@@ -74,12 +81,8 @@ class RankContacts final : public StepWork {
   /// This rank's share of the interval's means.
   void end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
-  /// The first grain that was lost in this interval.
-  const std::optional<LostGrain>& lost() const { return lost_; }
-  /// Of the interval's contacts: the largest overlap, and the largest share of a diameter with its place.
-  double interval_overlap() const { return interval_overlap_; }
-  double hardest_share() const { return hardest_share_; }
-  const std::array<double, 3>& hardest_at() const { return hardest_at_; }
+  /// Of this rank's grains in the interval: the first one that was lost, and the hardest contact.
+  const IntervalReport& interval() const { return interval_; }
 
   const RankSums& sums() const { return sums_; }
   const dem::EnergyAccounts& energies() const { return energies_; }
@@ -101,19 +104,12 @@ class RankContacts final : public StepWork {
   void restore(const Archive& archive);
 
  private:
-  struct Tire {
-    std::unique_ptr<SurfaceCollider> collider;
-    std::unique_ptr<NodalForceSum> sum;
-    ContactMaterial material;
-    dem::ContactCoefficients coefficients;
-    double mass_share = 0.0;       // of surface_scale
-    std::vector<Vec3> start, end;  // m
-    SurfaceBox near;               // bounds now, grown by the largest radius
-    SurfaceBox looked_for;         // where grains were looked for the last time
-    std::int64_t grid = 0;         // how often the collider had made its grid then
-    double way = 0.0;              // of the fastest vertex in a step, m
-    double moved = 0.0;            // by vertices at most since grains were looked for, m
-    std::vector<SurfaceContactForce> forces;
+  struct Tire : dem::TireSurface {
+    using TireSurface::TireSurface;
+    SurfaceBox looked_for;  // where grains were looked for the last time
+    std::int64_t grid = 0;  // how often the collider had made its grid then
+    double way = 0.0;       // of the fastest vertex in a step, m
+    double moved = 0.0;     // by vertices at most since grains were looked for, m
   };
 
   struct Touchable {
@@ -136,10 +132,6 @@ class RankContacts final : public StepWork {
   /// What a grain and a tire may come nearer to each other before the next look, m.
   double look_room() const;
   void note_lost(const OwnGrains& grains, int g);
-  template <class Law>
-  auto coefficients(const Tire& tire, double radius) const {
-    return dem::sized_surface<Law>(tire.coefficients.of<Law>(), params_.grain.radius, radius, tire.mass_share);
-  }
   void note(double overlap, double share, const double* at);
 
   dem::DemOptions options_;
@@ -152,9 +144,7 @@ class RankContacts final : public StepWork {
   RankSums sums_;
   dem::ContactTotals now_;         // walls and tires, this step
   Vec3 on_grains_ = Vec3::Zero();  // by tires, this step, N
-  std::optional<LostGrain> lost_;
-  double interval_overlap_ = 0.0, hardest_share_ = 0.0;
-  std::array<double, 3> hardest_at_{};
+  IntervalReport interval_;
   WallContacts walls_;
   bool walls_listed_ = false;            // they still hold
   std::span<const std::int32_t> order_;  // of lists_made

@@ -9,22 +9,6 @@
 
 namespace furrow::terrain::liggghts {
 
-/// What decides how an interval ended. All ranks receive that of all.
-struct IntervalReport {
-  double lost = -1.0;              // number of a grain; −1: none
-  Vec3 lost_at = Vec3::Zero();     // m
-  double overlap = 0.0;            // largest, m
-  double share = 0.0;              // largest overlap over a diameter, -
-  Vec3 hardest_at = Vec3::Zero();  // m
-};
-void visit_fields(auto&& visit, FieldsOf<IntervalReport> auto& s) {
-  visit(Field{"lost"}, s.lost);
-  visit(Field{"lost_at", "m"}, s.lost_at);
-  visit(Field{"overlap", "m"}, s.overlap);
-  visit(Field{"share", "-"}, s.share);
-  visit(Field{"hardest_at", "m"}, s.hardest_at);
-}
-
 /// What the ranks know of an interval once they have told each other.
 struct SharedReports {
   std::vector<IntervalReport> intervals;  // of all ranks, on each of them

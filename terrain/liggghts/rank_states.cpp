@@ -3,20 +3,9 @@
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/field_arithmetic.hpp"
 
 namespace furrow::terrain::liggghts {
-namespace {
-
-void add(MotionSums& to, const MotionSums& one) {
-  to.volume += one.volume;
-  to.speed2 += one.speed2;
-  to.spin2 += one.spin2;
-  to.speed += one.speed;
-  to.place += one.place;
-}
-
-}  // namespace
-
 StateReport state_report(const RankContacts& contacts, double grains, double of_all, double list_builds) {
   FURROW_ASSERT(of_all > 0.0, of_all);
   StateReport r;
@@ -30,18 +19,8 @@ StateReport state_report(const RankContacts& contacts, double grains, double of_
 }
 
 void add(StateReport& to, const StateReport& one) {
-  to.grains += one.grains;
-  to.sums.elastic += one.sums.elastic;
-  to.sums.wall_impulse += one.sums.wall_impulse;
-  to.sums.surface_impulse += one.sums.surface_impulse;
-  to.sums.gravity_time = one.sums.gravity_time;  // alike on all ranks
-  to.sums.floor_force += one.sums.floor_force;
-  to.sums.contacts += one.sums.contacts;
-  add(to.sums.motion, one.sums.motion);
-  dem::add(to.lost, one.lost, 1.0);
-  dem::add(to.stored, one.stored, 1.0);
-  to.error2 += one.error2;
-  to.list_builds += one.list_builds;
+  to = sum_of(to, one);
+  to.sums.gravity_time = one.sums.gravity_time;
 }
 
 TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& grain, const Vec3& gravity,

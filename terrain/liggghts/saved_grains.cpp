@@ -5,6 +5,8 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,21 +29,30 @@ void grain_of(std::int32_t grain, std::int64_t size, const char* array) {
   if (grain < 0 || grain >= size) damaged(fmt::format("'{}' names grain {} of {}", array, grain, size));
 }
 
-void put(std::vector<double>& to, const std::array<double, 3>& v) { to.insert(to.end(), v.begin(), v.end()); }
+/// The numbers of an entry, in their order in the saved state.
+auto numbers_of(auto& of) {
+  using Entry = std::remove_cvref_t<decltype(of)>;
+  if constexpr (std::is_same_v<Entry, NewGrain>)
+    return std::tie(of.radius, of.position, of.list_position, of.exchange_position, of.velocity, of.spin);
+  else if constexpr (std::is_same_v<Entry, PairRecord>)
+    return std::tie(of.tangential, of.root_overlap, of.rolling);
+  else
+    return std::tie(of.partner, of.normal, of.tangential, of.root_overlap, of.rolling);
+}
 
-class Numbers {
- public:
-  explicit Numbers(const std::vector<double>& values) : next_(values.data()) {}
-  double one() { return *next_++; }
-  std::array<double, 3> three() {
-    std::array<double, 3> v{};
-    for (double& x : v) x = one();
-    return v;
-  }
+void put_one(std::vector<double>& to, double v) { to.push_back(v); }
+void put_one(std::vector<double>& to, const std::array<double, 3>& v) { to.insert(to.end(), v.begin(), v.end()); }
+void put(std::vector<double>& to, const auto& entry) {
+  std::apply([&](const auto&... one) { (put_one(to, one), ...); }, numbers_of(entry));
+}
 
- private:
-  const double* next_;
-};
+void take_one(const double*& from, double& v) { v = *from++; }
+void take_one(const double*& from, std::array<double, 3>& v) {
+  for (double& x : v) x = *from++;
+}
+void take(const double*& from, auto& entry) {
+  std::apply([&](auto&... one) { (take_one(from, one), ...); }, numbers_of(entry));
+}
 
 }  // namespace
 
@@ -50,23 +61,15 @@ void save_grains(Engine& engine, std::span<const CarriedBy> contacts, Archive& a
   std::vector<double> state, pairs, carried;
   for (const NewGrain& g : engine.own_state()) {
     id.push_back(g.id);
-    state.push_back(g.radius);
-    for (const auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin}) put(state, *v);
+    put(state, g);
   }
   for (const PairRecord& p : engine.own_pairs()) {
     partners.insert(partners.end(), {p.i, p.j});
-    put(pairs, p.tangential);
-    pairs.push_back(p.root_overlap);
-    put(pairs, p.rolling);
+    put(pairs, p);
   }
   for (const CarriedBy& by : contacts) {
-    const Carried& c = by.contact;
     carriers.push_back(by.grain);
-    carried.push_back(c.partner);
-    put(carried, c.normal);
-    put(carried, c.tangential);
-    carried.push_back(c.root_overlap);
-    put(carried, c.rolling);
+    put(carried, by.contact);
   }
   archive.put("grains/id", id);
   archive.put("grains/state", state);
@@ -85,33 +88,26 @@ StartingBed read_grains(const Archive& archive, std::int64_t size) {
   const auto& carriers = archive.get<std::int32_t>("carried/grain");
   const auto& contacts = archive.get<double>("carried/history", kCarried * carriers.size());
   if (partners.size() % 2 != 0) damaged("'pairs/grains' holds a grain without its partner");
-  Numbers state(states), pairs(histories), carried(contacts);
+  const double *state = states.data(), *pair = histories.data(), *contact = contacts.data();
   StartingBed bed;
   for (const std::int32_t k : id) {
     grain_of(k, size, "grains/id");
     NewGrain g;
     g.id = k;
-    g.radius = state.one();
-    for (auto* v : {&g.position, &g.list_position, &g.exchange_position, &g.velocity, &g.spin}) *v = state.three();
+    take(state, g);
     bed.grains.push_back(g);
   }
   for (std::size_t p = 0; p < partners.size(); p += 2) {
     PairRecord r;
     r.i = partners[p], r.j = partners[p + 1];
     grain_of(r.i, size, "pairs/grains"), grain_of(r.j, size, "pairs/grains");
-    r.tangential = pairs.three();
-    r.root_overlap = pairs.one();
-    r.rolling = pairs.three();
+    take(pair, r);
     bed.pairs.push_back(r);
   }
   for (const std::int32_t k : carriers) {
     grain_of(k, size, "carried/grain");
     Carried c;
-    c.partner = carried.one();
-    c.normal = carried.three();
-    c.tangential = carried.three();
-    c.root_overlap = carried.one();
-    c.rolling = carried.three();
+    take(contact, c);
     bed.walls.push_back({k, c});
   }
   return bed;

@@ -96,22 +96,6 @@ class WallContacts {
   const dem::ContactCoefficients& of(int wall, const Step& step) const {
     return wall == dem::kFloor ? step.coefficients.floor : step.coefficients.side;
   }
-  /// As Bin::distance.
-  template <class T>
-  T distances(int wall, const simd::Triple<T>& x) const {
-    switch (wall) {
-      case 0:
-        return x.x;
-      case 1:
-        return bin_.length - x.x;
-      case 2:
-        return x.y + 0.5 * bin_.width;
-      case 3:
-        return 0.5 * bin_.width - x.y;
-      default:
-        return x.z;
-    }
-  }
   template <class T>
   static simd::Triple<T> gather(const double (*from)[3], const int* g) {
     const auto along = [&](int k) {
@@ -162,7 +146,7 @@ void WallContacts::evaluate(const Grains& grains, int wall, std::size_t n, std::
   Listed& listed = walls_[wall];
   const int* const g = listed.grain.data() + n;
   const simd::Triple<double> n_of = dem::Bin::normal(wall);
-  const T distance = distances(wall, gather<T>(grains.position, g));
+  const T distance = bin_.distance(wall, gather<T>(grains.position, g));
   T radius = constant<T>(reference_), order{};
   if constexpr (kSizes && kOne) radius = grains.radius[g[0]];
   if constexpr (kSizes && !kOne)

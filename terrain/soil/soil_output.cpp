@@ -243,52 +243,39 @@ json soil_json(const SoilRun& run) {
 }
 
 void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) {
-  using Text = fmt::memory_buffer;
-  const auto write = [&](const char* name, const Text& text) {
-    write_whole_file(folder / name, {text.data(), text.size()});
+  const auto write = [&](bool tested, const char* name, std::string text, const auto& add_rows) {
+    if (!tested) return;
+    add_rows([&](const auto& test, std::initializer_list<double> values) {
+      fmt::format_to(std::back_inserter(text), "{},{:.9g}\n", test.specimen.seed, fmt::join(values, ","));
+    });
+    write_whole_file(folder / name, text);
   };
-  if (run.options.plate) {
-    Text text;
-    fmt::format_to(std::back_inserter(text), "seed,width_m,sinkage_m,pressure_Pa\n");
+  write(run.options.plate, "plate.csv", "seed,width_m,sinkage_m,pressure_Pa\n", [&](const auto& row) {
     for (const auto& t : run.results.plate)
       for (std::size_t k = 0; k < t.result.curve.sinkage.size(); ++k)
-        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed, t.result.curve.width,
-                       t.result.curve.sinkage[k], t.result.curve.pressure[k]);
-    write("plate.csv", text);
-  }
-  if (run.options.shear) {
-    Text text;
-    fmt::format_to(std::back_inserter(text),
-                   "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n");
-    for (const auto& t : run.results.shear)
-      for (std::size_t k = 0; k < t.result.travel.size(); ++k)
-        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed,
-                       t.result.normal_nominal, t.result.travel[k], t.result.shear[k], t.result.normal[k],
-                       t.result.rise[k]);
-    write("shear.csv", text);
-  }
-  if (run.options.cone) {
-    Text text;
-    fmt::format_to(std::back_inserter(text), "seed,depth_m,pressure_Pa\n");
+        row(t, {t.result.curve.width, t.result.curve.sinkage[k], t.result.curve.pressure[k]});
+  });
+  write(run.options.shear, "shear.csv",
+        "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n", [&](const auto& row) {
+          for (const auto& t : run.results.shear)
+            for (std::size_t k = 0; k < t.result.travel.size(); ++k)
+              row(t, {t.result.normal_nominal, t.result.travel[k], t.result.shear[k], t.result.normal[k],
+                      t.result.rise[k]});
+        });
+  write(run.options.cone, "cone.csv", "seed,depth_m,pressure_Pa\n", [&](const auto& row) {
     for (const auto& t : run.results.cone)
-      for (std::size_t k = 0; k < t.result.depth.size(); ++k)
-        fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g}\n", t.specimen.seed, t.result.depth[k],
-                       t.result.pressure[k]);
-    write("cone.csv", text);
-  }
-  if (run.options.repose) {
-    Text text;
-    fmt::format_to(std::back_inserter(text), "seed,cohesion_Pa,x_m,height_before_m,height_after_m\n");
-    const auto rows = [&](const auto& tests, double cohesion) {
-      for (const auto& t : tests)
-        for (std::size_t k = 0; k < t.result.x.size(); ++k)
-          fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g}\n", t.specimen.seed, cohesion,
-                         t.result.x[k], t.result.before[k], t.result.after[k]);
-    };
-    rows(run.results.repose, run.options.material.cohesion);
-    rows(run.results.dry, 0.0);
-    write("repose.csv", text);
-  }
+      for (std::size_t k = 0; k < t.result.depth.size(); ++k) row(t, {t.result.depth[k], t.result.pressure[k]});
+  });
+  write(run.options.repose, "repose.csv", "seed,cohesion_Pa,x_m,height_before_m,height_after_m\n",
+        [&](const auto& row) {
+          const auto rows = [&](const auto& tests, double cohesion) {
+            for (const auto& t : tests)
+              for (std::size_t k = 0; k < t.result.x.size(); ++k)
+                row(t, {cohesion, t.result.x[k], t.result.before[k], t.result.after[k]});
+          };
+          rows(run.results.repose, run.options.material.cohesion);
+          rows(run.results.dry, 0.0);
+        });
 }
 
 std::string soil_text(const json& soil) {

@@ -25,7 +25,6 @@ constexpr double kReferenceStep = 6e-3;                 // s per m of grain radi
 
 /// One bed and what is done on it.
 struct Job {
-  std::string name;
   double settling = 0.0, testing = 0.0;  // estimated work, grain-steps
   std::function<void(const Job&, const WorkCall&)> run;
   double work() const { return settling + testing; }
@@ -125,25 +124,23 @@ double grains_in(const Box& box) { return 0.12 * box.length * box.width * box.de
 /// Makes the list of jobs; each writes to places of its own.
 class Planner {
  public:
-  Planner(const SoilOptions& options, const SoilPlan& plan, SoilResults& results)
-      : o_(options), plan_(plan), out_(results) {
-    const bool cohesive = o_.material.cohesion > 0.0;
-    const auto n = static_cast<std::size_t>(o_.seeds);
-    if (o_.plate) out_.plate.resize(n * plan_.plates.size());
-    if (o_.shear) out_.shear.resize(n * plan_.shears.size());
-    if (o_.cone) out_.cone.resize(n);
-    if (o_.repose) out_.repose.resize(n);
-    if (o_.repose && cohesive) out_.dry.resize(n);
+  Planner(const SoilOptions& options, const SoilPlan& plan, SoilResults& results) : o_(options) {
+    dem::DemOptions dry = o_.material;
+    dry.cohesion = 0.0;
+    double plate_way = 0.0, shear_way = 0.0;
+    for (const PlateTest& test : plan.plates) plate_way += test.sinkage + 1.0;
+    for (const ShearTest& test : plan.shears) shear_way += 1.6 * test.travel;
+    const double cone_way = 1.9 * plan.cone.diameter + plan.cone.depth + 2.0;
     for (int s = 0; s < o_.seeds; ++s) {
-      if (o_.cone) add_cone(s);
-      if (o_.plate) add_plates(s);
-      if (o_.shear) add_shear(s);
-      if (o_.repose) add_repose(s, o_.material, out_.repose);
-      if (o_.repose && cohesive) {
-        dem::DemOptions dry = o_.material;
-        dry.cohesion = 0.0;
-        add_repose(s, dry, out_.dry);
-      }
+      if (o_.cone)
+        add(s, o_.material, plan.cone_box, {&plan.cone, 1}, steps_for(cone_way), cone_penetration, results.cone);
+      if (o_.plate)
+        add(s, o_.material, plan.plate_box, plan.plates, steps_for(plate_way), plate_sinkage, results.plate);
+      if (o_.shear) add(s, o_.material, plan.shear_box, plan.shears, steps_for(shear_way), direct_shear, results.shear);
+      if (!o_.repose) continue;
+      add(s, o_.material, plan.repose_box, {&plan.repose, 1}, kReposeSteps, angle_of_repose, results.repose);
+      if (o_.material.cohesion > 0.0)
+        add(s, dry, plan.repose_box, {&plan.repose, 1}, kReposeSteps, angle_of_repose, results.dry);
     }
     // The longest first, so that no thread is left with one at the end.
     std::stable_sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.work() > b.work(); });
@@ -154,56 +151,25 @@ class Planner {
  private:
   /// Steps for a way of `radii` at the test's speed.
   double steps_for(double radii) const { return radii / o_.speed / kReferenceStep; }
-  std::uint64_t seed(int s) const { return o_.material.seed + static_cast<std::uint64_t>(s); }
-  Job& add(const Box& box, double test_steps) {
-    Job job;
-    job.settling = kSettleSteps * grains_in(box);
-    job.testing = test_steps * grains_in(box);
-    jobs.push_back(std::move(job));
-    return jobs.back();
-  }
-
-  void add_plates(int s) {
-    double way = 0.0;
-    for (const PlateTest& test : plan_.plates) way += test.sinkage + 1.0;
-    add(plan_.plate_box, steps_for(way)).run = [this, s](const Job& job, const WorkCall& call) {
-      const Specimen specimen(o_.material, plan_.plate_box, seed(s), job.settle_call(call));
-      const auto count = static_cast<double>(plan_.plates.size());
-      for (std::size_t k = 0; k < plan_.plates.size(); ++k) {
+  /// One bed, on which all of these tests are run one after another.
+  template <class Test, class Result>
+  void add(int s, const dem::DemOptions& material, const Box& box, std::type_identity_t<std::span<const Test>> tests,
+           double test_steps, Result (*run)(const Specimen&, const Test&, const WorkCall&),
+           std::vector<Tested<Result>>& to) {
+    to.resize(o_.seeds * tests.size());
+    const auto go = [=, this, &box, &to](const Job& job, const WorkCall& call) {
+      const std::uint64_t seed = o_.material.seed + static_cast<std::uint64_t>(s);
+      const Specimen specimen(material, box, seed, job.settle_call(call));
+      const auto count = static_cast<double>(tests.size());
+      for (std::size_t k = 0; k < tests.size(); ++k) {
         const WorkCall mine = job.test_call(call, static_cast<double>(k) / count, (k + 1.0) / count);
-        out_.plate[s * plan_.plates.size() + k] = {facts(specimen), plate_sinkage(specimen, plan_.plates[k], mine)};
+        to[s * tests.size() + k] = {facts(specimen), run(specimen, tests[k], mine)};
       }
     };
-  }
-  void add_shear(int s) {
-    double way = 0.0;
-    for (const ShearTest& test : plan_.shears) way += 1.6 * test.travel;
-    add(plan_.shear_box, steps_for(way)).run = [this, s](const Job& job, const WorkCall& call) {
-      const Specimen specimen(o_.material, plan_.shear_box, seed(s), job.settle_call(call));
-      const auto count = static_cast<double>(plan_.shears.size());
-      for (std::size_t k = 0; k < plan_.shears.size(); ++k) {
-        const WorkCall mine = job.test_call(call, static_cast<double>(k) / count, (k + 1.0) / count);
-        out_.shear[s * plan_.shears.size() + k] = {facts(specimen), direct_shear(specimen, plan_.shears[k], mine)};
-      }
-    };
-  }
-  void add_cone(int s) {
-    add(plan_.cone_box, steps_for(1.9 * plan_.cone.diameter + plan_.cone.depth + 2.0)).run =
-        [this, s](const Job& job, const WorkCall& call) {
-          const Specimen specimen(o_.material, plan_.cone_box, seed(s), job.settle_call(call));
-          out_.cone[s] = {facts(specimen), cone_penetration(specimen, plan_.cone, job.test_call(call, 0.0, 1.0))};
-        };
-  }
-  void add_repose(int s, const dem::DemOptions& material, std::vector<Tested<ReposeResult>>& to) {
-    add(plan_.repose_box, kReposeSteps).run = [this, s, material, &to](const Job& job, const WorkCall& call) {
-      const Specimen specimen(material, plan_.repose_box, seed(s), job.settle_call(call));
-      to[s] = {facts(specimen), angle_of_repose(specimen, plan_.repose, job.test_call(call, 0.0, 1.0))};
-    };
+    jobs.push_back({kSettleSteps * grains_in(box), test_steps * grains_in(box), go});
   }
 
   const SoilOptions& o_;
-  const SoilPlan& plan_;
-  SoilResults& out_;
 };
 
 /// The part of a curve that is fitted.

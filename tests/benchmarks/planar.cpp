@@ -1,7 +1,7 @@
 // Element-steps per millisecond of the planar tire, on one core.
 #include <benchmark/benchmark.h>
 
-#include "tire/planar/planar_wheel.hpp"
+#include "tests/tire/planar/planar_wheel.hpp"
 
 namespace {
 

@@ -61,17 +61,12 @@ ContactMaterial rubber() {
 class SpringWheel final : public Tire {
  public:
   SpringWheel(const SpringWheelOptions& options, TireShape shape)
-      : options_(options), shape_(std::move(shape)), deflection_(shape_.vertex.size()), rate_(shape_.vertex.size()) {}
+      : Tire(kGravity, std::move(shape)),
+        options_(options),
+        deflection_(shape_.vertex.size()),
+        rate_(shape_.vertex.size()) {}
 
-  const SurfaceMesh& mesh() const override { return shape_.mesh; }
-  ContactMaterial material() const override { return shape_.material; }
-  MassProperties mass_properties() const override { return shape_.mass; }
-  double radius() const override { return shape_.radius; }
-  double tread_width() const override { return shape_.tread_width; }
-  Vec3 gravity() const override { return kGravity; }
   int coordinates() const override { return static_cast<int>(deflection_.size()); }
-
-  void set_pressure(double) override {}
 
   void do_place(const RimState& rim) override {
     rim_ = rim;
@@ -115,8 +110,6 @@ class SpringWheel final : public Tire {
         return Outcome::failure("reached its rim", fmt::format("vertex {} is {:g} m deep", v, deflection_[v]));
     return {};
   }
-
-  Wrench spindle_wrench() const override { return spindle_; }
 
   TireDiagnostics diagnostics() const override {
     TireDiagnostics d;
@@ -179,9 +172,6 @@ class SpringWheel final : public Tire {
   }
 
   SpringWheelOptions options_;
-  TireShape shape_;
-  RimState rim_;                                     // now
-  Wrench spindle_;                                   // of the last advance
   std::vector<double> deflection_, rate_;            // u, m; u̇, m/s
   double dissipation_ = 0.0, numerical_loss_ = 0.0;  // J
 };

@@ -356,7 +356,7 @@ TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run)
   ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, 0.3), 500, 6e-5).ok);
   Archive run;
   a->save(run);
-  terrain::dem::RestResult rest;
+  terrain::dem::SettleResult rest;
   int told = 0;
   const Archive bed = terrain::dem::bed_after_run(
       run, options_, 0.02, [&](const std::string&, double) { ++told; }, rest);

@@ -26,13 +26,9 @@ double shell_area(const ShellMesh& ring, const SurfaceMesh& surface, const Shell
 }  // namespace
 
 AncfTire::AncfTire(const TireFile& file, const ShellIntegratorParams& params, std::function<void()> alive)
-    : alive_(std::move(alive)),
+    : Tire(params.gravity),
+      alive_(std::move(alive)),
       ring_(make_shell_mesh(file)),
-      surface_mesh_(make_surface_mesh(ring_)),
-      material_(file.contact),
-      rigid_mass_(furrow::tire::rigid_mass(ring_, element_masses(file, ring_))),
-      radius_(file.radius),
-      tread_width_(furrow::tire::tread_width(file, ring_)),
       clearance_(file, ring_),
       integrator_(file, ring_, [&] {
         ShellIntegratorParams p = params;
@@ -41,9 +37,14 @@ AncfTire::AncfTire(const TireFile& file, const ShellIntegratorParams& params, st
       }()) {
   TireFile bare = file;
   bare.tread_mass_per_area = 0.0;
-  material_.area_density = furrow::tire::rigid_mass(ring_, element_masses(bare, ring_)).mass /
-                               shell_area(ring_, surface_mesh_, integrator_.layout()) +
-                           file.tread_mass_per_area;
+  shape_.mesh = make_surface_mesh(ring_);
+  shape_.material = file.contact;
+  shape_.material.area_density =
+      rigid_mass(ring_, element_masses(bare, ring_)).mass / shell_area(ring_, shape_.mesh, integrator_.layout()) +
+      file.tread_mass_per_area;
+  shape_.mass = rigid_mass(ring_, element_masses(file, ring_));
+  shape_.radius = file.radius;
+  shape_.tread_width = furrow::tire::tread_width(file, ring_);
   undeformed_volume_ = integrator_.shell().volume(undeformed(ring_), Vec3::Zero());
   force_.assign(integrator_.layout().size(), 0.0);
 }
@@ -81,8 +82,8 @@ void AncfTire::do_place(const RimState& rim) {
 
 void AncfTire::surface(SurfaceState& out) const {
   const ShellLayout& layout = integrator_.layout();
-  out.position.resize(surface_mesh_.vertex_count);
-  out.velocity.resize(surface_mesh_.vertex_count);
+  out.position.resize(shape_.mesh.vertex_count);
+  out.velocity.resize(shape_.mesh.vertex_count);
   for (int i = 0; i < layout.columns; ++i)
     for (int j = 0; j < layout.rows; ++j) {
       out.position[ring_.node(i, j)] = layout.get(integrator_.q(), i, j, 0);

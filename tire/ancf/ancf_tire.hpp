@@ -17,17 +17,10 @@ class AncfTire final : public Tire {
   /// @param alive  called now and then while the tire is inflated; may throw to stop
   explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {}, std::function<void()> alive = {});
 
-  const SurfaceMesh& mesh() const override { return surface_mesh_; }
-  ContactMaterial material() const override { return material_; }
-  MassProperties mass_properties() const override { return rigid_mass_; }
-  double radius() const override { return radius_; }
-  double tread_width() const override { return tread_width_; }
-  Vec3 gravity() const override { return integrator_.params().gravity; }
   int coordinates() const override { return 6 * ring_.nodes(); }
 
   void set_pressure(double pressure) override;
   void surface(SurfaceState& out) const override;
-  Wrench spindle_wrench() const override { return spindle_; }
   void acted(NodalForces& forces) const override;
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override;
@@ -46,17 +39,10 @@ class AncfTire final : public Tire {
 
   std::function<void()> alive_;
   ShellMesh ring_;
-  SurfaceMesh surface_mesh_;
-  ContactMaterial material_;
-  MassProperties rigid_mass_;
-  double radius_ = 0.0;             // m
-  double tread_width_ = 0.0;        // m
   double undeformed_volume_ = 0.0;  // m³
   RimClearance clearance_;
   ShellIntegrator integrator_;
   InflationReport inflation_;
-  RimState rim_;    // now
-  Wrench spindle_;  // of the last advance
   // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without
   // work on the tire.
   double pressure_work_ = 0.0;

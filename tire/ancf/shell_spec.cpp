@@ -26,19 +26,6 @@ int most_layers(const TireFile& file) {
   return static_cast<int>(std::max({file.bead.layers.size(), file.sidewall.layers.size(), file.tread.layers.size()}));
 }
 
-class ShellPress final : public StaticTest {
- public:
-  explicit ShellPress(const TireFile& file) : file_(file) {}
-  PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
-    if (!options.obstacle.profile.empty())
-      throw input_error("command line", "--on", "is profile, expected plate or cleat for a layered shell tire");
-    return press_tire(file_, options, progress);
-  }
-
- private:
-  TireFile file_;
-};
-
 class ShellSpec final : public TireSpec {
  public:
   ShellSpec(const TireFile& given, const TireOptions& options)
@@ -60,7 +47,13 @@ class ShellSpec final : public TireSpec {
       found.emplace_back("pressure", "is 0: the shell carries the load alone; set tire.rigid if the wheel is rigid");
     return found;
   }
-  std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<ShellPress>(file_); }
+  std::unique_ptr<StaticTest> static_test() const override {
+    return static_test_of([file = file_](const PressOptions& options, const auto& progress) {
+      if (!options.obstacle.profile.empty())
+        throw input_error("command line", "--on", "is profile, expected plate or cleat for a layered shell tire");
+      return press_tire(file, options, progress);
+    });
+  }
   std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<ShellModes>(file_); }
 
  private:

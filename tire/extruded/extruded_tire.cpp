@@ -24,24 +24,17 @@ struct Rigid {
 class ExtrudedTire final : public Tire {
  public:
   ExtrudedTire(std::unique_ptr<PlaneModel> model, TireShape shape, const Vec3& gravity)
-      : model_(std::move(model)), shape_(std::move(shape)), gravity_(gravity), load_(model_->position().size()) {
+      : Tire(gravity, std::move(shape)), model_(std::move(model)), load_(model_->position().size()) {
     const auto nodes = static_cast<double>(model_->tread().size());
     FURROW_ASSERT(shape_.mesh.vertex_count == 2 * static_cast<int>(nodes) + 2, shape_.mesh.vertex_count, nodes);
     const double facet = 2.0 * shape_.radius * std::sin(std::numbers::pi / nodes);
     shape_.material.area_density = model_->tread_mass() / (nodes * facet * shape_.tread_width);
   }
 
-  const SurfaceMesh& mesh() const override { return shape_.mesh; }
-  ContactMaterial material() const override { return shape_.material; }
-  MassProperties mass_properties() const override { return shape_.mass; }
-  double radius() const override { return shape_.radius; }
-  double tread_width() const override { return shape_.tread_width; }
-  Vec3 gravity() const override { return gravity_; }
   int coordinates() const override { return model_->coordinates(); }
 
   void set_pressure(double pressure) override { model_->set_pressure(pressure); }
   void surface(SurfaceState& out) const override;
-  Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override { return model_->figures(); }
   void add_state(Hash& hash) const override;
@@ -72,12 +65,8 @@ class ExtrudedTire final : public Tire {
   }
 
   std::unique_ptr<PlaneModel> model_;
-  TireShape shape_;
-  Vec3 gravity_;                   // m/s²
   PlanarField load_;               // of the running interval, N
   std::vector<Vec3> arms_before_;  // of the vertices with a force, as the interval began, m
-  RimState rim_;                   // now
-  Wrench spindle_;                 // of the last advance
   double dissipation_ = 0.0, numerical_loss_ = 0.0, solver_loss_ = 0.0;  // J
   Vec3 solver_impulse_ = Vec3::Zero();                                   // N s
 };

@@ -21,18 +21,6 @@ using nlohmann::json;
 constexpr int kFacets = 96, kRows = 7;  // of the surface
 constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which no ground uses: the file has its own
 
-class HandlingStatic final : public StaticTest {
- public:
-  explicit HandlingStatic(const HandlingFile& file, const MassProperties& mass) : file_(file), mass_(mass) {}
-  PressResults press(const PressOptions& options, const ProgressCall&) const override {
-    return handling::press_handling(file_.formula, mass_, options);
-  }
-
- private:
-  HandlingFile file_;
-  MassProperties mass_;
-};
-
 class HandlingSpec final : public TireSpec {
  public:
   HandlingSpec(HandlingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
@@ -42,7 +30,11 @@ class HandlingSpec final : public TireSpec {
     return std::make_unique<handling::HandlingTire>(file_.formula, shape(), context.gravity, file_.tir.string());
   }
   TireShape shape() const override;
-  std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<HandlingStatic>(file_, mass()); }
+  std::unique_ptr<StaticTest> static_test() const override {
+    return static_test_of([formula = file_.formula, mass = mass()](const auto& options, const ProgressCall&) {
+      return handling::press_handling(formula, mass, options);
+    });
+  }
   std::vector<std::filesystem::path> files() const override {
     return is_tir(options().file) ? std::vector<std::filesystem::path>{} : std::vector{file_.tir};
   }

@@ -31,7 +31,7 @@ RimState later(const RimState& rim, double duration) {
 }  // namespace
 
 HandlingTire::HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file)
-    : formula_(std::move(formula)), shape_(std::move(shape)), file_(std::move(file)), body_(shape_, gravity) {
+    : Tire(gravity, std::move(shape)), formula_(std::move(formula)), file_(std::move(file)), body_(shape_, gravity) {
   FURROW_ASSERT(shape_.radius == formula_.dimension.unloaded_radius, shape_.radius);
   stated_.given = true;
 }

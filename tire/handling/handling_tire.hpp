@@ -30,18 +30,10 @@ class HandlingTire final : public Tire {
   /// @param shape with the radius R_0 @param file for messages
   HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file);
 
-  const SurfaceMesh& mesh() const override { return shape_.mesh; }
-  ContactMaterial material() const override { return shape_.material; }
-  MassProperties mass_properties() const override { return shape_.mass; }
-  double radius() const override { return shape_.radius; }
-  double tread_width() const override { return shape_.tread_width; }
-  Vec3 gravity() const override { return body_.gravity(); }
   int coordinates() const override { return 2; }
 
-  void set_pressure(double) override {}
   void surface(SurfaceState& out) const override;
   const StatedContact* stated_contact() const override { return &stated_; }
-  Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override;
   void add_state(Hash& hash) const override;
@@ -67,11 +59,8 @@ class HandlingTire final : public Tire {
   void distribute(const Wrench& wanted, const Vec3& centre);
 
   MagicFormula formula_;
-  TireShape shape_;
   std::string file_;
   RigidTire body_;  // its mass
-  RimState rim_;    // now
-  Wrench spindle_;  // of the last advance
   PatchState patch_;
   bool standing_ = false;     // placed and not yet moved: nothing is flattened
   double dissipation_ = 0.0;  // J

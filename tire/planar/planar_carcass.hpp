@@ -19,7 +19,7 @@
 #include "protocol/core/fields.hpp"
 #include "tire/extruded/plane_model.hpp"
 #include "tire/planar/planar_ground.hpp"
-#include "tire/planar/planar_wheel.hpp"
+#include "tire/planar/planar_params.hpp"
 
 namespace furrow::tire {
 

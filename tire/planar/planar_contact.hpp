@@ -1,25 +1,17 @@
-// Contact of a planar tire with rigid ground: the tire's outer nodes in the ground, and
-// the ground's corners in the tire.
+// Contact of a planar tire at rest with rigid ground, without friction: the tire's outer nodes in the ground, and the
+// ground's corners in the tire.
 //
 // A node at a depth h below the ground's nearest side gets the force c h along the way out. A corner at a depth h
 // behind the nearest side of the tire pushes that side away, its force shared by the side's two nodes as it lies
-// between them; its mass m is that of the point of the side, 1/m = (1 − s)²/m_a + s²/m_b. In motion, with a step Δt,
-//   F = c h,   d = ½ F/m Δt² + v_n Δt,   F ← F h/d where d > h,   F_f = min(f F, |v_t| m/Δt),                   (1)
-// v_n > 0 separating: a force pushes no farther than out of the ground, and friction against the sliding velocity v_t
-// no more than to rest. At rest the force is that of the energy Σ ½ c h².
+// between them. The force is that of the energy Σ ½ c h².
 #pragma once
 
 #include <vector>
 
 #include "tire/planar/planar_ground.hpp"
-#include "tire/planar/planar_motion.hpp"
+#include "tire/planar/planar_mesh.hpp"
 
 namespace furrow::tire {
-
-/// F of (1), N. @param separation v_n, m/s. @pre depth ≥ 0; mass, step > 0
-double planar_normal_force(double stiffness, double depth, double separation, double mass, double step);
-/// F_f of (1), N, not negative.
-double planar_friction_force(double friction, double normal, double sliding, double mass, double step);
 
 /// One place where tire and ground touch: on a side from node a to node b, at `share` from a; b = −1: on the node a.
 struct PlanarTouch {
@@ -42,16 +34,15 @@ class PlanarContact {
   const PlanarGround& ground() const { return ground_; }
   const PlanarContactLaw& law() const { return law_; }
 
-  /// Finds what touches and adds (1).
-  void load(const PlanarState& state, const std::vector<double>& mass, double step, PlanarField& force);
-  /// Finds what touches at rest, with its forces; without friction.
+  /// Finds what touches, with the forces at rest and without friction.
   void find(const PlanarField& x);
   double energy() const;  // of what was found at rest, J
   /// Of the last search: nodes along the edge of the tire, then corners.
   const std::vector<PlanarTouch>& touches() const { return touches_; }
-  /// On the tire, N.
-  double force_x() const;
-  double force_z() const;
+  double force_z() const;  // on the tire, N
+
+ protected:
+  std::vector<PlanarTouch> touches_;
 
  private:
   void find_nodes(const PlanarField& x);
@@ -61,7 +52,6 @@ class PlanarContact {
   double reach_;  // how deep a corner may lie in the tire, m
   PlanarGround ground_;
   PlanarContactLaw law_;
-  std::vector<PlanarTouch> touches_;
 };
 
 }  // namespace furrow::tire

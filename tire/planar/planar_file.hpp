@@ -4,7 +4,7 @@
 #include <string>
 
 #include "protocol/core/key.hpp"
-#include "tire/planar/planar_wheel.hpp"
+#include "tire/planar/planar_params.hpp"
 #include "tire/tire_file_keys.hpp"
 #include "tire/tire_spec.hpp"
 

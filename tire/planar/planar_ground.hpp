@@ -17,6 +17,8 @@ struct PlanarDepth {
 
 class PlanarGround {
  public:
+  using Point = PlanarPoint;
+
   /// @pre two points at least, finite, x not decreasing, no two the same
   explicit PlanarGround(std::vector<PlanarPoint> points);
   /// Flat at z = 0 for tires of a radius up to this.

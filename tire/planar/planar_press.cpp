@@ -24,15 +24,6 @@ void require_range(const PlanarParams& params, const PressOptions& options) {
 
 }  // namespace
 
-PlanarGround planar_ground(const PressObstacle& obstacle, double radius) {
-  if (!obstacle.profile.empty()) {
-    std::vector<PlanarPoint> points;
-    for (const auto& [x, z] : obstacle.profile) points.push_back({x, z});
-    return PlanarGround(std::move(points));
-  }
-  return obstacle.height > 0.0 ? PlanarGround::bar(obstacle.width, obstacle.position) : PlanarGround::plate(radius);
-}
-
 std::vector<PressSample> planar_footprint(const PlanarStatic& wheel) {
   const std::vector<int>& outer = wheel.mesh().outer;
   const PlanarField& x = wheel.shape();
@@ -58,7 +49,7 @@ PressResults press_planar(const PlanarParams& params, const MassProperties& mass
                           const ProgressCall& progress) {
   require_range(params, options);
   require_no_camber(options, "planar tire");
-  PlanarStatic wheel(params, planar_ground(options.obstacle, params.size.radius));
+  PlanarStatic wheel(params, plane_ground<PlanarGround>(options.obstacle, params.size.radius));
   const double top = wheel.contact().ground().top();
   double done = 0.0;
   PressModel model;

@@ -15,9 +15,6 @@ inline constexpr double kMostPlanarDeflection = 0.6;
 PressResults press_planar(const PlanarParams& params, const MassProperties& mass, const PressOptions& options,
                           const ProgressCall& progress);
 
-/// The ground of an obstacle.
-PlanarGround planar_ground(const PressObstacle& obstacle, double radius);
-
 /// Pressure where nodes and corners touch, their forces spread over a side of the tire.
 std::vector<PressSample> planar_footprint(const PlanarStatic& wheel);
 

@@ -37,18 +37,6 @@ void check(const PlanarFile& f) {
         fmt::format("is {}, expected 1 to {} for {} elements around: more cut each other", s.rings, most, s.around));
 }
 
-class PlanarTest final : public StaticTest {
- public:
-  PlanarTest(const PlanarParams& params, const MassProperties& mass) : params_(params), mass_(mass) {}
-  PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
-    return press_planar(params_, mass_, options, progress);
-  }
-
- private:
-  PlanarParams params_;
-  MassProperties mass_;
-};
-
 class PlanarSpec final : public TireSpec {
  public:
   PlanarSpec(PlanarFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
@@ -66,7 +54,9 @@ class PlanarSpec final : public TireSpec {
     return shape;
   }
   std::unique_ptr<StaticTest> static_test() const override {
-    return std::make_unique<PlanarTest>(file_.params, mass());
+    return static_test_of([params = file_.params, mass = mass()](const auto& options, const auto& progress) {
+      return press_planar(params, mass, options, progress);
+    });
   }
   std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<PlanarModes>(file_.params); }
 

@@ -8,8 +8,9 @@
 
 #include <memory>
 
+#include "tire/planar/planar_contact.hpp"
+#include "tire/planar/planar_params.hpp"
 #include "tire/planar/planar_tangent.hpp"
-#include "tire/planar/planar_wheel.hpp"
 #include "tire/press/press_obstacle.hpp"
 
 namespace furrow::tire {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,6 +70,19 @@ class StaticTest {
   /// @throws Error(physics) when there is no equilibrium
   virtual PressResults press(const PressOptions& options, const ProgressCall& progress) const = 0;
 };
+
+/// A static test that answers with call(options, progress).
+template <class Call>
+std::unique_ptr<StaticTest> static_test_of(Call call) {
+  struct Called final : StaticTest {
+    explicit Called(Call c) : call(std::move(c)) {}
+    PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
+      return call(options, progress);
+    }
+    Call call;
+  };
+  return std::make_unique<Called>(std::move(call));
+}
 
 /// What a reader of the curve must know of its equilibria, for a warning; empty: nothing.
 std::string press_caution(const PressResults& results);

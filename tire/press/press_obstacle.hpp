@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,6 +35,16 @@ struct PressObstacle {
   Vec3 left() const { return {0.0, std::cos(camber), -std::sin(camber)}; }
   Vec3 up() const { return {0.0, std::sin(camber), std::cos(camber)}; }
 };
+
+/// The same for a model in the plane.
+template <class Ground>
+Ground plane_ground(const PressObstacle& obstacle, double radius) {
+  if (obstacle.profile.empty())
+    return obstacle.height > 0.0 ? Ground::bar(obstacle.width, obstacle.position) : Ground::plate(radius);
+  std::vector<typename Ground::Point> points;
+  for (const auto& [x, z] : obstacle.profile) points.push_back({x, z});
+  return Ground(std::move(points));
+}
 
 /// Rows x_m,z_m of a CSV file, x increasing. @throws Error(bad_input) naming file and line
 std::vector<std::array<double, 2>> read_press_profile(const std::filesystem::path& file);

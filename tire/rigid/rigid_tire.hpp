@@ -11,20 +11,11 @@ namespace furrow::tire {
 
 class RigidTire final : public Tire {
  public:
-  explicit RigidTire(TireShape shape, const Vec3& gravity = standard_gravity())
-      : shape_(std::move(shape)), gravity_(gravity) {}
+  explicit RigidTire(TireShape shape, const Vec3& gravity = standard_gravity()) : Tire(gravity, std::move(shape)) {}
 
-  const SurfaceMesh& mesh() const override { return shape_.mesh; }
-  ContactMaterial material() const override { return shape_.material; }
-  MassProperties mass_properties() const override { return shape_.mass; }
-  double radius() const override { return shape_.radius; }
-  double tread_width() const override { return shape_.tread_width; }
-  Vec3 gravity() const override { return gravity_; }
   int coordinates() const override { return 0; }
 
-  void set_pressure(double) override {}
   void surface(SurfaceState& out) const override;
-  Wrench spindle_wrench() const override { return spindle_; }
   TireDiagnostics diagnostics() const override;
   void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;
@@ -36,10 +27,6 @@ class RigidTire final : public Tire {
   Vec3 angular_momentum(const RimState& rim) const;  // about the rim centre, W
   void book_loss(const RimState& from, const RimState& to, double duration);
 
-  TireShape shape_;
-  Vec3 gravity_;                 // m/s²
-  RimState rim_;                 // now
-  Wrench spindle_;               // of the last advance
   double numerical_loss_ = 0.0;  // J
 };
 

@@ -5,14 +5,16 @@
 
 #include <vector>
 
+#include "tire/extruded/plane_vectors.hpp"
+
 namespace furrow::tire {
 
-struct GroundPoint {
-  double x = 0.0, z = 0.0;  // forward, up, m
-};
+using GroundPoint = PlanarPoint;  // m
 
 class RingGround {
  public:
+  using Point = GroundPoint;
+
   /// @pre two points at least, x strictly increasing, all finite
   explicit RingGround(std::vector<GroundPoint> points);
   /// A flat plate at z = 0, under every tire of a radius up to this.

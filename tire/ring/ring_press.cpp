@@ -67,15 +67,6 @@ double lowest_radius(const RingSolver& solver) {
 
 }  // namespace
 
-RingGround ring_ground(const PressObstacle& obstacle, double radius) {
-  if (!obstacle.profile.empty()) {
-    std::vector<GroundPoint> points;
-    for (const auto& [x, z] : obstacle.profile) points.push_back({x, z});
-    return RingGround(std::move(points));
-  }
-  return obstacle.height > 0.0 ? RingGround::bar(obstacle.width, obstacle.position) : RingGround::plate(radius);
-}
-
 std::vector<PressSample> ring_footprint(const RingSolver& solver) {
   std::vector<PressSample> samples;
   const RingMechanics& ring = solver.ring();
@@ -104,7 +95,7 @@ std::vector<PressSample> ring_footprint(const RingSolver& solver) {
 
 PressResults press_ring(const RingParams& params, double rim_radius, const MassProperties& mass,
                         const PressOptions& options, const ProgressCall& progress) {
-  const RingGround ground = ring_ground(options.obstacle, params.radius);
+  const RingGround ground = plane_ground<RingGround>(options.obstacle, params.radius);
   RingSolver solver(params, ground);
   require_range(solver.ring(), options);
   require_no_camber(options, "flexible ring");

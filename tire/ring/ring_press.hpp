@@ -14,9 +14,6 @@ namespace furrow::tire {
 PressResults press_ring(const RingParams& params, double rim_radius, const MassProperties& mass,
                         const PressOptions& options, const ProgressCall& progress);
 
-/// The ground of an obstacle.
-RingGround ring_ground(const PressObstacle& obstacle, double radius);
-
 /// Pressure at the segments that touch, and where corners carry the belt: their force spread over one segment.
 std::vector<PressSample> ring_footprint(const RingSolver& solver);
 

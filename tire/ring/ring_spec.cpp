@@ -56,18 +56,6 @@ void check_pressure(const RingFile& f, double pressure, const std::string& key) 
                                   pressure, draw, kMostDraw * f.params.radius));
 }
 
-class RingStatic final : public StaticTest {
- public:
-  RingStatic(const RingFile& file, const MassProperties& mass) : file_(file), mass_(mass) {}
-  PressResults press(const PressOptions& options, const ProgressCall& progress) const override {
-    return press_ring(file_.params, file_.motion.rim_radius, mass_, options, progress);
-  }
-
- private:
-  RingFile file_;
-  MassProperties mass_;
-};
-
 class RingSpec final : public TireSpec {
  public:
   RingSpec(RingFile file, int file_segments, const TireOptions& options)
@@ -78,7 +66,11 @@ class RingSpec final : public TireSpec {
     return make_extruded_tire(std::make_unique<RingCarcass>(file_.params, file_.motion), shape(), context.gravity);
   }
   TireShape shape() const override;
-  std::unique_ptr<StaticTest> static_test() const override { return std::make_unique<RingStatic>(file_, mass()); }
+  std::unique_ptr<StaticTest> static_test() const override {
+    return static_test_of([file = file_, mass = mass()](const auto& options, const auto& progress) {
+      return press_ring(file.params, file.motion.rim_radius, mass, options, progress);
+    });
+  }
   std::unique_ptr<ModalTest> modal_test() const override {
     return std::make_unique<RingModes>(file_.params, file_.motion, mass());
   }

@@ -104,8 +104,9 @@ double Bench::ratio(const std::optional<int>& element, const Eigen::VectorXd& ta
   const Row& row = system().element(*element).row;
   const RowJacobian J = row_jacobian(row, system().pose(row.a), system().pose(row.b));
   double rate = 0.0;
-  for (const auto& [body, v, w] : {std::tuple{row.a, J.v_a, J.w_a}, std::tuple{row.b, J.v_b, J.w_b}})
-    if (body != kGround) rate += v.dot(tangent.segment<3>(6 * body)) + w.dot(tangent.segment<3>(6 * body + 3));
+  each_side(row, J, [&](int body, const Vec3& v, const Vec3& w) {
+    rate += v.dot(tangent.segment<3>(6 * body)) + w.dot(tangent.segment<3>(6 * body + 3));
+  });
   return -rate;
 }
 

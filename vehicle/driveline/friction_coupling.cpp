@@ -25,11 +25,8 @@ FrictionCoupling FrictionCoupling::brake(System& system, const std::string& name
 
 void FrictionCoupling::engage(System& system, double share) const {
   FURROW_ASSERT(share >= 0.0 && share <= 1.0, share);
-  RateControl control;
-  control.mode = share > 0.0 ? RateMode::hold : RateMode::free;
-  control.upper = share * capacity_;
-  control.lower = -control.upper;
-  system.set_rate_control(row_, control);
+  const double most = share * capacity_;
+  system.set_rate_control(row_, {.mode = share > 0.0 ? RateMode::hold : RateMode::free, .lower = -most, .upper = most});
 }
 
 bool FrictionCoupling::holds(const System& system) const {

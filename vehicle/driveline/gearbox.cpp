@@ -13,12 +13,7 @@ namespace {
 
 constexpr int kOutputTerm = 0, kInputTerm = 1;  // of a gear's row: u_out − g u_in
 
-RateControl held(double target = 0.0) {
-  RateControl control;
-  control.mode = RateMode::hold;
-  control.target = target;
-  return control;
-}
+RateControl held(double target = 0.0) { return {.mode = RateMode::hold, .target = target}; }
 
 /// 0 at 0, 1 at 1, C².
 double smoothstep(double u) {
@@ -110,11 +105,9 @@ Outcome Gearbox::advance(System& system, double h) {
   if (state_.phase == ShiftPhase::torque) {
     const bool carries = system.rate_state(rows_[1 - state_.row]).side == 0;
     if (carries && begin < state_.phase_end - margin) {
-      RateControl control;
-      control.mode = RateMode::torque;
-      control.torque = state_.hand_over *
-                       smoothstep((begin + 0.5 * h - state_.phase_start) / (state_.phase_end - state_.phase_start));
-      system.set_rate_control(row, control);
+      const double torque = state_.hand_over * smoothstep((begin + 0.5 * h - state_.phase_start) /
+                                                          (state_.phase_end - state_.phase_start));
+      system.set_rate_control(row, {.mode = RateMode::torque, .torque = torque});
       return {};
     }
     begin_speed_phase(system, begin, state_.phase_start + shift_time_);
@@ -145,15 +138,8 @@ double Gearbox::loss(const System& system) const {
   return -system.rate_state(rows_[0]).work - system.rate_state(rows_[1]).work;
 }
 
-void Gearbox::save(Archive& archive) const {
-  ColumnWriter<GearboxState> writer;
-  writer.add(state_);
-  writer.put(archive, "gearbox");
-}
+void Gearbox::save(Archive& archive) const { save_fields(archive, "gearbox", state_); }
 
-void Gearbox::restore(const Archive& archive) {
-  ColumnReader<GearboxState> reader(archive, "gearbox", 1);
-  reader.take(state_);
-}
+void Gearbox::restore(const Archive& archive) { restore_fields(archive, "gearbox", state_); }
 
 }  // namespace furrow::vehicle

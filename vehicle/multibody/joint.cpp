@@ -76,55 +76,27 @@ std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, con
   joint.frame_a = in_body(A, place.point, axes);
   joint.frame_b = in_body(B, point_b, axes);
   std::vector<Row> rows;
-  const auto offsets = [&](int count) {
-    for (int axis = 0; axis < count; ++axis) rows.push_back(offset_row(joint, axis));
-  };
-  const auto same_axis = [&] {
-    rows.push_back(dot_row(joint, 0, 2));
-    rows.push_back(dot_row(joint, 1, 2));
-  };
-  switch (joint.kind) {
-    case JointKind::fixed:
-      offsets(3);
-      same_axis();
-      rows.push_back(dot_row(joint, 0, 1));
-      break;
-    case JointKind::revolute:
-      offsets(3);
-      same_axis();
-      break;
-    case JointKind::prismatic:
-      offsets(2);
-      same_axis();
-      rows.push_back(dot_row(joint, 0, 1));
-      break;
-    case JointKind::cylindrical:
-      offsets(2);
-      same_axis();
-      break;
-    case JointKind::universal:
-      offsets(3);
-      rows.push_back(dot_row(joint, 0, 1));
-      break;
-    case JointKind::spherical:
-      offsets(3);
-      break;
-    case JointKind::distance:
-      rows.push_back(base_row(joint, RowKind::distance));
-      rows.back().reference = (point_b - place.point).norm();
-      if (!(rows.back().reference > 0.0)) throw physics_error("joint '" + joint.name + "': its length is zero");
-      break;
-    case JointKind::revolute_spherical: {
-      // Along the hinge nothing moves; across it the length stays.
-      const Vec3 across = axes.transpose() * (point_b - place.point);
-      if (!(across.head<2>().norm() > 1e-9))
-        throw physics_error("joint '" + joint.name + "': its two ends lie on the hinge");
-      rows.push_back(offset_row(joint, 2));
-      rows.back().reference = across.z();
-      rows.push_back(base_row(joint, RowKind::distance));
-      rows.back().reference = across.norm();
-      break;
-    }
+  const auto is = [&](auto... kinds) { return ((joint.kind == kinds) || ...); };
+  using enum JointKind;
+  if (!rod)
+    for (int axis = 0; axis < (is(prismatic, cylindrical) ? 2 : 3); ++axis) rows.push_back(offset_row(joint, axis));
+  if (is(fixed, revolute, prismatic, cylindrical))
+    rows.push_back(dot_row(joint, 0, 2)), rows.push_back(dot_row(joint, 1, 2));
+  if (is(fixed, prismatic, universal)) rows.push_back(dot_row(joint, 0, 1));
+  if (is(distance)) {
+    rows.push_back(base_row(joint, RowKind::distance));
+    rows.back().reference = (point_b - place.point).norm();
+    if (!(rows.back().reference > 0.0)) throw physics_error("joint '" + joint.name + "': its length is zero");
+  }
+  if (is(revolute_spherical)) {
+    // Along the hinge nothing moves; across it the length stays.
+    const Vec3 across = axes.transpose() * (point_b - place.point);
+    if (!(across.head<2>().norm() > 1e-9))
+      throw physics_error("joint '" + joint.name + "': its two ends lie on the hinge");
+    rows.push_back(offset_row(joint, 2));
+    rows.back().reference = across.z();
+    rows.push_back(base_row(joint, RowKind::distance));
+    rows.back().reference = across.norm();
   }
   return rows;
 }

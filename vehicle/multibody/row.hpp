@@ -32,6 +32,13 @@ struct RowJacobian {
   Vec3 v_a, w_a, v_b, w_b;
 };
 
+/// Calls call(body, v, w) for A and then B, but not for the ground.
+template <class Call>
+void each_side(const Row& row, const RowJacobian& J, const Call& call) {
+  if (row.a != kGround) call(row.a, J.v_a, J.w_a);
+  if (row.b != kGround) call(row.b, J.v_b, J.w_b);
+}
+
 /// What a row needs of a body, or of the ground.
 struct Pose {
   const Vec3* position;

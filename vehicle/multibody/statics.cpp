@@ -58,14 +58,11 @@ Eigen::MatrixXd Statics::jacobian() const {
   const int own = system_.constraint_count();
   for (int i = 0; i < row_count(); ++i) {
     const Row& row = i < own ? system_.constraint_row(i) : held_[i - own].row;
-    const RowJacobian J = row_jacobian(row, system_.pose(row.a), system_.pose(row.b));
-    const auto put = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
-      G.block<1, 3>(i, 6 * body) += v.transpose();
-      G.block<1, 3>(i, 6 * body + 3) += w.transpose();
-    };
-    put(row.a, J.v_a, J.w_a);
-    put(row.b, J.v_b, J.w_b);
+    each_side(row, row_jacobian(row, system_.pose(row.a), system_.pose(row.b)),
+              [&](int body, const Vec3& v, const Vec3& w) {
+                G.block<1, 3>(i, 6 * body) += v.transpose();
+                G.block<1, 3>(i, 6 * body + 3) += w.transpose();
+              });
   }
   return G;
 }
@@ -159,14 +156,11 @@ Eigen::VectorXd Statics::forces() const {
     const ForceElement& element = system_.element(e);
     const Row& row = element.row;
     const double force = element.law(row_value(system_, row), 0.0, system_.time()).force;
-    const RowJacobian J = row_jacobian(row, system_.pose(row.a), system_.pose(row.b));
-    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
-      Q.segment<3>(6 * body) += force * v;
-      Q.segment<3>(6 * body + 3) += force * w;
-    };
-    add(row.a, J.v_a, J.w_a);
-    add(row.b, J.v_b, J.w_b);
+    each_side(row, row_jacobian(row, system_.pose(row.a), system_.pose(row.b)),
+              [&](int body, const Vec3& v, const Vec3& w) {
+                Q.segment<3>(6 * body) += force * v;
+                Q.segment<3>(6 * body + 3) += force * w;
+              });
   }
   if (forces_) forces_(system_, Q);
   return Q;
@@ -257,15 +251,12 @@ Eigen::MatrixXd Statics::damping() const {
     const Row& row = element.row;
     const double x = row_value(system_, row), t = system_.time();
     const double c = (element.law(x, -kSpeed, t).force - element.law(x, kSpeed, t).force) / (2.0 * kSpeed);
-    const RowJacobian J = row_jacobian(row, system_.pose(row.a), system_.pose(row.b));
     Eigen::VectorXd g = Eigen::VectorXd::Zero(coordinate_count());
-    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
-      g.segment<3>(6 * body) += v;
-      g.segment<3>(6 * body + 3) += w;
-    };
-    add(row.a, J.v_a, J.w_a);
-    add(row.b, J.v_b, J.w_b);
+    each_side(row, row_jacobian(row, system_.pose(row.a), system_.pose(row.b)),
+              [&](int body, const Vec3& v, const Vec3& w) {
+                g.segment<3>(6 * body) += v;
+                g.segment<3>(6 * body + 3) += w;
+              });
     if (c != 0.0) C += c * g * g.transpose();
   }
   return C;

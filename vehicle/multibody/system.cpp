@@ -155,13 +155,7 @@ Motion System::coordinate(int index) const {
   FURROW_ASSERT(in_range(index, joints_.size()), index, joints_.size());
   const Row row = free_coordinate(joints_[index]);
   const Pose A = pose(row.a), B = pose(row.b);
-  const RowJacobian J = row_jacobian(row, A, B);
-  double rate = 0.0;
-  if (row.a != kGround)
-    rate += J.v_a.dot(bodies_[row.a].state.velocity) + J.w_a.dot(bodies_[row.a].state.angular_velocity);
-  if (row.b != kGround)
-    rate += J.v_b.dot(bodies_[row.b].state.velocity) + J.w_b.dot(bodies_[row.b].state.angular_velocity);
-  return {row_value(row, A, B), rate};
+  return {row_value(row, A, B), row_rate(row, row_jacobian(row, A, B))};
 }
 
 double System::max_violation() const {

@@ -98,10 +98,9 @@ void System::recheck_rank() {
 
 double System::row_rate(const Row& row, const RowJacobian& J) const {
   double sum = 0.0;
-  if (row.a != kGround)
-    sum += J.v_a.dot(bodies_[row.a].state.velocity) + J.w_a.dot(bodies_[row.a].state.angular_velocity);
-  if (row.b != kGround)
-    sum += J.v_b.dot(bodies_[row.b].state.velocity) + J.w_b.dot(bodies_[row.b].state.angular_velocity);
+  each_side(row, J, [&](int body, const Vec3& v, const Vec3& w) {
+    sum += v.dot(bodies_[body].state.velocity) + w.dot(bodies_[body].state.angular_velocity);
+  });
   return sum;
 }
 

@@ -70,14 +70,7 @@ Outcome System::factorize(bool with_dampers) {
 
 double System::rate(int i) const {
   FURROW_ASSERT(in_range(i, rows_.size()), i, rows_.size());
-  const Row& row = rows_[i];
-  const RowJacobian& J = jacobians_[i];
-  double sum = 0.0;
-  if (row.a != kGround)
-    sum += J.v_a.dot(bodies_[row.a].state.velocity) + J.w_a.dot(bodies_[row.a].state.angular_velocity);
-  if (row.b != kGround)
-    sum += J.v_b.dot(bodies_[row.b].state.velocity) + J.w_b.dot(bodies_[row.b].state.angular_velocity);
-  return sum;
+  return row_rate(rows_[i], jacobians_[i]);
 }
 
 void System::begin_velocities(double h) {
@@ -117,13 +110,10 @@ void System::element_forces(double h, bool implicit) {
         tracked.elastic_impulse = 0.5 * h * law.elastic;
         tracked.other_impulse = 0.5 * h * (force - law.elastic);
       }
-    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
+    each_side(element.row, J, [&](int body, const Vec3& v, const Vec3& w) {
       base_[body].velocity += (0.5 * h * force / bodies_[body].mass) * v;
       base_[body].angular_momentum += (0.5 * h * force) * w;
-    };
-    add(element.row.a, J.v_a, J.w_a);
-    add(element.row.b, J.v_b, J.w_b);
+    });
   }
 }
 
@@ -135,14 +125,10 @@ void System::apply_impulses() {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const double P = impulses_[i];
     if (P == 0.0) continue;
-    const RowJacobian& J = jacobians_[i];
-    const auto add = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
+    each_side(rows_[i], jacobians_[i], [&](int body, const Vec3& v, const Vec3& w) {
       bodies_[body].state.velocity += (P / bodies_[body].mass) * v;
       bodies_[body].angular_momentum += P * w;
-    };
-    add(rows_[i].a, J.v_a, J.w_a);
-    add(rows_[i].b, J.v_b, J.w_b);
+    });
   }
   if (!rates_.empty()) rates_.apply(rate_part(impulses_), bodies_);
 }
@@ -386,15 +372,11 @@ Outcome System::project_positions(double time) {
     if (Outcome outcome = factorize(false); !outcome.ok) return outcome;
     solver_.solve(residual_, impulses_);
     for (int i = 0; i < constraints; ++i) {
-      const RowJacobian& J = jacobians_[i];
-      const auto shift = [&](int index, const Vec3& v, const Vec3& w) {
-        if (index == kGround) return;
+      each_side(rows_[i], jacobians_[i], [&](int index, const Vec3& v, const Vec3& w) {
         Body& body = bodies_[index];
         body.state.position += (impulses_[i] / body.mass) * v;
         body.state.orientation = rotated(body.state.orientation, body.inertia_inverse_W * w, impulses_[i]);
-      };
-      shift(rows_[i].a, J.v_a, J.w_a);
-      shift(rows_[i].b, J.v_b, J.w_b);
+      });
     }
     for (int i = 0; i < body_count(); ++i) set_state(i, bodies_[i].state);
   }
@@ -420,14 +402,10 @@ void System::find_redundancy() {
       if (side.row == held[k]) G_transpose(6 * bodies_.size() + side.shaft, constraints + k) = side.factor;
   }
   for (int i = 0; i < constraints; ++i) {
-    const RowJacobian& J = jacobians_[i];
-    const auto put = [&](int body, const Vec3& v, const Vec3& w) {
-      if (body == kGround) return;
+    each_side(rows_[i], jacobians_[i], [&](int body, const Vec3& v, const Vec3& w) {
       G_transpose.block<3, 1>(6 * body, i) = v;
       G_transpose.block<3, 1>(6 * body + 3, i) = w;
-    };
-    put(rows_[i].a, J.v_a, J.w_a);
-    put(rows_[i].b, J.v_b, J.w_b);
+    });
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(G_transpose.rows(), G_transpose.cols());
   qr.setThreshold(1e-9);

@@ -80,10 +80,9 @@ void DriveTrain::add_gears(System& system) {
       continue;
     }
     // A shaft with joints: the absolute speeds are equal, so that the carriers feel nothing of it.
-    RateControl control;
-    control.mode = RateMode::hold;
     const Vec3 axis = *system.pose(second.carrier).R * second.axis;
-    system.add_rate_row({gear.name, {{out, 1.0}, {in, -1.0}}, {{first.carrier, second.carrier, axis, 1.0}}}, control);
+    system.add_rate_row({gear.name, {{out, 1.0}, {in, -1.0}}, {{first.carrier, second.carrier, axis, 1.0}}},
+                        {.mode = RateMode::hold});
   }
   for (const DifferentialSpec& d : spec_.differentials) {
     const int first = shaft(d.outputs[0]), second = shaft(d.outputs[1]);
@@ -108,18 +107,16 @@ void DriveTrain::add_motors(System& system, std::span<const Wheel> wheels) {
       const Wheel& wheel = wheels[2 * vehicle_.axle(motor.axle) + side];
       const Vec3 axis = system.body(wheel.spindle).R * Vec3::UnitY();
       const int rotor = system.add_shaft(wheel.name + " rotor", motor.inertia, wheel.carrier, axis);
-      RateControl control;
-      control.mode = RateMode::hold;
       system.add_rate_row(
           {wheel.name + " motor gear", {{rotor, -1.0}}, {{wheel.carrier, wheel.spindle, axis, motor.gear_ratio}}},
-          control);
+          {.mode = RateMode::hold});
       rotors_.push_back(rotor);
       motors_.emplace_back(system, wheel.name + " motor", rotor,
                            WheelMotorOptions{motor.stall_torque, motor.no_load_rpm * kRpm});
     }
 }
 
-void DriveTrain::set_inputs(System& system, const DriveInputs& inputs) {
+void DriveTrain::set_inputs(System& system, const VehicleInputs& inputs) {
   FURROW_ASSERT(std::abs(inputs.throttle) <= 1.0 && std::abs(inputs.steering) <= 1.0, inputs.throttle, inputs.steering);
   FURROW_ASSERT(inputs.gear >= 0, inputs.gear);
   selector_ = inputs.selector;

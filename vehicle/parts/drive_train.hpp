@@ -20,10 +20,11 @@ namespace furrow::vehicle {
 
 enum class Selector { drive, neutral, reverse };
 
-/// What the driver wants of the driveline.
-struct DriveInputs {
+/// What a driver does.
+struct VehicleInputs {
   double throttle = 0.0;  // 0 to 1; of wheel motors −1 to 1
-  double steering = 0.0;  // −1 to 1, left positive: for skid steering
+  double brake = 0.0;     // 0 to 1
+  double steering = 0.0;  // −1 to 1, left positive
   Selector selector = Selector::drive;
   bool lock = false;  // of all differentials that can be
   int gear = 0;       // forward gear to hold, from 1; 0: as the gearbox decides
@@ -34,7 +35,7 @@ class DriveTrain {
   /// @param wheels of the vehicle, two for each axle
   DriveTrain(System& system, const VehicleSpec& vehicle, int chassis, std::span<const Wheel> wheels);
 
-  void set_inputs(System& system, const DriveInputs& inputs);
+  void set_inputs(System& system, const VehicleInputs& inputs);
   /// Turns shafts and rotors as wheels do that spin like this, rad/s, in a forward gear from 1, or with 0 in the lowest
   /// one that the gearbox would stay in. The engine idles at least. @pre before the first step; assemble() must follow
   void begin_rolling(System& system, std::span<const double> spins, int gear);
@@ -77,7 +78,7 @@ class DriveTrain {
   std::vector<WheelMotor> motors_;
   std::vector<int> rotors_;  // shafts of the motors
   Selector selector_ = Selector::drive;
-  int held_gear_ = 0;  // DriveInputs::gear
+  int held_gear_ = 0;  // VehicleInputs::gear
 };
 
 }  // namespace furrow::vehicle

@@ -47,44 +47,29 @@ void Steering::add_pitman_arm(System& system, const std::string& axle, const Pit
   const Quat axes(Eigen::AngleAxisd(s.pitch_deg * std::numbers::pi / 180.0, Vec3::UnitY()));
   const auto at = [&](const Vec3& point) { return Vec3(s.origin + axes * point); };
   const auto body = [&](const std::string& name, const BodySpec& spec) {
-    BodyState state;
-    state.position = at(spec.center_of_mass);
-    state.orientation = axes;
-    return system.add_body(axle + " " + name, spec.mass, spec.inertia, state);
+    return system.add_body(axle + " " + name, spec.mass, spec.inertia,
+                           {.position = at(spec.center_of_mass), .orientation = axes});
   };
   const int arm = body("Pitman arm", s.arm);
   rods_ = body("steering link", s.link);
-  JointPlace place;
-  place.point = at(s.pivot);
-  place.axis = axes * Vec3::UnitZ();
-  const int pivot = system.add_joint(JointKind::revolute, axle + " Pitman pivot", chassis, arm, place);
-  place.point = at(s.arm_end);
-  place.second_axis = axes * (s.arm_end - s.pivot);
-  system.add_joint(JointKind::universal, axle + " Pitman cross", arm, rods_, place);
-  place.point = at(s.idler);
-  place.second_point = at(s.idler_end);
-  system.add_joint(JointKind::revolute_spherical, axle + " idler", chassis, rods_, place);
+  const Vec3 axis = axes * Vec3::UnitZ();
+  const int pivot = add_joint(system, JointKind::revolute, axle + " Pitman pivot", chassis, arm, at(s.pivot), axis);
+  system.add_joint(JointKind::universal, axle + " Pitman cross", arm, rods_,
+                   {.point = at(s.arm_end), .axis = axis, .second_axis = axes * (s.arm_end - s.pivot)});
+  system.add_joint(JointKind::revolute_spherical, axle + " idler", chassis, rods_,
+                   {.point = at(s.idler), .axis = axis, .second_point = at(s.idler_end)});
   add_motor(system, axle, pivot, s.left_angle_deg * std::numbers::pi / 180.0, s.response_time);
 }
 
 void Steering::add_rack(System& system, const std::string& axle, const RackSpec& s, int chassis) {
   rods_ = add_body(system, axle + " rack", s.rack);
-  JointPlace place;
-  place.point = s.rack.center_of_mass;
-  place.axis = Vec3::UnitY();
-  const int slide = system.add_joint(JointKind::prismatic, axle + " rack slide", chassis, rods_, place);
+  const int slide = add_joint(system, JointKind::prismatic, axle + " rack slide", chassis, rods_, s.rack.center_of_mass,
+                              Vec3::UnitY());
   add_motor(system, axle, slide, s.left_travel, s.response_time);
 }
 
-void Steering::save(Archive& archive) const {
-  ColumnWriter<SteeringState> writer;
-  writer.add(follower_->state);
-  writer.put(archive, "steering");
-}
+void Steering::save(Archive& archive) const { save_fields(archive, "steering", follower_->state); }
 
-void Steering::restore(const Archive& archive) {
-  ColumnReader<SteeringState> reader(archive, "steering", 1);
-  reader.take(follower_->state);
-}
+void Steering::restore(const Archive& archive) { restore_fields(archive, "steering", follower_->state); }
 
 }  // namespace furrow::vehicle

@@ -22,10 +22,8 @@ Mat3 arm_axes(const ArmSpec& arm) {
 }
 
 int add_arm(System& system, const std::string& name, const ArmSpec& arm, int chassis, int upright) {
-  BodyState state;
-  state.position = arm.center_of_mass;
-  state.orientation = Quat(arm_axes(arm));
-  const int body = system.add_body(name, arm.mass, arm.inertia, state);
+  const int body = system.add_body(name, arm.mass, arm.inertia,
+                                   {.position = arm.center_of_mass, .orientation = Quat(arm_axes(arm))});
   add_joint(system, JointKind::revolute, name + " hinge", chassis, body, 0.5 * (arm.chassis_front + arm.chassis_back),
             arm.chassis_front - arm.chassis_back);
   add_joint(system, JointKind::spherical, name + " ball", body, upright, arm.upright);
@@ -62,17 +60,11 @@ ShockOptions shock_options(const ShockSpec& spec) {
 
 int add_joint(System& system, JointKind kind, const std::string& name, int a, int b, const Vec3& point,
               const Vec3& axis) {
-  JointPlace place;
-  place.point = point;
-  place.axis = axis;
-  return system.add_joint(kind, name, a, b, place);
+  return system.add_joint(kind, name, a, b, {.point = point, .axis = axis});
 }
 
 void add_rod(System& system, const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) {
-  JointPlace place;
-  place.point = point_a;
-  place.second_point = point_b;
-  system.add_joint(JointKind::distance, name, a, b, place);
+  system.add_joint(JointKind::distance, name, a, b, {.point = point_a, .second_point = point_b});
 }
 
 void add_struts(AxleBuild& build, Wheel& wheel, const std::optional<SpringSpec>& spring,
@@ -98,14 +90,12 @@ void add_struts(AxleBuild& build, Wheel& wheel, const std::optional<SpringSpec>&
 void add_spindle(System& system, Wheel& wheel, const SpindleSpec& spindle) {
   const double out = outward(wheel.side);
   const WheelSpec& rim = wheel.corner->wheel;
-  BodyState state;
-  state.position = spindle.center;
-  state.orientation = Quat(Eigen::AngleAxisd(-out * spindle.toe_deg * kDegree, Vec3::UnitZ())) *
-                      Quat(Eigen::AngleAxisd(-out * spindle.camber_deg * kDegree, Vec3::UnitX()));
-  wheel.spindle =
-      system.add_body(wheel.name + " spindle", spindle.mass + rim.mass, spindle.inertia + rim.inertia, state);
+  const Quat turn = Quat(Eigen::AngleAxisd(-out * spindle.toe_deg * kDegree, Vec3::UnitZ())) *
+                    Quat(Eigen::AngleAxisd(-out * spindle.camber_deg * kDegree, Vec3::UnitX()));
+  wheel.spindle = system.add_body(wheel.name + " spindle", spindle.mass + rim.mass, spindle.inertia + rim.inertia,
+                                  {.position = spindle.center, .orientation = turn});
   wheel.bearing = add_joint(system, JointKind::revolute, wheel.name + " bearing", wheel.carrier, wheel.spindle,
-                            spindle.center, state.orientation * Vec3::UnitY());
+                            spindle.center, turn * Vec3::UnitY());
 }
 
 void add_suspension(AxleBuild& build, const Sides<DoubleWishboneSpec>& sides) {
@@ -163,9 +153,7 @@ void add_suspension(AxleBuild& build, const Sides<FixedSpec>& sides) {
 }
 
 int add_body(System& system, const std::string& name, const BodySpec& spec) {
-  BodyState state;
-  state.position = spec.center_of_mass;
-  return system.add_body(name, spec.mass, spec.inertia, state);
+  return system.add_body(name, spec.mass, spec.inertia, {.position = spec.center_of_mass});
 }
 
 }  // namespace furrow::vehicle

@@ -98,7 +98,7 @@ void Vehicle::set_inputs(const VehicleInputs& inputs) {
     if (brake) brake->engage(system_, inputs.brake);
   for (std::optional<Steering>& steering : steerings_)
     if (steering) steering->set_target(system_.time(), inputs.steering);
-  drive_->set_inputs(system_, {inputs.throttle, inputs.steering, inputs.selector, inputs.lock, inputs.gear});
+  drive_->set_inputs(system_, inputs);
 }
 
 void Vehicle::move(const Vec3& by) {

@@ -15,16 +15,6 @@
 
 namespace furrow::vehicle {
 
-/// What a driver does.
-struct VehicleInputs {
-  double throttle = 0.0;  // 0 to 1; of wheel motors −1 to 1
-  double brake = 0.0;     // 0 to 1
-  double steering = 0.0;  // −1 to 1, left positive
-  Selector selector = Selector::drive;
-  bool lock = false;  // of all differentials that can be
-  int gear = 0;       // forward gear to hold, from 1; 0: as the gearbox decides
-};
-
 class Vehicle {
  public:
   /// Drawn: in the vehicle's frame, at rest, the engine idling.

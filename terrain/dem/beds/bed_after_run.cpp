@@ -32,7 +32,7 @@ Archive grains_of(const Archive& state) {
 }  // namespace
 
 Archive bed_after_run(const Archive& state, const DemOptions& options, double rest, const ProgressCall& progress,
-                      RestResult& result) {
+                      SettleResult& result) {
   FURROW_ASSERT(rest >= 0.0 && options.step > 0.0, rest, options.step);
   SolverParams params = solver_params(options);
   params.threads = std::max(1, options.threads);
@@ -41,7 +41,6 @@ Archive bed_after_run(const Archive& state, const DemOptions& options, double re
   result = {};
   const double dt = options.step;
   solver.set_coefficients(run_coefficients(options, dt));
-  const double mass = params.grain.mass * solver.relative_mass(), weight = -mass * params.gravity.z();
   const auto resting = static_cast<std::int64_t>(std::ceil(rest / dt));
   const auto most = resting + static_cast<std::int64_t>(kMaxSettleTime / dt);
   PacedCall tell(progress);
@@ -52,20 +51,12 @@ Archive bed_after_run(const Archive& state, const DemOptions& options, double re
     if (const int lost = solver.step(dt, check); lost >= 0)
       throw physics_error("grain " + std::to_string(solver.grains().id[lost]) + " was lost while the bed lay");
     if (!check) continue;
-    const Accounts& a = solver.accounts();
     result.time = dt * static_cast<double>(n + 1);
-    result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
-    result.floor_error = std::abs(a.floor_force - weight) / weight;
-    result.speed = std::sqrt(2.0 * a.kinetic / mass);
+    measure_rest(solver, result);
     result.settled = n >= resting && result.speed < kRestSpeed && result.force_ratio < kSettledForceRatio;
   }
   solver.set_drag(0.0);
-  SettleResult settled;
-  settled.settled = result.settled;
-  settled.force_ratio = result.force_ratio;
-  settled.floor_error = result.floor_error;
-  settled.time = result.time;
-  return bed_archive(solver, options, settled);
+  return bed_archive(solver, options, result);
 }
 
 }  // namespace furrow::terrain::dem

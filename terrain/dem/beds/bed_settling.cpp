@@ -21,7 +21,20 @@ DemOptions with_impulse_limit(DemOptions options) {
   return options;
 }
 
+double weight_of(const GrainSolver& solver) {
+  const double mass = solver.params().grain.mass * solver.relative_mass();
+  return -mass * solver.params().gravity.z();
+}
+
 }  // namespace
+
+void measure_rest(const GrainSolver& solver, SettleResult& result) {
+  const Accounts& a = solver.accounts();
+  const double mass = solver.params().grain.mass * solver.relative_mass(), weight = weight_of(solver);
+  result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
+  result.floor_error = std::abs(a.floor_force - weight) / weight;
+  result.speed = std::sqrt(2.0 * a.kinetic / mass);
+}
 
 double settle_step(const DemOptions& options) {
   const DemOptions limited = with_impulse_limit(options);
@@ -44,7 +57,7 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
   SettleResult result;
   const double dt = settle_step(options);
   const GrainProperties& grain = solver.params().grain;
-  const double mass = grain.mass * solver.relative_mass(), weight = -mass * solver.params().gravity.z();
+  const double weight = weight_of(solver);
   solver.set_coefficients(settle_coefficients(options));
   solver.set_drag(drag);
   bool lying = false;
@@ -60,16 +73,14 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
       throw physics_error("grain " + std::to_string(solver.grains().id[lost]) + " was lost while the bed settled");
     if (!check) continue;
     const Accounts& a = solver.accounts();
-    result.force_ratio = a.contact_force > 0.0 ? a.net_force / a.contact_force : 1.0;
-    result.floor_error = std::abs(a.floor_force - weight) / weight;
+    measure_rest(solver, result);
     result.time = dt * static_cast<double>(result.steps);
-    const double speed = std::sqrt(2.0 * a.kinetic / mass);
     // Only a help to a bed of many contacts; one of few comes to rest without it.
-    if (!lying && a.contacts > solver.grains().count && speed < kLyingSpeed) {
+    if (!lying && a.contacts > solver.grains().count && result.speed < kLyingSpeed) {
       lying = true;
       solver.set_drag(std::max(kRestDrag, drag));
     }
-    const bool rests = speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
+    const bool rests = result.speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
                        result.force_ratio < kSettledForceRatio;
     result.settled = rests && result.floor_error < kSettledFloorError && all_awake;
     // From the first rest on no grain sleeps: those asleep may hold up what the floor does not bear yet.

@@ -21,6 +21,7 @@ struct SettleResult {
   double force_ratio = 0.0;  // Σ|net force| / Σ|contact force|
   double floor_error = 0.0;  // |floor force − weight| / weight
   double time = 0.0;         // simulated, s
+  double speed = 0.0;        // rms of the grains, m/s
   std::int64_t steps = 0;
 };
 
@@ -38,6 +39,9 @@ inline constexpr double kRestDrag = 20.0;      // 1/s, once the grains lie; thos
 inline constexpr double kRestSpeed = 0.002;    // rms, m/s: slower counts as at rest
 inline constexpr double kRestEnergy = 1e-3;    // kinetic, of m g r: less counts as at rest
 inline constexpr int kSettleCheckEvery = 40;   // steps
+
+/// Sets force ratio, floor error and speed as after the solver's last step, whose sums were asked for.
+void measure_rest(const GrainSolver& solver, SettleResult& result);
 
 /// Runs the solver until the bed is settled, all grains awake, or `most` seconds have passed.
 /// May throw what `progress` throws.

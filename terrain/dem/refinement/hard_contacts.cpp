@@ -39,8 +39,6 @@ class Search {
   }
 
   void walls(int k) {
-    constexpr std::array<const char*, kWalls> kNames{"the wall x = 0", "the wall x = length", "the wall y = -width/2",
-                                                     "the wall y = width/2", "the floor"};
     const Strip& strip = strips_[k];
     for (const WallContact& contact : strip.walls) {
       const int g = strip.first + contact.grain;
@@ -48,7 +46,7 @@ class Search {
       const double overlap = x.w - bin_.distance(contact.wall, x);
       if (overlap > above_)
         add(overlap, vec(grains_.velocity[g]).dot(vec(Bin::normal(contact.wall))), x.w, g,
-            [&] { return std::string("a grain and ") + kNames[contact.wall]; });
+            [&] { return std::string("a grain and ") + Bin::name(contact.wall); });
     }
   }
 

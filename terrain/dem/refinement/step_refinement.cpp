@@ -15,6 +15,7 @@ namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr char kSaved[] = "refinement";
 constexpr int kHalvings = 60;        // of the interval in which a limit is searched for
 constexpr double kSoundShare = 0.1;  // of the diameter: what advice aims at
 
@@ -101,11 +102,22 @@ void StepRefinement::count(int parts) {
   state_.time += step_;
 }
 
-void StepRefinement::restore(const State& state) {
+void StepRefinement::save(Archive& archive) const {
+  if (state_.finest > 0) save_fields(archive, kSaved, state_);
+}
+
+void StepRefinement::restore(const Archive& archive) {
   FURROW_ASSERT(step_ > 0.0, step_);
-  state_ = state;
+  state_ = {};
+  if (archive.has(std::string(kSaved) + "/level")) restore_fields(archive, kSaved, state_);
   if (!(state_.since > 0.0)) state_.since = step_;
   state_.level = std::clamp(state_.level, 0, std::max(0, static_cast<int>(limits_.size()) - 1));
+}
+
+void StepRefinement::report(TerrainState& state) const {
+  state.substeps_added = state_.added;
+  state.refined_time = state_.time;
+  state.most_parts = 1 << state_.finest;
 }
 
 Outcome StepRefinement::too_hard(const HardContacts& hard) const {

@@ -24,8 +24,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "protocol/core/archive.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/outcome.hpp"
+#include "protocol/core/terrain_state.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/refinement/hard_contacts.hpp"
 
@@ -66,9 +68,11 @@ class StepRefinement {
   void count(int parts);
 
   const State& state() const { return state_; }
-  void restore(const State& state);
-  /// Whether steps were ever taken in parts: else there is nothing to save.
-  bool used() const { return state_.finest > 0; }
+  /// Saves nothing as long as no step was taken in parts.
+  void save(Archive& archive) const;
+  void restore(const Archive& archive);
+  /// What the terrain says of its steps.
+  void report(TerrainState& state) const;
 
   /// The overlap at which 2^level parts of the step are just stable, m; infinite: beyond kDeepestShare.
   double limit(int level) const { return limits_.at(level); }

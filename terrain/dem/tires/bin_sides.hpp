@@ -9,11 +9,10 @@ namespace furrow::terrain::dem {
 /// The side of the bin that the box crosses, or null. Surfaces may stand out of periodic sides; they have no images, so
 /// one that acts there spans the whole side.
 inline const char* side_crossed(const Bin& bin, const SurfaceBox& box) {
-  if (!bin.periodic_x && !(box.lo.x() >= 0.0)) return "the wall x = 0";
-  if (!bin.periodic_x && !(box.hi.x() <= bin.length)) return "the wall x = length";
-  if (!bin.periodic_y && !(box.lo.y() >= -0.5 * bin.width)) return "the wall y = -width/2";
-  if (!bin.periodic_y && !(box.hi.y() <= 0.5 * bin.width)) return "the wall y = width/2";
-  if (!(box.lo.z() >= 0.0)) return "the floor";
+  for (int wall = 0; wall < kWalls; ++wall) {
+    const Vec3& x = Bin::normal(wall).x < 0.0 || Bin::normal(wall).y < 0.0 ? box.hi : box.lo;
+    if (bin.has_wall(wall) && !(bin.distance(wall, Quad{x.x(), x.y(), x.z()}) >= 0.0)) return Bin::name(wall);
+  }
   return nullptr;
 }
 

@@ -11,7 +11,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/tires/surface_touch.hpp"
-#include "terrain/surface/surface_check.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -39,42 +38,22 @@ void SurfaceContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& mat
                              const ContactCoefficients& coefficients, const SurfaceState& start) {
   FURROW_ASSERT(start.position.size() == static_cast<std::size_t>(mesh.vertex_count), start.position.size(),
                 mesh.vertex_count);
-  Surface s;
-  s.collider = std::make_unique<SurfaceCollider>(mesh, largest_);
-  s.sum = std::make_unique<NodalForceSum>(mesh.vertex_count, tangents_);
-  s.material = material;
-  s.coefficients = coefficients;
-  s.mass_share = mass_share(grain_, material);
-  s.start = s.end = start.position;
-  s.collider->set_motion(s.start, s.end, 1.0);
-  surfaces_.push_back(std::move(s));
+  surfaces_.emplace_back(mesh, largest_, tangents_, grain_, material, start).coefficients = coefficients;
 }
 
 void SurfaceContacts::set_targets(std::span<const SurfaceState> targets, double duration) {
   FURROW_ASSERT(targets.size() == surfaces_.size(), targets.size(), surfaces_.size());
   FURROW_ASSERT(duration > 0.0, duration);
-  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    Surface& s = surfaces_[k];
-    s.start.swap(s.end);
-    double farthest2 = 0.0;
-    for (std::size_t a = 0; a < s.end.size(); ++a) {
-      s.end[a] = targets[k].position[a] + duration * targets[k].velocity[a];
-      farthest2 = std::max(farthest2, (s.end[a] - s.start[a]).squaredNorm());
-    }
-    s.fastest = std::sqrt(farthest2) / duration;
-    s.collider->set_motion(s.start, s.end, duration);
-  }
+  for (std::size_t k = 0; k < surfaces_.size(); ++k)
+    surfaces_[k].fastest = surfaces_[k].set_target(targets[k], duration) / duration;
 }
 
 void SurfaceContacts::move_to(double share) {
   FURROW_ASSERT(share >= 0.0 && share <= 1.0, share);
-  const Vec3 r = Vec3::Constant(largest_);
   for (Surface& s : surfaces_) {
-    s.collider->move_to(share);
-    s.near = s.collider->bounds();
-    s.near.lo -= r, s.near.hi += r;
+    s.move_to(share, largest_);
     s.low_min.setConstant(1e300), s.low_max.setConstant(-1e300);
-    for (const Vec3& x : s.collider->positions())
+    for (const Vec3& x : s.collider.positions())
       if (x.z() < top_) {
         s.low_min = s.low_min.cwiseMin(x.head<2>());
         s.low_max = s.low_max.cwiseMax(x.head<2>());
@@ -91,7 +70,7 @@ double SurfaceContacts::speed_near(const Strip& strip) const {
 
 void SurfaceContacts::restrict_to(const SurfaceBox& grains) {
   top_ = grains.hi.z();
-  for (Surface& s : surfaces_) s.collider->restrict_to(grains);
+  for (Surface& s : surfaces_) s.collider.restrict_to(grains);
 }
 
 void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
@@ -127,7 +106,8 @@ double SurfaceContacts::abandoned(const Grains& grains, const SurfaceStrip& mine
   for (std::size_t k = 0; k < mine.history.size(); ++k) {
     const SurfaceHistory& h = mine.history[k];
     if (!mine.taken[k])
-      held += Law::held(coefficients<Law>(surfaces_[h.surface], grains.position[h.grain].w), 0.0, of(h)).tangential;
+      held += Law::held(surfaces_[h.surface].against<Law>(grain_.radius, grains.position[h.grain].w), 0.0, of(h))
+                  .tangential;
   }
   return held;
 }
@@ -141,9 +121,9 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   std::array<SurfaceHit, kMaxSurfaceHits> hits;
   const Quad& x = grains.position[g];
   const Vec3 centre(x.x, x.y, x.z);
-  const int count = surface.collider->hits(centre, x.w, hits);
+  const int count = surface.collider.hits(centre, x.w, hits);
   if (count == 0) return;
-  const auto c = coefficients<Law>(surface, x.w);
+  const auto c = surface.against<Law>(grain_.radius, x.w);
   const auto before = [](const SurfaceHistory& h, const std::pair<int, int>& key) {
     return std::pair<int, int>(h.grain, h.surface) < key;
   };
@@ -155,7 +135,7 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];
     const Triple<double> arm = triple(Vec3(hit.point - centre));
-    const ContactMotion<double> motion = motion_at(*surface.collider, hit, arm, v, w);
+    const ContactMotion<double> motion = motion_at(surface.collider, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {
       history = of(*past);
@@ -227,7 +207,7 @@ Vec3 SurfaceContacts::add_substep_forces(double kick, double dt) {
       surfaces_[touch.surface].forces.push_back(touch.force);
       on_grains -= kick * (touch.force.normal + touch.force.tangential);
     }
-  for (Surface& s : surfaces_) s.sum->add_substep(s.forces, *s.collider, kick, dt);
+  for (Surface& s : surfaces_) s.sum.add_substep(s.forces, s.collider, kick, dt);
   return on_grains;
 }
 
@@ -235,20 +215,13 @@ void SurfaceContacts::finish(double duration, std::span<NodalForces> forces, std
   FURROW_ASSERT(forces.size() == surfaces_.size(), forces.size(), surfaces_.size());
   FURROW_ASSERT(sums.size() == surfaces_.size(), sums.size(), surfaces_.size());
   FURROW_ASSERT(duration > 0.0, duration);
-  for (std::size_t k = 0; k < surfaces_.size(); ++k) surfaces_[k].sum->finish(duration, forces[k], sums[k]);
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) surfaces_[k].sum.finish(duration, forces[k], sums[k]);
 }
 
 // ---- state ----------------------------------------------------------------------------------------------------
 
 void SurfaceContacts::save(Archive& archive) const {
-  archive.put("surfaces/count", static_cast<std::int64_t>(surfaces_.size()));
-  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    const Surface& s = surfaces_[k];
-    Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
-    save_fields(archive, "mesh", s.collider->mesh());
-    save_value(archive, "position", s.end);
-    save_fields(archive, "material", s.material);
-  }
+  save_surfaces(archive, "surface", surfaces_);
   ColumnWriter<SurfaceHistory> history;
   for (const SurfaceStrip& strip : strips_)
     for (const SurfaceHistory& one : strip.history) history.add(one);
@@ -257,33 +230,16 @@ void SurfaceContacts::save(Archive& archive) const {
 
 void SurfaceContacts::restore(const Archive& archive, const Strips& strips) {
   FURROW_ASSERT(static_cast<int>(strips_.size()) == strips.count(), strips_.size(), strips.count());
-  const auto count = archive.get_int("surfaces/count");
-  std::vector<int> expected;  // vertices of the surfaces that were attached before
-  for (const Surface& s : surfaces_) expected.push_back(s.collider->mesh().vertex_count);
-  if (count < 0 || (!expected.empty() && static_cast<std::size_t>(count) != expected.size()))
-    throw Error(ExitCode::io, "saved state holds " + std::to_string(count) + " surfaces, expected " +
-                                  std::to_string(expected.size()));
-  surfaces_.clear();
-  for (std::int64_t k = 0; k < count; ++k) {
-    Archive::Scope scope(archive, "surface" + std::to_string(k) + "/");
-    SurfaceMesh mesh;
-    SurfaceState start;
-    ContactMaterial material;
-    restore_fields(archive, "mesh", mesh);
-    restore_value(archive, "position", start.position, mesh.vertex_count);
-    restore_fields(archive, "material", material);
-    check_surface(mesh, start, static_cast<int>(k));
-    if (!expected.empty() && mesh.vertex_count != expected[static_cast<std::size_t>(k)])
-      throw Error(ExitCode::io, "saved state of surface " + std::to_string(k) + " is of another tire");
+  restore_surfaces(archive, "surface", surfaces_, [&](const auto& mesh, const auto& material, const auto& start) {
     attach(mesh, material, {}, start);
-  }
+  });
   for (SurfaceStrip& strip : strips_) strip = {};
   std::vector<SurfaceHistory> history;
   restore_value(archive, "surfaces/history", history);
   int s = 0;
   for (const SurfaceHistory& one : history) {
     while (s < strips.count() && one.grain >= strips[s].last) ++s;
-    if (s == strips.count() || one.grain < strips[s].first || one.surface < 0 || one.surface >= count)
+    if (s == strips.count() || one.grain < strips[s].first || one.surface < 0 || one.surface >= count())
       throw Error(ExitCode::io,
                   "saved state 'surfaces/history' names a grain or a surface that there is not, or not in "
                   "their order: it is damaged");

@@ -9,14 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "protocol/core/assert.hpp"
-#include "terrain/dem/contact/contact_mixing.hpp"
 #include "terrain/dem/strips.hpp"
-#include "terrain/surface/surface_collider.hpp"
-#include "terrain/surface/surface_forces.hpp"
+#include "terrain/dem/tires/tire_surface.hpp"
 
 namespace furrow::terrain::dem {
 
@@ -90,13 +87,13 @@ class SurfaceContacts {
       for (int k = 0; k < count(); ++k) {
         const Quad& x = grains.position[g];
         if (!inside(surfaces_[k].near, x)) continue;
-        const int found = surfaces_[k].collider->hits(Vec3(x.x, x.y, x.z), x.w, hits);
+        const int found = surfaces_[k].collider.hits(Vec3(x.x, x.y, x.z), x.w, hits);
         for (int h = 0; h < found; ++h) f(g, k, hits[h]);
       }
   }
   Vec3 velocity_at(int k, const SurfaceHit& hit) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
-    return surfaces_[k].collider->velocity_at(hit);
+    return surfaces_[k].collider.velocity_at(hit);
   }
 
   /// Calls f(y_min, y_max) for each surface with vertices low enough to reach grains that span some of these x now,
@@ -133,11 +130,11 @@ class SurfaceContacts {
   /// Lowest, highest corner of surface k now.
   SurfaceBox bounds(int k) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
-    return surfaces_[k].collider->bounds();
+    return surfaces_[k].collider.bounds();
   }
   SurfaceBox swept_bounds(int k) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
-    return surfaces_[k].collider->swept_bounds();
+    return surfaces_[k].collider.swept_bounds();
   }
 
   void save(Archive& archive) const;
@@ -145,18 +142,11 @@ class SurfaceContacts {
   void restore(const Archive& archive, const Strips& strips);
 
  private:
-  struct Surface {
-    std::unique_ptr<SurfaceCollider> collider;
-    std::unique_ptr<NodalForceSum> sum;
-    ContactMaterial material;
-    ContactCoefficients coefficients;
-    double mass_share = 0.0;       // of surface_scale
-    std::vector<Vec3> start, end;  // m
-    SurfaceBox near;               // bounds now, grown by the largest radius
-    double fastest = 0.0;          // vertex in this interval, m/s
+  struct Surface : TireSurface {
+    using TireSurface::TireSurface;
+    double fastest = 0.0;  // vertex in this interval, m/s
     // x, y of the vertices that may reach grains, m
     Eigen::Vector2d low_min = Eigen::Vector2d::Constant(-1e300), low_max = Eigen::Vector2d::Constant(1e300);
-    std::vector<SurfaceContactForce> forces;
   };
   static bool inside(const SurfaceBox& box, const Quad& p) {
     return p.z > box.lo.z() && p.x > box.lo.x() && p.x < box.hi.x() && p.y > box.lo.y() && p.y < box.hi.y() &&
@@ -169,10 +159,6 @@ class SurfaceContacts {
   template <class Law>
   void touch(const Grains& grains, SurfaceStrip& mine, int k, int g, double dt, bool losses, const Loads& load,
              ContactTotals& sums);
-  template <class Law>
-  auto coefficients(const Surface& surface, double radius) const {
-    return sized_surface<Law>(surface.coefficients.of<Law>(), grain_.radius, radius, surface.mass_share);
-  }
   /// What is left in histories that nobody took over, J.
   template <class Law>
   double abandoned(const Grains& grains, const SurfaceStrip& mine) const;

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tests/tire/planar/planar_examples.hpp"
+#include "tests/tire/planar/rubbing_contact.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -87,7 +88,7 @@ PlanarMesh square() {
 
 TEST(PlanarContact, nodes_in_the_ground_are_pushed_out_and_rubbed) {
   const PlanarMesh m = square();
-  PlanarContact contact(m, PlanarGround::plate(5.0), {1e4, 0.5});
+  RubbingContact contact(m, PlanarGround::plate(5.0), {1e4, 0.5});
   PlanarState s{mapped(m.position, Eigen::Matrix2d::Identity(), 0.0, -0.01), PlanarField(5)};
   for (double& v : s.v.x) v = 2.0;
   PlanarField force(5);
@@ -104,7 +105,7 @@ TEST(PlanarContact, nodes_in_the_ground_are_pushed_out_and_rubbed) {
 TEST(PlanarContact, a_corner_in_the_tire_pushes_its_side_as_a_force_at_the_corner_does) {
   const PlanarMesh m = square();
   // A needle whose point stands 0.04 m in the lower side, at x = 0.5.
-  PlanarContact contact(m, PlanarGround({{0.499, -3.0}, {0.5, 0.04}, {0.501, -3.0}}), {1e4, 0.5});
+  RubbingContact contact(m, PlanarGround({{0.499, -3.0}, {0.5, 0.04}, {0.501, -3.0}}), {1e4, 0.5});
   PlanarState s{m.position, PlanarField(5)};
   for (double& v : s.v.x) v = -2.0;
   PlanarField force(5);
@@ -123,7 +124,7 @@ TEST(PlanarContact, a_corner_in_the_tire_pushes_its_side_as_a_force_at_the_corne
   EXPECT_NEAR(contact.touches()[0].force, std::min(400.0, 2.0 * point * 0.04), 1e-9);
   // Beside the tire, and above it, nothing touches.
   for (const double x : {-1.3, 1.2}) {
-    PlanarContact aside(m, PlanarGround({{x - 0.001, -3.0}, {x, 0.5}, {x + 0.001, -3.0}}), {1e4, 0.5});
+    RubbingContact aside(m, PlanarGround({{x - 0.001, -3.0}, {x, 0.5}, {x + 0.001, -3.0}}), {1e4, 0.5});
     aside.find(m.position);
     EXPECT_TRUE(aside.touches().empty());
   }

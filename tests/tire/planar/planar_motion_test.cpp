@@ -1,5 +1,5 @@
 // Explicit integration of planar triangles: what it conserves, its order, and the largest step.
-#include "tire/planar/planar_motion.hpp"
+#include "tests/tire/planar/planar_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/tire/planar/planar_examples.hpp"
+#include "tests/tire/planar/planar_wheel.hpp"
 
 namespace furrow::tire {
 namespace {

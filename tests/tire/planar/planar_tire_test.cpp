@@ -12,6 +12,7 @@
 #include "protocol/core/error.hpp"
 #include "tests/tire/extruded_ride.hpp"
 #include "tests/tire/planar/planar_examples.hpp"
+#include "tests/tire/planar/rubbing_contact.hpp"
 #include "tire/outward.hpp"
 #include "tire/planar/planar_carcass.hpp"
 #include "tire/planar/planar_static.hpp"
@@ -83,8 +84,8 @@ TEST(PlanarTire, pressed_slowly_it_comes_to_the_static_test) {
   const double deflection = 0.03;
   ASSERT_TRUE(peer.move_to({0.0, f.params.size.radius - deflection}).converged);
   PlanarCarcass carcass(f.params);
-  PlanarContact contact(carcass.mesh(), PlanarGround::plate(f.params.size.radius),
-                        {f.params.contact_stiffness * f.params.options.width, 0.0});
+  RubbingContact contact(carcass.mesh(), PlanarGround::plate(f.params.size.radius),
+                         {f.params.contact_stiffness * f.params.options.width, 0.0});
   carcass.place(0.0, 0.0, {});
   const double h = 0.5 * carcass.step_limit(), down = 0.2, speed = deflection / down;
   PlaneSums sums;

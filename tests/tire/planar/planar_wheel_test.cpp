@@ -1,5 +1,5 @@
 // A planar wheel in motion against the momentum, energy and rolling of rigid wheels, and on a curb.
-#include "tire/planar/planar_wheel.hpp"
+#include "tests/tire/planar/planar_wheel.hpp"
 #include "tests/refusal.hpp"
 
 #include <gtest/gtest.h>

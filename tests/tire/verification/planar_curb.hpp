@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "tire/planar/planar_wheel.hpp"
+#include "tests/tire/planar/planar_wheel.hpp"
 
 namespace furrow::test {
 

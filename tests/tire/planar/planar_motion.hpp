@@ -6,11 +6,9 @@
 
 #include <functional>
 
-#include "tire/planar/planar_elements.hpp"
+#include "tire/planar/planar_params.hpp"
 
 namespace furrow::tire {
-
-enum class PlanarIntegrator { semi_implicit_euler, runge_kutta_4 };
 
 struct PlanarState {
   PlanarField x, v;

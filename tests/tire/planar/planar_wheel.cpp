@@ -1,8 +1,7 @@
-#include "tire/planar/planar_wheel.hpp"
+#include "tests/tire/planar/planar_wheel.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -32,10 +31,6 @@ PlanarPoint mean(const PlanarField& f, const std::vector<int>& nodes) {
 }
 
 }  // namespace
-
-PlanarElements planar_elements(const PlanarMesh& mesh, const PlanarParams& params) {
-  return PlanarElements(mesh, std::array{params.disc, params.tire}, params.options);
-}
 
 PlanarWheel::PlanarWheel(const PlanarParams& params, PlanarGround ground, PlanarPoint centre, PlanarPoint velocity,
                          double spin, double axle_mass, double gravity)

@@ -6,21 +6,11 @@
 #pragma once
 
 #include "protocol/core/outcome.hpp"
-#include "tire/planar/planar_contact.hpp"
+#include "tests/tire/planar/planar_motion.hpp"
+#include "tests/tire/planar/rubbing_contact.hpp"
+#include "tire/planar/planar_params.hpp"
 
 namespace furrow::tire {
-
-struct PlanarParams {
-  PlanarWheelSize size;
-  PlanarMaterial disc, tire;
-  PlanarOptions options;
-  double contact_stiffness = 0.0;  // c of a node, N/m per metre of width
-  double friction = 0.0;           // of tire on ground
-  PlanarIntegrator integrator = PlanarIntegrator::semi_implicit_euler;
-  double step_share = 0.5;  // of the largest step that the undeformed mesh bears
-};
-
-PlanarElements planar_elements(const PlanarMesh& mesh, const PlanarParams& params);
 
 /// What the vehicle does to the wheel's centre. A held direction moves with its velocity, others by the force.
 struct PlanarLink {
@@ -48,7 +38,7 @@ class PlanarWheel {
 
   const PlanarMesh& mesh() const { return mesh_; }
   const PlanarMotion& motion() const { return motion_; }
-  const PlanarContact& contact() const { return contact_; }
+  const RubbingContact& contact() const { return contact_; }
   PlanarPoint centre() const { return {motion_.state().x.x[mesh_.centre], motion_.state().x.z[mesh_.centre]}; }
   PlanarPoint centre_velocity() const;
   double spin() const;  // of the rim, about +y, rad/s
@@ -59,7 +49,7 @@ class PlanarWheel {
 
   PlanarMesh mesh_;
   PlanarMotion motion_;
-  PlanarContact contact_;
+  RubbingContact contact_;
   PlanarLink link_;
   double couple_ = 0.0, gravity_ = 0.0, step_ = 0.0;
   bool linked_ = false;

@@ -1,4 +1,4 @@
-#include "tire/planar/planar_motion.hpp"
+#include "tests/tire/planar/planar_motion.hpp"
 
 #include <utility>
 

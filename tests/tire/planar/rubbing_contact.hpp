@@ -1,0 +1,30 @@
+// Contact of a planar tire in motion with rigid ground, in steps of Δt. As at rest (tire/planar/planar_contact.hpp),
+// but
+//   F = c h,   d = ½ F/m Δt² + v_n Δt,   F ← F h/d where d > h,   F_f = min(f F, |v_t| m/Δt),                   (1)
+// v_n > 0 separating: a force pushes no farther than out of the ground, and friction against the sliding velocity v_t
+// no more than to rest. A corner of the ground pushes a side of the tire; its mass m is that of the point of the side,
+// 1/m = (1 − s)²/m_a + s²/m_b.
+#pragma once
+
+#include <vector>
+
+#include "tests/tire/planar/planar_motion.hpp"
+#include "tire/planar/planar_contact.hpp"
+
+namespace furrow::tire {
+
+/// F of (1), N. @param separation v_n, m/s. @pre depth ≥ 0; mass, step > 0
+double planar_normal_force(double stiffness, double depth, double separation, double mass, double step);
+/// F_f of (1), N, not negative.
+double planar_friction_force(double friction, double normal, double sliding, double mass, double step);
+
+class RubbingContact : public PlanarContact {
+ public:
+  using PlanarContact::PlanarContact;
+
+  /// Finds what touches and adds (1).
+  void load(const PlanarState& state, const std::vector<double>& mass, double step, PlanarField& force);
+  double force_x() const;  // on the tire, N
+};
+
+}  // namespace furrow::tire

@@ -103,7 +103,7 @@ ParameterRule rule_of(const std::string& name, const std::string& unit) {
 
 double* coefficient(MagicFormula& tire, const std::string& name) {
   double* found = nullptr;
-  visit_coefficients([&](const Field& field, double& value) { found = name == field.name ? &value : found; }, tire);
+  visit_coefficients(tire, [&](double& value, const Field& field) { found = name == field.name ? &value : found; });
   return found;
 }
 
@@ -248,7 +248,7 @@ class HandlingModel final : public CalibrationModel {
 std::vector<ParameterRule> rules_of_coefficients() {
   std::vector<ParameterRule> all;
   const MagicFormula none;
-  visit_coefficients([&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); }, none);
+  visit_coefficients(none, [&](const double&, const Field& field) { all.push_back(rule_of(field.name, field.unit)); });
   return all;
 }
 

@@ -27,7 +27,7 @@ std::string key_of(const Column& column) {
 template <HasFields S>
 Json entries_json(const S& entries) {
   Json json;
-  visit_fields([&](const Column& column, const double& value) { json[key_of(column)] = json_number(value); }, entries);
+  visit_fields(entries, [&](const double& value, const Column& column) { json[key_of(column)] = json_number(value); });
   return json;
 }
 

@@ -22,15 +22,15 @@ struct Head {
   std::string schema, description, completed_by;
   int format_version = 1;
 };
-void visit_fields(auto&& visit, FieldsOf<Head> auto& s) {
+void visit_fields(FieldsOf<Head> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("$schema", "", optional(), "Schema for editors. The program ignores it."), s.schema);
-  visit(key("description", "", optional(), "What the scenario is about. The program ignores it."), s.description);
-  visit(key("completed_by", "", optional(),
+  visit(s.schema, key("$schema", "", optional(), "Schema for editors. The program ignores it."));
+  visit(s.description, key("description", "", optional(), "What the scenario is about. The program ignores it."));
+  visit(s.completed_by,
+        key("completed_by", "", optional(),
             "Version that completed the scenario of a run with the defaults. Keys of other engines and types of rig "
-            "are then ignored instead of refused. It has no other effect."),
-        s.completed_by);
-  visit(key("format_version", "", from(1, 1), "Version of the scenario format."), s.format_version);
+            "are then ignored instead of refused. It has no other effect."));
+  visit(s.format_version, key("format_version", "", from(1, 1), "Version of the scenario format."));
 }
 
 /// A section that a scenario may leave out: all its keys have defaults.

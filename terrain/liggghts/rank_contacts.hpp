@@ -32,14 +32,14 @@ struct RankSums {
   double contacts = 0.0;                // last step
   MotionSums motion;                    // now
 };
-void visit_fields(auto&& visit, FieldsOf<RankSums> auto& s) {
-  visit(Field{"elastic", "J"}, s.elastic);
-  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
-  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
-  visit(Field{"gravity_time", "s"}, s.gravity_time);
-  visit(Field{"floor_force", "N"}, s.floor_force);
-  visit(Field{"contacts"}, s.contacts);
-  visit(Field{"motion", ""}, s.motion);
+void visit_fields(FieldsOf<RankSums> auto& s, auto&& visit) {
+  visit(s.elastic, Field{"elastic", "J"});
+  visit(s.wall_impulse, Field{"wall_impulse", "N s"});
+  visit(s.surface_impulse, Field{"surface_impulse", "N s"});
+  visit(s.gravity_time, Field{"gravity_time", "s"});
+  visit(s.floor_force, Field{"floor_force", "N"});
+  visit(s.contacts, Field{"contacts"});
+  visit(s.motion, Field{"motion", ""});
 }
 
 /// A grain that left the bin or is not finite.

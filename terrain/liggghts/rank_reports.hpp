@@ -17,12 +17,12 @@ struct IntervalReport {
   double share = 0.0;              // largest overlap over a diameter, -
   Vec3 hardest_at = Vec3::Zero();  // m
 };
-void visit_fields(auto&& visit, FieldsOf<IntervalReport> auto& s) {
-  visit(Field{"lost"}, s.lost);
-  visit(Field{"lost_at", "m"}, s.lost_at);
-  visit(Field{"overlap", "m"}, s.overlap);
-  visit(Field{"share", "-"}, s.share);
-  visit(Field{"hardest_at", "m"}, s.hardest_at);
+void visit_fields(FieldsOf<IntervalReport> auto& s, auto&& visit) {
+  visit(s.lost, Field{"lost"});
+  visit(s.lost_at, Field{"lost_at", "m"});
+  visit(s.overlap, Field{"overlap", "m"});
+  visit(s.share, Field{"share", "-"});
+  visit(s.hardest_at, Field{"hardest_at", "m"});
 }
 
 /// What the ranks know of an interval once they have told each other.

@@ -61,13 +61,13 @@ std::string launcher_text(const std::vector<std::string>& names) {
 Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& found) {
   FURROW_ASSERT(needed > 1, needed);
   std::string text = fmt::format(
-      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but {} were started; "
-      "start it with mpirun -n {} or srun -n {}",
+      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but {} were started; start it with mpirun -n {} "
+      "or srun -n {}",
       needed, 1, tires, terrain_ranks, world_size(), needed, needed);
   if (world_size() == 1 && !found.empty())
     text = fmt::format(
-        "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but was started as a single "
-        "one: {}, with one start mpirun -n {}",
+        "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but was started as a single one: {}, with one "
+        "start mpirun -n {}",
         needed, 1, tires, terrain_ranks, found, needed);
   return Error(ExitCode::bad_input, text);
 }

@@ -122,8 +122,8 @@ class HandlingModel final : public CalibrationModel {
  public:
   explicit HandlingModel(CalibrationInput& input) : CalibrationModel(input), stem_(start_.stem().string() + "_fitted") {
     if (!tire::is_tir(start_))
-      throw input_error(input.study.string(), "start",
-                        fmt::format("is '{}', expected a tire property file (.tir)", start_.filename().string()));
+      throw input_error(input.study.string(), "start", "is '{}', expected a tire property file (.tir)",
+                        start_.filename().string());
     formula_ = tire::handling::read_tir(start_);
     for (const TargetSet set : kBothSets)
       for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);

@@ -155,9 +155,8 @@ class Noisy {
     const std::size_t least = objective_.parameters() + 2;
     if (places_.size() < least)
       throw physics_error(
-          fmt::format("{}: the model answers at {} of the {} places of the design, expected {} or more; "
-                      "where it does not: {}",
-                      objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
+          "{}: the model answers at {} of the {} places of the design, expected {} or more; where it does not: {}",
+          objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_);
   }
 
   /// Of all that was asked for.

@@ -58,9 +58,8 @@ terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   options.threads = options.settle_threads = bench.threads;
   const terrain::dem::StableStep stable = terrain::dem::stable_at(options, terrain::dem::stated_overlap(options));
   if (bench.step > stable.step)
-    throw input_error("command line", "--step",
-                      fmt::format("is {:g} s, expected at most the stable step of {:.3g} s ({})", bench.step,
-                                  stable.step, stable.reason));
+    throw input_error("command line", "--step", "is {:g} s, expected at most the stable step of {:.3g} s ({})",
+                      bench.step, stable.step, stable.reason);
   return options;
 }
 
@@ -98,8 +97,8 @@ Action add_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<GrainBench>();
   command
       .add_option("--bed", arguments->bed,
-                  "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, "
-                  "y from 0 to 0.6 and z ≥ 0. 'default' is the reference bed.")
+                  "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, y from 0 to "
+                  "0.6 and z ≥ 0. 'default' is the reference bed.")
       ->capture_default_str();
   command.add_option("--law", arguments->law, "Choose the contact law: " + terrain::dem::law_names() + ".")
       ->capture_default_str();

@@ -198,9 +198,9 @@ Action add_options(CLI::App& command, Typed&) {
                   "Set the tolerance of the free residual, relative to the norm of the pressure forces.")
       ->capture_default_str();
   command
-      .add_option("--renewal", arguments->renewal,
-                  "Renew a sector's part of the factor once its shape has changed by this share; 0 renews it "
-                  "in every step.")
+      .add_option(
+          "--renewal", arguments->renewal,
+          "Renew a sector's part of the factor once its shape has changed by this share; 0 renews it in every step.")
       ->capture_default_str();
   command
       .add_option("--elements-circumference", arguments->columns,

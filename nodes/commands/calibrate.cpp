@@ -160,8 +160,8 @@ Command calibrate_entry() {
   return {.name = "calibrate",
           .task = task::compare,
           .purpose =
-              "Fit the parameters of a tire or a soil to data, with the error of each, or continue an "
-              "interrupted calibration.",
+              "Fit the parameters of a tire or a soil to data, with the error of each, or continue an interrupted "
+              "calibration.",
           .options = calibrate_options,
           .examples = {{"calibrate calibrate_ring.json", "Fit the ring to the shell, with errors."}}};
 }

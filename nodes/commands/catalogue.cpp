@@ -100,8 +100,7 @@ ExitCode list(const ListArguments& arguments) {
     kinds += (kinds.empty() ? "'" : ", '") + std::string(kind.name) + "'";
     known = known || only == kind.name;
   }
-  if (!known)
-    throw input_error("command line", "KIND", fmt::format("is {}, expected one of {}", value_text(Json(only)), kinds));
+  if (!known) throw input_error("command line", "KIND", "is {}, expected one of {}", value_text(Json(only)), kinds);
   const Json all = catalogue(only);
   if (arguments.json) {
     std::cout << all.dump(2) << "\n";

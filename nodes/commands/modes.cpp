@@ -97,9 +97,8 @@ void warn_of_unstable(const tire::ModesResults& results) {
   const auto first = std::ranges::find_if(results.modes, unstable);
   if (first == results.modes.end()) return;
   print_warning(
-      fmt::format("this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are "
-                  "negative, growth rates over "
-                  "2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
+      fmt::format("this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are negative, "
+                  "growth rates over 2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
                   first->order, std::ranges::count_if(results.modes, unstable), results.modes.size()));
 }
 
@@ -107,9 +106,11 @@ ExitCode modes(const ModesArguments& arguments) {
   const std::unique_ptr<tire::TireSpec> spec = tire_of(arguments);
   const std::unique_ptr<tire::ModalTest> test = spec->modal_test();
   if (!test)
-    throw refused("TIRE", fmt::format("is '{}', a {} tire: it has no masses that vibrate; expected a shell, "
-                                      "a flexible ring or a planar tire",
-                                      spec->options().file.filename().string(), spec->describe().name));
+    throw refused(
+        "TIRE",
+        fmt::format(
+            "is '{}', a {} tire: it has no masses that vibrate; expected a shell, a flexible ring or a planar tire",
+            spec->options().file.filename().string(), spec->describe().name));
   const tire::ModesOptions options = modes_options(arguments, *test);
   const tire::ModesResults results = compute(*test, options);
   warn_of_unstable(results);
@@ -171,8 +172,8 @@ Command modes_entry() {
   return {.name = "modes",
           .task = task::test,
           .purpose =
-              "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential "
-              "order, and print the folder of the results.",
+              "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential order, and print "
+              "the folder of the results.",
           .options = add_options,
           .examples = {{"modes hmmwv_lumped.json --orders 3", "Get the frequencies of the lowest orders."}}};
 }

@@ -89,9 +89,8 @@ std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario
   std::unique_ptr<tire::StaticTest> test = tire.static_test();
   if (test) return test;
   throw input_error(scenario.file.string(), "tire",
-                    fmt::format("is a {} tire, which cannot be pressed, expected a model that deflects, with "
-                                "tire.rigid false",
-                                tire.describe().name));
+                    "is a {} tire, which cannot be pressed, expected a model that deflects, with tire.rigid false",
+                    tire.describe().name);
 }
 
 /// The answer in a line, from the summary; empty where the load was not reached.
@@ -111,14 +110,14 @@ std::string result_line(const nlohmann::ordered_json& summary) {
 std::string not_reached(const tire::PressOptions& options, const tire::PressResults& results) {
   if (results.at_load.force == 0.0)
     return fmt::format(
-        "within a deflection of {:g} m the tire touches nothing: no stiffness and no footprint is given; press "
-        "further (--deflection){}",
+        "within a deflection of {:g} m the tire touches nothing: no stiffness and no footprint is given; press further "
+        "(--deflection){}",
         options.deflection,
         options.obstacle.position != 0.0 ? ", or move the cleat nearer to the middle (--cleat-position)" : "");
   return fmt::format(
-      "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
-      "footprint is that of this force; press further (--deflection) or ask for less (--load); see "
-      "tire/README.md, \"Static pressing\"",
+      "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the footprint is "
+      "that of this force; press further (--deflection) or ask for less (--load); see tire/README.md, \"Static "
+      "pressing\"",
       options.load, results.at_load.force);
 }
 
@@ -176,17 +175,16 @@ Action add_options(CLI::App& command, Typed& typed) {
                      "Compute this number of points of the load–deflection curve (press.points).");
   command.add_option("--load", arguments->load, "Compute the footprint at this load, N (press.load).");
   command.add_option("--camber", arguments->camber,
-                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of "
-                     "travel. Shell tires only (press.camber).");
+                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of travel. Shell "
+                     "tires only (press.camber).");
   command.add_option("--cleat-height", arguments->cleat_height, "Set the height of the cleat, m (press.cleat_height).");
   command.add_option("--cleat-width", arguments->cleat_width,
                      "Set the width of the cleat's top along the direction of travel, m (press.cleat_width).");
   command.add_option("--cleat-position", arguments->cleat_position,
                      "Set the position of the cleat's middle, forward of the axle, m (press.cleat_position).");
-  command.add_option(
-      "--profile", arguments->profile,
-      "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs --on "
-      "profile and a flexible ring or planar tire.");
+  command.add_option("--profile", arguments->profile,
+                     "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs "
+                     "--on profile and a flexible ring or planar tire.");
   return [arguments, &typed] { return press(load(typed), *arguments); };
 }
 
@@ -196,8 +194,8 @@ Command press_entry() {
   return {.name = "press",
           .task = task::test,
           .purpose =
-              "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder "
-              "of the results.",
+              "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder of the "
+              "results.",
           .options = add_options,
           .examples = {{"press rigid_ground.json --load 6000", "Get the load-deflection curve, and a footprint."},
                        {"press cleat_press.json --cleat-height 0.025", "Press the tire on a cleat."}}};

@@ -183,8 +183,7 @@ Command report_entry() {
   return {.name = "report",
           .task = task::compare,
           .purpose =
-              "Plot results of any command: PNG files and report.html, a page with plots and, of "
-              "a run, 3-D playback.",
+              "Plot results of any command: PNG files and report.html, a page with plots and, of a run, 3-D playback.",
           .options = report_options,
           .examples = {{"report results/first_look-001", "Make plots and report.html of a run."},
                        {"report results/a results/b --out both", "Compare runs on one page."}}};

@@ -85,16 +85,14 @@ std::string accounts_line(const json& summary) {
   const json energy = accounts.value("energy", json::object()), momentum = accounts.value("momentum", json::object());
   if (!std::isfinite(number(energy, "turnover"))) return "";
   std::string text = fmt::format(
-      "furrow: accounts: energy residual {:.2g} % of {} J turned over, momentum residual {:.2g} of the "
-      "largest "
+      "furrow: accounts: energy residual {:.2g} % of {} J turned over, momentum residual {:.2g} of the largest "
       "impulse, {} N s\n",
       100.0 * number(energy, "residual_share"), digits(number(energy, "turnover")), number(momentum, "residual_share"),
       digits(number(momentum, "largest")));
   if (!energy.value("closes", false)) {
     const json parts = energy.value("residual_of", json::object());
     text += fmt::format(
-        "furrow: WARNING: the account of energy does not close: {:.3g} J are left over, expected at most "
-        "{:.3g} J "
+        "furrow: WARNING: the account of energy does not close: {:.3g} J are left over, expected at most {:.3g} J "
         "(terrain {:.3g}, tires {:.3g}, rig {:.3g} J); halve run.step and compare, or report it "
         "(nodes/output/README.md, \"Accounts\")\n",
         number(energy, "residual"), number(energy, "bound"), number(parts, "terrain"), number(parts, "tires"),
@@ -102,8 +100,8 @@ std::string accounts_line(const json& summary) {
   }
   if (!momentum.value("closes", false))
     text +=
-        "furrow: WARNING: the account of momentum does not close: see accounts.momentum of summary.json, and "
-        "report it (nodes/output/README.md, \"Accounts\")\n";
+        "furrow: WARNING: the account of momentum does not close: see accounts.momentum of summary.json, and report it "
+        "(nodes/output/README.md, \"Accounts\")\n";
   return text;
 }
 
@@ -115,8 +113,8 @@ std::string subject_lines(const json& summary, double average_from) {
     const auto told = [&, &of = figures](const char* key) { return digits(number(of, key)); };
     if (std::isfinite(number(figures, "distance_m")))
       text += fmt::format(
-          "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and "
-          "ground {} W\n",
+          "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and ground {} "
+          "W\n",
           name, told("distance_m"), average_from, told("speed_m_s"), told("power_W"), told("wheel_power_W"),
           told("soil_power_W"));
   }
@@ -129,14 +127,13 @@ std::string place_warning(const json& wheel, bool yields) {
   const double share = number(wheel, "sinkage_m") / number(wheel, "tire_radius_m");
   if (share > kDeep)
     return fmt::format(
-        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, or it spins "
-        "itself in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on "
-        "stronger soil\n",
+        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, or it spins itself "
+        "in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on stronger soil\n",
         share);
   if (yields && share < -kHigh)
     return fmt::format(
-        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; "
-        "take a smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
+        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; take a "
+        "smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
         -share);
   return "";
 }
@@ -228,8 +225,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
   }
   if (const double added = number(summary, "substeps_added"); added > 0.0)
     text += fmt::format(
-        "furrow: hard contacts: the terrain took {:.0f} more substeps, in {:.2g} % of the time, of at least "
-        "1/{:.0f} "
+        "furrow: hard contacts: the terrain took {:.0f} more substeps, in {:.2g} % of the time, of at least 1/{:.0f} "
         "of the step\n",
         added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
   text += subject_lines(summary, number(summary, "average_from_s"));

@@ -68,8 +68,8 @@ void tell_how_to_continue(const std::filesystem::path& directory, const launch::
                  physics ? ", perhaps with a smaller run.step" : "");
   else if (physics)
     std::fprintf(stderr,
-                 "furrow: a resumed run would fail at the same step; to continue from the last checkpoint "
-                 "with a smaller step: furrow resume %s --set run.step=%s\n",
+                 "furrow: a resumed run would fail at the same step; to continue from the last checkpoint with a "
+                 "smaller step: furrow resume %s --set run.step=%s\n",
                  folder.c_str(), number_text(0.5 * scenario.run.step).c_str());
   else
     std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n", folder.c_str());
@@ -175,10 +175,10 @@ void refuse_tasks_without_mpi() {
   const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
   if (!tasks || std::atoi(tasks) < 2) return;
   const char* task = std::getenv("SLURM_PROCID");
-  const Error error = input_error("srun", "",
-                                  fmt::format("started {} tasks without MPI, expected srun --mpi=pmix, or furrow run "
-                                              "without srun, which starts its own ranks",
-                                              tasks));
+  const Error error = input_error(
+      "srun", "",
+      "started {} tasks without MPI, expected srun --mpi=pmix, or furrow run without srun, which starts its own ranks",
+      tasks);
   if (task && std::atoi(task) > 0 && first_rank_speaks()) std::exit(static_cast<int>(error.code()));
   throw error;
 }
@@ -238,9 +238,8 @@ Action run_options(CLI::App& command, Typed& typed) {
                    "Write profile.json too: where the time of each step goes (Chrome trace).");
   add_no_plots(command, arguments->plots);
   command.add_option("--seeds", arguments->seeds,
-                     "Run on this number of beds, 2 to 1000, with run.seed, run.seed + 1, …, and write means and "
-                     "95 % intervals. "
-                     "The same command continues interrupted ones.");
+                     "Run on this number of beds, 2 to 1000, with run.seed, run.seed + 1, …, and write means and 95 % "
+                     "intervals. The same command continues interrupted ones.");
   command.add_option(
       "--jobs", arguments->jobs,
       "Run this number of beds at once, each with its share of the cores (default: 1). It needs --seeds.");
@@ -282,8 +281,7 @@ Command resume_entry() {
   return {.name = "resume",
           .task = task::run,
           .purpose =
-              "Continue a run from its last checkpoint. The result is bit-identical to that of an "
-              "uninterrupted run.",
+              "Continue a run from its last checkpoint. The result is bit-identical to that of an uninterrupted run.",
           .options = resume_options,
           .examples = {{"resume results/first_look-001", "Go to the end that the scenario gives."},
                        {"resume results/first_look-001 --until 3", "Lengthen a finished run to 3 s."}}};

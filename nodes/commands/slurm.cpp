@@ -186,8 +186,8 @@ exit "$code"
 
 CLI::Option* add_slurm_options(CLI::App& command, SlurmArguments& job) {
   CLI::Option* slurm = command.add_flag("--slurm")->description(
-      "Print a batch script for sbatch. It saves the run before its time "
-      "is over, and continues when it is queued again.");
+      "Print a batch script for sbatch. It saves the run before its time is over, and continues when it is queued "
+      "again.");
   const auto of_slurm = [&](CLI::Option* option) { option->needs(slurm); };
   of_slurm(
       command.add_option("--nodes", job.nodes, "Use this number of nodes; the ranks are spread over them in order.")
@@ -198,9 +198,8 @@ CLI::Option* add_slurm_options(CLI::App& command, SlurmArguments& job) {
                ->check(above_zero()));
   of_slurm(command.add_option("--partition", job.partition, "Submit to this partition (default: the cluster's)."));
   of_slurm(command.add_option("--time", job.time,
-                              "Limit one start of the job to this time, in minutes, as hh:mm:ss or as "
-                              "days-hh:mm:ss. A longer run takes "
-                              "several starts (default: the partition's limit)."));
+                              "Limit one start of the job to this time, in minutes, as hh:mm:ss or as days-hh:mm:ss. A "
+                              "longer run takes several starts (default: the partition's limit)."));
   of_slurm(command.add_option("--account", job.account, "Charge the job to this account (default: your own)."));
   of_slurm(command.add_option(
       "--out", job.out,

@@ -121,9 +121,8 @@ Action soil_options(CLI::App& command, Typed& typed) {
       ->allow_extra_args(false);
   command
       .add_option("--stress", arguments->stresses,
-                  "Shear under this normal stress, Pa. Repeat the option: two stresses or more are needed "
-                  "(default: 20, "
-                  "50 and 100 kPa, less for soft grains).")
+                  "Shear under this normal stress, Pa. Repeat the option: two stresses or more are needed (default: "
+                  "20, 50 and 100 kPa, less for soft grains).")
       ->take_all()
       ->allow_extra_args(false);
   command.add_flag("--quick", arguments->quick,
@@ -137,8 +136,8 @@ Command soil_entry() {
   return {.name = "soil",
           .task = task::test,
           .purpose =
-              "Run virtual soil tests on a scenario's grains (plate sinkage, direct shear, "
-              "cone, angle of repose) and print the results as JSON.",
+              "Run virtual soil tests on a scenario's grains (plate sinkage, direct shear, cone, angle of repose) and "
+              "print the results as JSON.",
           .options = soil_options,
           .examples = {
               {"soil drawbar_pull_small.json --quick", "Get an impression within seconds."},

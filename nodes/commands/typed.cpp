@@ -36,8 +36,7 @@ Settings settings_of(const Typed& typed) {
   const auto add = [&](const char* option, const std::string& value, const char* key) {
     if (value.empty()) return;
     for (const auto& [other, unused] : settings)
-      if (other == key)
-        throw input_error("command line", option, fmt::format("is given with --set {}, expected one of them", key));
+      if (other == key) throw input_error("command line", option, "is given with --set {}, expected one of them", key);
     settings.emplace_back(key, value);
   };
   add("--threads", typed.threads, "run.threads");

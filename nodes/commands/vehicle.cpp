@@ -89,9 +89,8 @@ std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, cons
     return rows;
   } catch (const Error& error) {
     if (error.code() != ExitCode::physics) throw;
-    throw input_error("command line", "--travel",
-                      fmt::format("is {:.4g} m: {}, expected a travel that every axle of {} can follow", options.travel,
-                                  error.what(), spec.file));
+    throw input_error("command line", "--travel", "is {:.4g} m: {}, expected a travel that every axle of {} can follow",
+                      options.travel, error.what(), spec.file);
   }
 }
 
@@ -177,8 +176,7 @@ Command kinematics_entry() {
   return {.name = "kc",
           .task = task::test,
           .purpose =
-              "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more "
-              "against travel and "
+              "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more against travel and "
               "steering, and print the folder of the results.",
           .options = add_options,
           .examples = {{"kc hmmwv.json --travel 0.05", "Move the wheels by 50 mm up and down."}}};

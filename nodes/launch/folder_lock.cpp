@@ -88,10 +88,9 @@ bool end_left_launchers(const struct stat& file) {
 }
 
 Error taken(const fs::path& folder, const std::string& key, const struct stat& list) {
-  return input_error(
-      folder.string(), key,
-      fmt::format("is in use by a run that has not ended: {}; expected another folder, or that they end first",
-                  holders_text(list)));
+  return input_error(folder.string(), key,
+                     "is in use by a run that has not ended: {}; expected another folder, or that they end first",
+                     holders_text(list));
 }
 
 }  // namespace

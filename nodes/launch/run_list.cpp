@@ -135,9 +135,8 @@ RunList RunList::read(const fs::path& folder) {
       continue;
     }
     if (line.starts_with(kKind))
-      throw input_error(file.string(), "",
-                        fmt::format("is of version '{}', expected {}: another version of furrow wrote it",
-                                    line.substr(kKind.size()), kVersion));
+      throw input_error(file.string(), "", "is of version '{}', expected {}: another version of furrow wrote it",
+                        line.substr(kKind.size()), kVersion);
     if (!begun || !is_inside(line))
       throw input_error(file.string() + ":" + place_in_text(text, from), "",
                         begun

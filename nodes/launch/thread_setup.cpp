@@ -75,8 +75,7 @@ std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
   const bool together = host.nodes.size() > 1 && all_share_the_same_cores(host);
   if (cores.size() > 1 || host.machine_cores < 2 || !wants_more || together) return {};
   return fmt::format(
-      "{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more "
-      "--cpus-per-task",
+      "{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more --cpus-per-task",
       to_string(host.nodes[node].node), cores.front(), host.machine_cores,
       wanted > 1 ? fmt::format(" while {} threads are wanted", wanted) : std::string());
 }

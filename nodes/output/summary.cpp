@@ -76,8 +76,8 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
                     1e3 * rolled, 100.0 * kLeastRolled));
   else if (late > kMaxLate * rolling)
     reasons.push_back(
-        fmt::format("contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
-                    "load × speed; take a smaller run.step{}",
+        fmt::format("contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of load "
+                    "× speed; take a smaller run.step{}",
                     late, 100.0 * late / rolling,
                     in.run.scenario.tires[in.wheel]->options().contact_tangent ? "" : " or tire.contact_tangent"));
   return {{"mean", json_number(s.mean)},

@@ -56,15 +56,13 @@ struct OutputOptions {
 
 void visit_fields(FieldsOf<OutputOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(s.series_interval,
-        key("series_interval", "s", above(0).to(1e5),
-            "Time between lines of timeseries.csv. In a line forces are means over the interval, positions, energies "
-            "and counts are instants, impulses and works are sums since the start. It is rounded to a whole number of "
-            "run.step, at least one."));
-  visit(s.frame_interval,
-        key("frame_interval", "s", from(0, 1e5),
-            "Time between frames of grains and tire surface. It is rounded to a whole number of run.step, at least "
-            "one. 0: no frames."));
+  visit(s.series_interval, key("series_interval", "s", above(0).to(1e5),
+                               "Time between lines of timeseries.csv. In a line forces are means over the interval, "
+                               "positions, energies and counts are instants, impulses and works are sums since the "
+                               "start. It is rounded to a whole number of run.step, at least one."));
+  visit(s.frame_interval, key("frame_interval", "s", from(0, 1e5),
+                              "Time between frames of grains and tire surface. It is rounded to a whole number of "
+                              "run.step, at least one. 0: no frames."));
 }
 
 /// `checkpoint.*`
@@ -80,15 +78,13 @@ void visit_fields(FieldsOf<CheckpointOptions> auto& s, auto&& visit) {
   visit(s.wall_interval, key("wall_interval", "s", role::harmless, from(0, 1e7),
                              "Wall time between checkpoints. The first ones come after 30, 60, 120, … s. 0: no "
                              "checkpoints by wall time."));
-  visit(s.interval,
-        key("interval", "s", role::harmless, from(0, 1e5),
-            "Simulated time between checkpoints. It is rounded to a whole number of run.step, at least one. 0: no "
-            "checkpoints by simulated time."));
+  visit(s.interval, key("interval", "s", role::harmless, from(0, 1e5),
+                        "Simulated time between checkpoints. It is rounded to a whole number of run.step, at least "
+                        "one. 0: no checkpoints by simulated time."));
   visit(s.keep, key("keep", "", role::harmless, from(1, 1000), "How many checkpoints are kept: the newest."));
-  visit(s.at_end,
-        key("at_end", "", role::harmless,
-            "Write a checkpoint at the end of the run too. It lets the run continue with a later run.end, and the next "
-            "pass of a study start from its terrain."));
+  visit(s.at_end, key("at_end", "", role::harmless,
+                      "Write a checkpoint at the end of the run too. It lets the run continue with a later run.end, "
+                      "and the next pass of a study start from its terrain."));
 }
 
 /// `press.*`, optional: what `furrow press` takes where its options do not say it.
@@ -104,20 +100,18 @@ struct PressKeys {
 
 void visit_fields(FieldsOf<PressKeys> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(s.on,
-        key("on", "", role::harmless, words("plate cleat"),
-            "Obstacle. plate: flat. cleat: a flat-topped bar across the direction of travel. A profile is given on the "
-            "command line: furrow press --on profile --profile FILE."));
+  visit(s.on, key("on", "", role::harmless, words("plate cleat"),
+                  "Obstacle. plate: flat. cleat: a flat-topped bar across the direction of travel. A profile is given "
+                  "on the command line: furrow press --on profile --profile FILE."));
   visit(s.deflection,
         key("deflection", "m", role::harmless, above(0).to(0.2), "Largest deflection of the load–deflection curve."));
   visit(s.points, key("points", "", role::harmless, from(1, 1000), "Number of points of the curve."));
   visit(s.load,
         key("load", "N", role::harmless, above(0).to(1e7).usual(1, 200000).or_null(),
             "Load at which the footprint is computed. null: the load that the scenario's first wheel carries."));
-  visit(s.camber,
-        key("camber", "rad", role::harmless, from(-0.7, 0.7).usual(-0.3, 0.3),
-            "Inclination of the wheel about its forward axis. A positive one leans the top to the right of travel. "
-            "Flexible ring and planar tires are alike across their width and take 0 alone."));
+  visit(s.camber, key("camber", "rad", role::harmless, from(-0.7, 0.7).usual(-0.3, 0.3),
+                      "Inclination of the wheel about its forward axis. A positive one leans the top to the right of "
+                      "travel. Flexible ring and planar tires are alike across their width and take 0 alone."));
   visit(s.cleat_height, key("cleat_height", "m", role::harmless, above(0).to(0.2), "Height of the cleat."));
   visit(s.cleat_width, key("cleat_width", "m", role::harmless, above(0).to(1),
                            "Width of the cleat's top along the direction of travel."));
@@ -140,10 +134,9 @@ struct ExpectedResult {
 void visit_fields(FieldsOf<ExpectedResult> auto& s, auto&& visit) {
   using namespace allowed;
   visit(s.drawbar_pull, key("drawbar_pull", "N", role::harmless, from(-1e9, 1e9).required(), "Mean drawbar pull."));
-  visit(s.drawbar_pull_spread,
-        key("drawbar_pull_spread", "N", role::harmless, from(0, 1e9).required(),
-            "Spread ± of the drawbar pull on one bed: between seeds, machines and small changes. Means over n beds are "
-            "expected within it over √n."));
+  visit(s.drawbar_pull_spread, key("drawbar_pull_spread", "N", role::harmless, from(0, 1e9).required(),
+                                   "Spread ± of the drawbar pull on one bed: between seeds, machines and small "
+                                   "changes. Means over n beds are expected within it over √n."));
   visit(s.sinkage, key("sinkage", "m", role::harmless, from(-1e3, 1e3).optional(), "Mean sinkage."));
   visit(s.sinkage_spread, key("sinkage_spread", "m", role::harmless, from(0, 1e3).optional(),
                               "Spread ± of the sinkage on one bed, as of the pull. 0: not stated."));

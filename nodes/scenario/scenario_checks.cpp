@@ -127,8 +127,8 @@ void Checks::tires() {
     else if (share > 0.0 && s_.run.step > share * tau)
       warn("run.step",
            fmt::format(
-               "{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
-               "step late and can feed the tire; expected at most {} s{}",
+               "{} s is more than {:g} of the tire's damping time of {} s: contact forces come one step late and can "
+               "feed the tire; expected at most {} s{}",
                number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
                tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent ? ", or tire.contact_tangent" : ""));
   }
@@ -201,10 +201,9 @@ void Checks::ranks() {
   }
   if (terrain_.core_per_rank)
     if (const auto cores = static_cast<int>(allowed_cores().size()); s_.terrain_ranks > cores)
-      warn("terrain.ranks",
-           fmt::format("is {}, this machine has {} core{}: each rank needs one of its own, here or on other "
-                       "nodes; more ranks than cores are slower",
-                       s_.terrain_ranks, cores, cores > 1 ? "s" : ""));
+      warn("terrain.ranks", fmt::format("is {}, this machine has {} core{}: each rank needs one of its own, here or on "
+                                        "other nodes; more ranks than cores are slower",
+                                        s_.terrain_ranks, cores, cores > 1 ? "s" : ""));
   if (s_.terrain_ranks <= terrain_.most_ranks) return thin_parts();
   throw wrong("terrain.ranks",
               fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
@@ -219,10 +218,9 @@ void Checks::thin_parts() {
   if (length < s_.terrain_ranks * least && s_.terrain_ranks > 1)
     throw wrong(
         "terrain.ranks",
-        fmt::format("is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three "
-                    "grains",
-                    s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length),
-                    number_text(least)));
+        fmt::format(
+            "is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three grains",
+            s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length), number_text(least)));
 }
 
 void Checks::bin() {
@@ -246,15 +244,16 @@ Error Checks::in_a_wall(const rigs::WheelDescription& wheel) const {
   }
   const double low = behind, high = length - ahead;
   if (low > high)
-    return wrong("terrain.length",
-                 fmt::format("is {} m, expected at least {:.2f} m: from the first to the last tire "
-                             "the rig is {:.2f} m long",
-                             number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind));
-  return wrong(wheel.start_key,
-               fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall "
-                           "of the bin",
-                           number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
-                           wheel.name.empty() ? "" : wheel.name + " with ", wheel.along));
+    return wrong(
+        "terrain.length",
+        fmt::format("is {} m, expected at least {:.2f} m: from the first to the last tire the rig is {:.2f} m long",
+                    number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind));
+  return wrong(
+      wheel.start_key,
+      fmt::format(
+          "is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall of the bin",
+          number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
+          wheel.name.empty() ? "" : wheel.name + " with ", wheel.along));
 }
 
 void Checks::start() {
@@ -268,17 +267,17 @@ void Checks::start() {
   for (const rigs::WheelDescription& wheel : describe().wheels) {
     const double radius = wheel.along;
     if (wheel.stops_before_wall)
-      warn("run.end", fmt::format("the run will end before {} s, where a tire is {} m from the end wall "
-                                  "(rig.stop_before_wall)",
-                                  number_text(s_.run.end), number_text(rig_.stop_before_wall())));
+      warn("run.end",
+           fmt::format("the run will end before {} s, where a tire is {} m from the end wall (rig.stop_before_wall)",
+                       number_text(s_.run.end), number_text(rig_.stop_before_wall())));
     if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
     if (wheel.to - radius < 0.0 || wheel.to + radius > length) {
       const double behind =
           wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
       const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
       throw wrong("terrain.length",
-                  fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
-                              "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                  fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius is "
+                              "{:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
                               number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0));
     }
   }
@@ -298,10 +297,9 @@ void Checks::overlaps() {
                     fmt::format("has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
                                 "between their mid-planes",
                                 wheels[k].name, wheels[i].name, along, across));
-      throw wrong(wheels[k].start_key,
-                  fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
-                              "{:.2f} m between their mid-planes (lateral)",
-                              i, along, across));
+      throw wrong(wheels[k].start_key, fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between "
+                                                   "their axles or {:.2f} m between their mid-planes (lateral)",
+                                                   i, along, across));
     }
 }
 

@@ -106,11 +106,10 @@ void Sweep::require_unlike_runs() const {
     const auto [of_digest, is_new] = known.try_emplace(run.digest, &run);
     if (is_new) continue;
     const auto words = [](const Run& r) { return r.keys.empty() ? std::string("no settings") : text_of(r.keys); };
-    throw input_error(
-        study_.file.string(), "",
-        fmt::format("has a run with {} and a run with {}, which have the same results: what they differ in "
-                    "is the scenario's value or decides no result, expected each once",
-                    words(*of_digest->second), words(run)));
+    throw input_error(study_.file.string(), "",
+                      "has a run with {} and a run with {}, which have the same results: what they differ in is the "
+                      "scenario's value or decides no result, expected each once",
+                      words(*of_digest->second), words(run));
   }
 }
 
@@ -323,17 +322,15 @@ void Sweep::poll(Run& run) {
                                                 unsteady ? ", NOT STEADY" : "")
                                   : "is done");
     if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
-      tell(run,
-           fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
-                       "for soil without a floor (more terrain.layers)",
-                       100.0 * deep));
+      tell(run, fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is "
+                            "needed for soil without a floor (more terrain.layers)",
+                            100.0 * deep));
   } else {
     run.state = State::failed;
     keep_results(run, read_failed_summary(folder_of(run)));
-    run.problem = run.exit_code == 0
-                      ? "holds the results of another scenario: it was resumed with other keys, or files were "
-                        "changed meanwhile; remove it to run it again"
-                      : launch::last_error(log_of(run), status);
+    run.problem = run.exit_code == 0 ? "holds the results of another scenario: it was resumed with other keys, or "
+                                       "files were changed meanwhile; remove it to run it again"
+                                     : launch::last_error(log_of(run), status);
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
     tell_failure(run,
                  fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem, log_of(run).string()));
@@ -357,9 +354,9 @@ void Sweep::require_folder(const launch::FolderLock& lock) {
     while (waitpid(run.process, nullptr, 0) < 0 && errno == EINTR) continue;
     run.process = -1;
   }
-  throw io_error(options_.folder.string(),
-                 "was moved, removed or emptied while the study was under way; it ends here and writes nothing "
-                 "elsewhere");
+  throw io_error(
+      options_.folder.string(),
+      "was moved, removed or emptied while the study was under way; it ends here and writes nothing elsewhere");
 }
 
 /// Ctrl-Z reaches this process alone: the runs have groups of their own.

@@ -85,8 +85,8 @@ class Hdf5Reader::Set {
     const hsize_t needed = product(shape_, each), chunk = chunk_bytes(each);
     if (numbers() == 0) return;
     file_.check(bytes <= file_.size_ && needed <= most && chunk <= std::max(most, kSmallChunk),
-                fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or "
-                            "the file is cut short or damaged",
+                fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or the "
+                            "file is cut short or damaged",
                             quoted(name_), needed, std::min<hsize_t>(bytes, file_.size_)));
   }
 

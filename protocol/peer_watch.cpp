@@ -1,6 +1,5 @@
 #include "protocol/peer_watch.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>

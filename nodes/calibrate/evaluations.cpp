@@ -1,6 +1,5 @@
 #include "nodes/calibrate/evaluations.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>

@@ -16,7 +16,6 @@
 #include <ctime>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,7 +30,6 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/fields_json.hpp"
 #include "protocol/files/json_text.hpp"
-#include "protocol/files/nearest_words.hpp"
 #include "terrain/soil/soil_tests.hpp"
 
 namespace furrow::calibrate {

@@ -21,7 +21,6 @@
 #include "nodes/calibrate/optimum.hpp"
 #include "nodes/calibrate/statistics.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/handling/handling_spec.hpp"
 #include "tire/handling/sweep_table.hpp"

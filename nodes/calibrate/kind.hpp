@@ -4,14 +4,12 @@
 // model by this interface alone.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>

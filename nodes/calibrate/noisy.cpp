@@ -12,9 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
-#include <fmt/format.h>
 #include <Eigen/LU>
 
 #include "nodes/calibrate/least_squares.hpp"

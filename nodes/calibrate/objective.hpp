@@ -2,7 +2,6 @@
 // fitted targets, as a function of the parameters on their scales from 0 to 1 (kind.hpp).
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

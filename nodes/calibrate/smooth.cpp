@@ -2,8 +2,6 @@
 // several starts.
 #include <limits>
 
-#include <fmt/format.h>
-
 #include "nodes/calibrate/least_squares.hpp"
 #include "nodes/calibrate/objective.hpp"
 #include "nodes/calibrate/optimum.hpp"

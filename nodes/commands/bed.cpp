@@ -1,5 +1,4 @@
 // `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
-#include <cmath>
 #include <iostream>
 
 #include <nlohmann/json.hpp>

@@ -8,7 +8,7 @@
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/progress.hpp"
 #include "nodes/launch/signals.hpp"
-#include "nodes/launch/thread_setup.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow::commands {
 

@@ -1,14 +1,11 @@
 // `furrow bench grains`: what the command line says, and the result as JSON.
-#include <cmath>
 #include <memory>
 #include <string>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/commands/command_table.hpp"
-#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/grain_bench.hpp"
 #include "terrain/dem/solver_setup.hpp"

@@ -1,6 +1,5 @@
 // `furrow press`: a tire of a scenario against a plate or a cleat.
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <fmt/format.h>
-
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/printable.hpp"
 

@@ -1,6 +1,5 @@
 // `furrow kc` and `furrow validate` of a vehicle: what there is to know of it before it drives.
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 

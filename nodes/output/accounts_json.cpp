@@ -1,6 +1,5 @@
 #include "nodes/output/accounts_json.hpp"
 
-#include <cmath>
 #include <string>
 #include <string_view>
 

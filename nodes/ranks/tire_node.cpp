@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
 #include "nodes/ranks/early_end.hpp"

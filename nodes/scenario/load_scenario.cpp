@@ -1,8 +1,5 @@
 #include "nodes/scenario/load_scenario.hpp"
 
-#include <cmath>
-#include <cstdlib>
-
 #include <algorithm>
 #include <array>
 

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "nodes/scenario/scenario.hpp"
 
 namespace furrow::scenario {

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/data_files.hpp"

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <fmt/format.h>
-
 #include "protocol/core/error.hpp"
 
 namespace furrow::scenario {

@@ -1,7 +1,5 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "tire/press/press_curve.hpp"

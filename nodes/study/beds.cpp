@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 
 #include "nodes/checkpoint/run_summary.hpp"
-#include "nodes/launch/folder_lock.hpp"
-#include "nodes/launch/run_list.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/student_t.hpp"
 #include "protocol/files/json_number.hpp"

@@ -1,9 +1,6 @@
 // Writes structs with a list of fields (protocol/core/fields.hpp) as JSON: one key per field.
 #pragma once
 
-#include <string>
-#include <type_traits>
-
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/fields.hpp"

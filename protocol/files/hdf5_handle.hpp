@@ -5,8 +5,6 @@
 
 #include <utility>
 
-#include "protocol/core/assert.hpp"
-
 namespace furrow {
 
 /// An HDF5 identifier that closes itself.

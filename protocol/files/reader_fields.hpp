@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <concepts>
 #include <limits>
 #include <string>
 #include <type_traits>

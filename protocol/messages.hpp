@@ -39,6 +39,8 @@ void visit_fields(FieldsOf<Address> auto& s, auto&& visit) {
   visit(s.role, Field{"role", ""});
   visit(s.index, Field{"index"});
 }
+/// The node of this number: the rig is 0, then come the tires, then the ranks of the terrain.
+Address address_of(int node, int tire_count);
 /// "rig", "tire 0", "terrain", or "terrain 0" where it has several ranks.
 std::string to_string(const Address& address, int terrain_ranks = 1);
 

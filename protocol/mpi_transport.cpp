@@ -17,13 +17,6 @@
 namespace furrow {
 namespace {
 
-Address address_of(int rank, int tires) {
-  FURROW_ASSERT(rank >= 0 && tires >= 0, rank, tires);
-  if (rank == 0) return {Role::rig, 0};
-  if (rank <= tires) return {Role::tire, rank - 1};
-  return {Role::terrain, rank - 1 - tires};
-}
-
 std::vector<int> gather(const Communicator& comm, const std::vector<int>& own, std::vector<int>& counts) {
   int count = static_cast<int>(own.size());
   counts.resize(comm.size());

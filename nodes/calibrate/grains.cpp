@@ -13,10 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <numbers>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,6 +24,7 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "nodes/study/study.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/fields_json.hpp"
@@ -35,9 +34,9 @@
 namespace furrow::calibrate {
 namespace {
 
+using scenario::Settings;
 using terrain::dem::DemOptions;
 using terrain::soil::Measured, terrain::soil::SoilOptions, terrain::soil::SoilParameters, terrain::soil::SoilResults;
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 /// K of the shear cell, in diameters of a grain, is above this for all soils of terrain/README.md (0.5 to 1.2 there).
@@ -94,12 +93,6 @@ Measured bulk_density(const SoilResults& results) {
   };
   take(results.shear), take(results.repose), take(results.plate), take(results.cone);
   return terrain::soil::mean_of(beds);
-}
-
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 // ---- the model
@@ -203,7 +196,7 @@ class GrainModel final : public CalibrationModel {
   /// All figures of the tests that some target needs; NaN for those of others.
   Prediction tested(std::span<const double> values, const ProgressCall& progress) const {
     Prediction found;
-    const double begin = processor_time();
+    const double begin = processor_time(CLOCK_PROCESS_CPUTIME_ID);
     try {
       SoilOptions options;
       options.material = grains_of(values);
@@ -230,7 +223,7 @@ class GrainModel final : public CalibrationModel {
       found.problem = error.what();
     }
     if (!found.problem.empty()) found.values.clear(), found.errors.clear();
-    found.processor_time = processor_time() - begin;
+    found.processor_time = processor_time(CLOCK_PROCESS_CPUTIME_ID) - begin;
     return found;
   }
 

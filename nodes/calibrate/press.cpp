@@ -272,21 +272,14 @@ class PressModel final : public CalibrationModel {
   PerSet<std::vector<PressTarget>> presses_;
 };
 
+template <const PressKind& kKind>
+std::unique_ptr<CalibrationModel> read_press(CalibrationInput& input) {
+  return std::make_unique<PressModel>(kKind, input);
+}
+
 }  // namespace
 
-CalibrationKind ring_kind() {
-  return {"ring", "a tire file", kRingRules,
-          [](CalibrationInput& input) -> std::unique_ptr<CalibrationModel> {
-            return std::make_unique<PressModel>(kRing, input);
-          },
-          optimize_smooth};
-}
-CalibrationKind planar_kind() {
-  return {"planar", "a tire file", kPlanarRules,
-          [](CalibrationInput& input) -> std::unique_ptr<CalibrationModel> {
-            return std::make_unique<PressModel>(kPlanar, input);
-          },
-          optimize_smooth};
-}
+CalibrationKind ring_kind() { return {"ring", "a tire file", kRingRules, read_press<kRing>, optimize_smooth}; }
+CalibrationKind planar_kind() { return {"planar", "a tire file", kPlanarRules, read_press<kPlanar>, optimize_smooth}; }
 
 }  // namespace furrow::calibrate

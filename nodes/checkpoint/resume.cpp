@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using scenario::Settings;
 
 /// "/rig/slip" as "rig.slip".
 std::string dotted(const std::string& pointer) {
@@ -146,8 +147,6 @@ json with_places_of(json document, const json& other, const scenario::Scenario& 
   }
   return document;
 }
-
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// The bed between two passes lies in the study's folder, and where that was moved, its name leads nowhere.
 Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {

@@ -28,7 +28,6 @@ namespace furrow::scenario {
 namespace {
 
 using nlohmann::json;
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kMaxKey = 256;  // bytes

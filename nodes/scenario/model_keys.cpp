@@ -65,8 +65,7 @@ bool chooses_model(const std::string& key) {
 }
 
 std::vector<std::string> set_aside_keys(json& document, const Schema& schema, const std::filesystem::path& file,
-                                        const std::vector<std::pair<std::string, std::string>>& settings,
-                                        std::span<const ModelSection> sections) {
+                                        const Settings& settings, std::span<const ModelSection> sections) {
   const bool completed = document.contains("completed_by");
   std::vector<std::string> warnings;
   for (const ModelSection& of : sections) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/fields.hpp"
@@ -16,6 +17,9 @@
 #include "tire/tire_spec.hpp"
 
 namespace furrow::scenario {
+
+/// Keys by their dotted paths with the values that they get in addition to the file, as `--set key=value` says them.
+using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// `run.*`
 struct RunOptions {

@@ -104,8 +104,8 @@ Json checked_plot(Reader& reader, const Study& study) {
 
 }  // namespace
 
-Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
-                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed, int beds) {
+Study study_of_beds(const std::filesystem::path& scenario, const std::string& name, const scenario::Settings& settings,
+                    std::uint64_t seed, int beds) {
   Study study;
   study.file = study.scenario = scenario;
   study.name = name;
@@ -163,8 +163,8 @@ Study load_study(const std::filesystem::path& name) {
   return study;
 }
 
-std::vector<std::pair<std::string, std::string>> settings_of(const Json& values) {
-  std::vector<std::pair<std::string, std::string>> settings;
+scenario::Settings settings_of(const Json& values) {
+  scenario::Settings settings;
   for (const auto& [key, value] : values.items())
     settings.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
   return settings;

@@ -96,7 +96,7 @@ ExitCode calibrate_study(const CalibrateArguments& arguments) {
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   directory.add(files);
-  launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
+  launch::say("furrow: calibration {}, results in {}\n", calibration.name, folder.string());
   const std::vector<std::string> notes = calibration.model->notes();
   for (const std::string& note : notes) print_warning(note);
   try {

@@ -129,8 +129,8 @@ ExitCode write_new(const NewArguments& arguments) {
                                  .load = arguments.load.value_or(0.0)});
   std::cout << file.string() << "\n";
   const std::string name = scenario::shell_quoted(file.string());
-  launch::say(fmt::format("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n",
-                          file.string(), name, name));
+  launch::say("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n", file.string(),
+              name, name);
   return ExitCode::done;
 }
 

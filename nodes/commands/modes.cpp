@@ -78,10 +78,7 @@ tire::ModesOptions modes_options(const ModesArguments& arguments, const tire::Mo
 tire::ModesResults compute(const tire::ModalTest& test, const tire::ModesOptions& options) {
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
-  tire::ModesResults results = test.modes(options, [&](const std::string& what, double share) {
-    if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during " + what);
-    display.show({.phase = what, .share = share});
-  });
+  tire::ModesResults results = test.modes(options, launch::shown_on(display, " during {}"));
   display.clear();
   return results;
 }
@@ -97,9 +94,9 @@ void warn_of_unstable(const tire::ModesResults& results) {
   const auto first = std::ranges::find_if(results.modes, unstable);
   if (first == results.modes.end()) return;
   print_warning(
-      fmt::format("this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are negative, "
-                  "growth rates over 2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
-                  first->order, std::ranges::count_if(results.modes, unstable), results.modes.size()));
+      "this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are negative, "
+      "growth rates over 2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
+      first->order, std::ranges::count_if(results.modes, unstable), results.modes.size());
 }
 
 ExitCode modes(const ModesArguments& arguments) {

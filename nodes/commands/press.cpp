@@ -40,19 +40,17 @@ struct PressArguments {
 
 /// An option overrides the scenario's key; the schema has checked the latter.
 tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
-  const auto require = [](bool ok, const char* key, const std::string& what) {
-    if (!ok) throw input_error("command line", key, what);
-  };
   const scenario::PressKeys& keys = scenario.press;
   const std::string on = arguments.on.value_or(keys.on);
-  require(on == "plate" || on == "cleat" || on == "profile", "--on",
-          "is '" + on + "', expected plate, cleat or profile");
+  require_option(on == "plate" || on == "cleat" || on == "profile", "--on",
+                 "is '" + on + "', expected plate, cleat or profile");
   const bool profile = on == "profile";
-  require(!profile || !arguments.profile.empty(), "--profile", "is missing, expected a CSV file for --on profile");
-  require(profile || arguments.profile.empty(), "--profile",
-          "is given for --on " + on + ", expected it for --on profile alone");
+  require_option(!profile || !arguments.profile.empty(), "--profile",
+                 "is missing, expected a CSV file for --on profile");
+  require_option(profile || arguments.profile.empty(), "--profile",
+                 "is given for --on " + on + ", expected it for --on profile alone");
   const auto of_cleat = [&](const std::optional<double>& given, const char* key) {
-    require(!given || on == "cleat", key, "is given for --on " + on + ", expected it for --on cleat alone");
+    require_option(!given || on == "cleat", key, "is given for --on " + on + ", expected it for --on cleat alone");
   };
   of_cleat(arguments.cleat_height, "--cleat-height");
   of_cleat(arguments.cleat_width, "--cleat-width");
@@ -66,8 +64,8 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   const double height = arguments.cleat_height.value_or(keys.cleat_height),
                width = arguments.cleat_width.value_or(keys.cleat_width),
                position = arguments.cleat_position.value_or(keys.cleat_position);
-  const auto within = [&require](bool is, const char* key, double value, const char* range) {
-    require(is, key, fmt::format("is {:g}, expected {}", value, range));
+  const auto within = [](bool is, const char* key, double value, const char* range) {
+    require_option(is, key, fmt::format("is {:g}, expected {}", value, range));
   };
   within(o.deflection > 0.0 && o.deflection <= 0.2, "--deflection", o.deflection, "above 0 up to 0.2 m");
   within(o.points >= 1 && o.points <= 1000, "--points", o.points, "1 to 1000");
@@ -125,18 +123,14 @@ ExitCode press(const scenario::Scenario& scenario, const PressArguments& argumen
   const tire::PressOptions options = press_options(scenario, arguments);
   const tire::PressureSchedule& pressure = scenario.tires.front()->options().pressure;
   if (pressure.varies())
-    print_warning(
-        fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0)));
+    print_warning("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0));
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   std::string ended;
   try {
     launch::ProgressDisplay display;
     const double begin = wall_clock();
-    const tire::PressResults results = test->press(options, [&](const std::string& what, double share) {
-      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during pressing");
-      display.show({.phase = what, .share = share});
-    });
+    const tire::PressResults results = test->press(options, launch::shown_on(display, " during pressing"));
     display.clear();
     nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
                                       {"version", FURROW_VERSION},

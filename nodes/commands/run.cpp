@@ -6,7 +6,6 @@
 #include <iostream>
 #include <memory>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/checkpoint.hpp"
@@ -50,10 +49,10 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
   const auto page = std::find_if(made.begin(), made.end(),
                                  [](const std::filesystem::path& file) { return file.extension() == ".html"; });
   if (page != made.end())
-    launch::say(fmt::format("furrow: open {} in a browser to see the whole run; {} plots are beside it\n",
-                            page->string(), made.size() - 1));
+    launch::say("furrow: open {} in a browser to see the whole run; {} plots are beside it\n", page->string(),
+                made.size() - 1);
   else
-    launch::say(fmt::format("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1));
+    launch::say("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1);
 }
 
 /// What can be done with a run that did not finish. Physics that failed fails again where nothing is changed.
@@ -190,7 +189,7 @@ ExitCode run_supervised(const RunArguments& arguments) {
   require_launch(scenario);
   launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: {}, results in {}\n", scenario.name, directory.path().string()));
+  launch::say("furrow: {}, results in {}\n", scenario.name, directory.path().string());
   return supervise_run(scenario, directory, arguments);
 }
 
@@ -203,15 +202,13 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
     for (const std::string& warning : *warnings) print_warning(warning);
   if (plan.finished) {
-    launch::say(fmt::format("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n",
-                            directory.path().string(), plan.ended));
-    std::cout << directory.path().string() << "\n";
+    tell_finished(directory.path(), plan.ended);
     return ExitCode::done;
   }
   require_launch(plan.scenario);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name,
-                          plan.point.manifest.time, directory.path().string()));
+  launch::say("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name, plan.point.manifest.time,
+              directory.path().string());
   return supervise_run(plan.scenario, directory, arguments);
 }
 
@@ -264,6 +261,11 @@ void require_launch(const scenario::Scenario& scenario) {
   launch::start_patience();
   launch::find_mpirun();
   launch::require_files(scenario::rank_table(scenario).size());
+}
+
+void tell_finished(const std::filesystem::path& run, double ended) {
+  launch::say("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n", run.string(), ended);
+  std::cout << run.string() << std::endl;
 }
 
 Command run_entry() {

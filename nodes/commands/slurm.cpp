@@ -3,6 +3,7 @@
 // (scripts/cluster/README.md).
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <regex>
 
@@ -13,6 +14,7 @@
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -87,13 +89,9 @@ launch::HostView host_view(const Layout& layout, int node, int tires, int cores)
   launch::HostView host;
   host.machine_cores = cores;
   std::vector<int> numbers(static_cast<std::size_t>(cores));
-  for (int i = 0; i < cores; ++i) numbers[static_cast<std::size_t>(i)] = i;
-  for (int rank = node * layout.each; rank < std::min(layout.ranks, (node + 1) * layout.each); ++rank) {
-    const Address address = rank == 0       ? Address{Role::rig, 0}
-                            : rank <= tires ? Address{Role::tire, rank - 1}
-                                            : Address{Role::terrain, rank - 1 - tires};
-    host.nodes.push_back({address, numbers, false});
-  }
+  std::iota(numbers.begin(), numbers.end(), 0);
+  for (int rank = node * layout.each; rank < std::min(layout.ranks, (node + 1) * layout.each); ++rank)
+    host.nodes.push_back({address_of(rank, tires), numbers, false});
   return host;
 }
 
@@ -146,7 +144,7 @@ std::string directives(const scenario::Scenario& scenario, const SlurmArguments&
 /// This program; of an installed tree the command that takes the build for the processor where the job runs.
 std::filesystem::path program_for_all_nodes() {
   std::error_code error;
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path own = this_program();
   const std::filesystem::path builds = own.parent_path().parent_path();  // libexec/furrow/<level>/furrow
   const std::filesystem::path command = builds.parent_path().parent_path() / "bin" / "furrow";
   const bool installed = builds.filename() == "furrow" && builds.parent_path().filename() == "libexec";

@@ -72,11 +72,6 @@ bool may_be_own(const fs::path& folder) {
   return bare || has_run_list(folder);
 }
 
-bool stands(const fs::path& at) {
-  std::error_code error;
-  return fs::exists(fs::symlink_status(at, error));
-}
-
 }  // namespace
 
 RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite, const fs::path& reads) {

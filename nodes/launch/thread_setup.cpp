@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -210,20 +209,16 @@ void apply(const ThreadPlan& plan) {
   }
 }
 
-std::vector<std::string> passive_environment() { return {"OMP_WAIT_POLICY=passive", "OPENBLAS_NUM_THREADS=1"}; }
+void set_passive_environment() {
+  setenv("OMP_WAIT_POLICY", "passive", 0);
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+}
 
 void wait_passively(char** argv) {
   FURROW_ASSERT(argv != nullptr && argv[0] != nullptr, "argv");
   if (std::getenv("OMP_WAIT_POLICY")) return;
-  for (const std::string& pair : passive_environment()) {
-    const std::size_t equals = pair.find('=');
-    setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 0);
-  }
-  char path[PATH_MAX];
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  if (length <= 0) return;  // no /proc: the threads spin, which costs time but no result
-  path[length] = '\0';
-  execv(path, argv);
+  set_passive_environment();
+  execv(this_program().c_str(), argv);  // without /proc the threads spin, which costs time but no result
 }
 
 }  // namespace furrow::launch

@@ -13,9 +13,9 @@ struct ContactStatement {
   StepHeader header;
   StatedContact contact;
 };
-void visit_fields(auto&& visit, FieldsOf<ContactStatement> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"contact", ""}, s.contact);
+void visit_fields(FieldsOf<ContactStatement> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.contact, Field{"contact", ""});
 }
 
 }  // namespace furrow

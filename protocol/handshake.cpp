@@ -8,9 +8,8 @@ namespace {
 
 std::vector<Address> all_nodes(int tire_count, int terrain_ranks) {
   FURROW_ASSERT(tire_count >= 0 && terrain_ranks > 0, tire_count, terrain_ranks);
-  std::vector<Address> nodes{{Role::rig, 0}};
-  for (int k = 0; k < tire_count; ++k) nodes.push_back({Role::tire, k});
-  for (int k = 0; k < terrain_ranks; ++k) nodes.push_back({Role::terrain, k});
+  std::vector<Address> nodes;
+  for (int k = 0; k < 1 + tire_count + terrain_ranks; ++k) nodes.push_back(address_of(k, tire_count));
   return nodes;
 }
 

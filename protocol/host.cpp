@@ -25,4 +25,9 @@ std::vector<int> allowed_cores() {
   return cores.empty() ? std::vector<int>{0} : cores;
 }
 
+std::filesystem::path this_program() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error);
+}
+
 }  // namespace furrow

@@ -1,6 +1,7 @@
 // What a node needs to know of the machine that it shares with other nodes.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "protocol/messages.hpp"
@@ -16,5 +17,8 @@ struct HostNode {
 
 /// Cores that this process may use; logical CPUs that share a core count once. Never empty.
 std::vector<int> allowed_cores();
+
+/// The file of the program that runs here; empty where the system does not say.
+std::filesystem::path this_program();
 
 }  // namespace furrow

@@ -70,13 +70,6 @@ class QueueWire final : public Wire {
     ++box.arrivals;
     box.changed.notify_all();
   }
-  template <class T>
-  static std::optional<T> pop(std::deque<T>& queue) {
-    if (queue.empty()) return std::nullopt;
-    std::optional<T> first(std::move(queue.front()));
-    queue.pop_front();
-    return first;
-  }
 
   std::shared_ptr<std::vector<Mailbox>> boxes_;
   int self_;
@@ -90,12 +83,7 @@ std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_coun
   const int nodes = 1 + tire_count + terrain_ranks;
   auto boxes = std::make_shared<std::vector<Mailbox>>(nodes);
   std::vector<HostNode> host;
-  for (int i = 0; i < nodes; ++i) {
-    const Address address = i == 0            ? Address{Role::rig, 0}
-                            : i <= tire_count ? Address{Role::tire, i - 1}
-                                              : Address{Role::terrain, i - 1 - tire_count};
-    host.push_back({address, allowed_cores(), false});
-  }
+  for (int i = 0; i < nodes; ++i) host.push_back({address_of(i, tire_count), allowed_cores(), false});
   std::vector<std::unique_ptr<Transport>> transports;
   for (int i = 0; i < nodes; ++i) {
     std::vector<HostNode> seen = host;

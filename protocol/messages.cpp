@@ -1,17 +1,22 @@
 #include "protocol/messages.hpp"
 
+#include <iterator>
+
+#include "protocol/core/assert.hpp"
+
 namespace furrow {
 
 std::string to_string(Role role) {
-  switch (role) {
-    case Role::rig:
-      return "rig";
-    case Role::tire:
-      return "tire";
-    case Role::terrain:
-      return "terrain";
-  }
-  return "unknown";
+  constexpr const char* kNames[] = {"rig", "tire", "terrain"};
+  const auto place = static_cast<std::size_t>(role);
+  return place < std::size(kNames) ? kNames[place] : "unknown";
+}
+
+Address address_of(int node, int tire_count) {
+  FURROW_ASSERT(node >= 0 && tire_count >= 0, node, tire_count);
+  if (node == 0) return {Role::rig, 0};
+  if (node <= tire_count) return {Role::tire, node - 1};
+  return {Role::terrain, node - 1 - tire_count};
 }
 
 std::string to_string(const Address& address, int terrain_ranks) {
@@ -21,35 +26,12 @@ std::string to_string(const Address& address, int terrain_ranks) {
 }
 
 std::string to_string(MessageKind kind) {
-  switch (kind) {
-    case MessageKind::node_card:
-      return "node card";
-    case MessageKind::surface_setup:
-      return "surface setup";
-    case MessageKind::terrain_setup:
-      return "terrain setup";
-    case MessageKind::rim_motion:
-      return "rim motion";
-    case MessageKind::spindle_report:
-      return "spindle report";
-    case MessageKind::surface_motion:
-      return "surface motion";
-    case MessageKind::terrain_forces:
-      return "terrain forces";
-    case MessageKind::terrain_report:
-      return "terrain report";
-    case MessageKind::final_report:
-      return "final report";
-    case MessageKind::control:
-      return "control";
-    case MessageKind::run_folder:
-      return "run folder";
-    case MessageKind::checkpoint_part:
-      return "part of a checkpoint";
-    case MessageKind::group:
-      return "its share";
-  }
-  return "unknown kind";
+  constexpr const char* kNames[] = {"node card",      "surface setup",  "terrain setup",  "rim motion",
+                                    "spindle report", "surface motion", "terrain forces", "terrain report",
+                                    "final report",   "control",        "run folder",     "part of a checkpoint",
+                                    "its share"};
+  const auto place = static_cast<std::size_t>(kind) - 1;
+  return place < std::size(kNames) ? kNames[place] : "unknown kind";
 }
 
 }  // namespace furrow

@@ -35,10 +35,12 @@ struct Address {
   std::int32_t index = 0;  // which tire; which rank of a terrain, 0 being its leader; 0 for the rig
   bool operator==(const Address&) const = default;
 };
-void visit_fields(auto&& visit, FieldsOf<Address> auto& s) {
-  visit(Field{"role", ""}, s.role);
-  visit(Field{"index"}, s.index);
+void visit_fields(FieldsOf<Address> auto& s, auto&& visit) {
+  visit(s.role, Field{"role", ""});
+  visit(s.index, Field{"index"});
 }
+/// The node of this number: the rig is 0, then come the tires, then the ranks of the terrain.
+Address address_of(int node, int tire_count);
 /// "rig", "tire 0", "terrain", or "terrain 0" where it has several ranks.
 std::string to_string(const Address& address, int terrain_ranks = 1);
 
@@ -82,25 +84,25 @@ struct NodeCard {
   double tire_reach = 0.0;   // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
   std::int64_t size = 0;     // grains or coordinates, for the reports
 };
-void visit_fields(auto&& visit, FieldsOf<NodeCard> auto& s) {
-  visit(Field{"protocol_version"}, s.protocol_version);
-  visit(Field{"self", ""}, s.self);
-  visit(Field{"node_kind", ""}, s.node_kind);
-  visit(Field{"scenario_digest", ""}, s.scenario_digest);
-  visit(Field{"step", "s"}, s.step);
-  visit(Field{"steps"}, s.steps);
-  visit(Field{"from_step"}, s.from_step);
-  visit(Field{"substeps"}, s.substeps);
-  visit(Field{"wheel_count"}, s.wheel_count);
-  visit(Field{"tire_count"}, s.tire_count);
-  visit(Field{"threads"}, s.threads);
-  visit(Field{"pid"}, s.pid);
-  visit(Field{"host", ""}, s.host);
-  visit(Field{"tire_mass", ""}, s.tire_mass);
-  visit(Field{"tire_radius", "m"}, s.tire_radius);
-  visit(Field{"tire_width", "m"}, s.tire_width);
-  visit(Field{"tire_reach", "m"}, s.tire_reach);
-  visit(Field{"size"}, s.size);
+void visit_fields(FieldsOf<NodeCard> auto& s, auto&& visit) {
+  visit(s.protocol_version, Field{"protocol_version"});
+  visit(s.self, Field{"self", ""});
+  visit(s.node_kind, Field{"node_kind", ""});
+  visit(s.scenario_digest, Field{"scenario_digest", ""});
+  visit(s.step, Field{"step", "s"});
+  visit(s.steps, Field{"steps"});
+  visit(s.from_step, Field{"from_step"});
+  visit(s.substeps, Field{"substeps"});
+  visit(s.wheel_count, Field{"wheel_count"});
+  visit(s.tire_count, Field{"tire_count"});
+  visit(s.threads, Field{"threads"});
+  visit(s.pid, Field{"pid"});
+  visit(s.host, Field{"host", ""});
+  visit(s.tire_mass, Field{"tire_mass", ""});
+  visit(s.tire_radius, Field{"tire_radius", "m"});
+  visit(s.tire_width, Field{"tire_width", "m"});
+  visit(s.tire_reach, Field{"tire_reach", "m"});
+  visit(s.size, Field{"size"});
 }
 
 /// tire k → terrain, once: connectivity and material of its contact surface.
@@ -109,9 +111,9 @@ struct SurfaceSetup {
   SurfaceMesh mesh;
   ContactMaterial material;
 };
-void visit_fields(auto&& visit, FieldsOf<SurfaceSetup> auto& s) {
-  visit(Field{"mesh", ""}, s.mesh);
-  visit(Field{"material", ""}, s.material);
+void visit_fields(FieldsOf<SurfaceSetup> auto& s, auto&& visit) {
+  visit(s.mesh, Field{"mesh", ""});
+  visit(s.material, Field{"material", ""});
 }
 
 /// terrain → rig, once, after settling.
@@ -123,12 +125,12 @@ struct TerrainSetup {
   double settle_wall_s = 0.0;
   std::int64_t grains = 0;
 };
-void visit_fields(auto&& visit, FieldsOf<TerrainSetup> auto& s) {
-  visit(Field{"top_height", "m"}, s.top_height);
-  visit(Field{"mean_height", "m"}, s.mean_height);
-  visit(Field{"floor_height", "m"}, s.floor_height);
-  visit(Field{"settle_wall_s", "s"}, s.settle_wall_s);
-  visit(Field{"grains"}, s.grains);
+void visit_fields(FieldsOf<TerrainSetup> auto& s, auto&& visit) {
+  visit(s.top_height, Field{"top_height", "m"});
+  visit(s.mean_height, Field{"mean_height", "m"});
+  visit(s.floor_height, Field{"floor_height", "m"});
+  visit(s.settle_wall_s, Field{"settle_wall_s", "s"});
+  visit(s.grains, Field{"grains"});
 }
 
 /// Header that every message of the run loop carries, checked on receipt.
@@ -136,9 +138,9 @@ struct StepHeader {
   std::int64_t step = 0;  // n
   double time = 0.0;      // t_n, s
 };
-void visit_fields(auto&& visit, FieldsOf<StepHeader> auto& s) {
-  visit(Field{"step"}, s.step);
-  visit(Field{"time", "s"}, s.time);
+void visit_fields(FieldsOf<StepHeader> auto& s, auto&& visit) {
+  visit(s.step, Field{"step"});
+  visit(s.time, Field{"time", "s"});
 }
 
 /// What all nodes do at the same step, once the interval that follows the synchronization they all know it by is done.
@@ -158,11 +160,11 @@ struct RimMotion {
   Order order = Order::go_on;      // due at synchronization n + 1
   std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
 };
-void visit_fields(auto&& visit, FieldsOf<RimMotion> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"rim", ""}, s.rim);
-  visit(Field{"order", ""}, s.order);
-  visit(Field{"ends_at"}, s.ends_at);
+void visit_fields(FieldsOf<RimMotion> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.rim, Field{"rim", ""});
+  visit(s.order, Field{"order", ""});
+  visit(s.ends_at, Field{"ends_at"});
 }
 
 /// tire k → rig.
@@ -188,25 +190,25 @@ struct SpindleReport {
   double ledger = 0.0;                // |Σ| of the differences when last settled, N s
   double ledger_largest = 0.0;        // until now, N s
 };
-void visit_fields(auto&& visit, FieldsOf<SpindleReport> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"wrench", ""}, s.wrench);
-  visit(Field{"spindle", ""}, s.spindle);
-  visit(Field{"lowest_point", "m"}, s.lowest_point);
-  visit_fields(visit, s.diagnostics);  // under their own names
-  visit(Field{"impulse_received", "N s"}, s.impulse_received);
-  visit(Field{"impulse_received_abs", "N s"}, s.impulse_received_abs);
-  visit(Field{"spindle_impulse", "N s"}, s.spindle_impulse);
-  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
-  visit(Field{"terrain_work", "J"}, s.terrain_work);
-  visit(Field{"rim_work", "J"}, s.rim_work);
-  visit(Field{"newton_iterations"}, s.newton_iterations);
-  visit(Field{"factorizations"}, s.factorizations);
-  visit(Field{"residual"}, s.residual);
-  visit(Field{"contact_tangent", ""}, s.contact_tangent);
-  visit(Field{"impulse_ahead", "N s"}, s.impulse_ahead);
-  visit(Field{"ledger", "N s"}, s.ledger);
-  visit(Field{"ledger_largest", "N s"}, s.ledger_largest);
+void visit_fields(FieldsOf<SpindleReport> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.wrench, Field{"wrench", ""});
+  visit(s.spindle, Field{"spindle", ""});
+  visit(s.lowest_point, Field{"lowest_point", "m"});
+  visit_fields(s.diagnostics, visit);  // under their own names
+  visit(s.impulse_received, Field{"impulse_received", "N s"});
+  visit(s.impulse_received_abs, Field{"impulse_received_abs", "N s"});
+  visit(s.spindle_impulse, Field{"spindle_impulse", "N s"});
+  visit(s.gravity_impulse, Field{"gravity_impulse", "N s"});
+  visit(s.terrain_work, Field{"terrain_work", "J"});
+  visit(s.rim_work, Field{"rim_work", "J"});
+  visit(s.newton_iterations, Field{"newton_iterations"});
+  visit(s.factorizations, Field{"factorizations"});
+  visit(s.residual, Field{"residual"});
+  visit(s.contact_tangent, Field{"contact_tangent", ""});
+  visit(s.impulse_ahead, Field{"impulse_ahead", "N s"});
+  visit(s.ledger, Field{"ledger", "N s"});
+  visit(s.ledger_largest, Field{"ledger_largest", "N s"});
 }
 
 struct SurfaceMotion {
@@ -216,11 +218,11 @@ struct SurfaceMotion {
   Order order = Order::go_on;      // due now: the terrain gets it through the tires
   std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
 };
-void visit_fields(auto&& visit, FieldsOf<SurfaceMotion> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"surface", ""}, s.surface);
-  visit(Field{"order", ""}, s.order);
-  visit(Field{"ends_at"}, s.ends_at);
+void visit_fields(FieldsOf<SurfaceMotion> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.surface, Field{"surface", ""});
+  visit(s.order, Field{"order", ""});
+  visit(s.ends_at, Field{"ends_at"});
 }
 
 /// terrain → tire k.
@@ -229,9 +231,9 @@ struct TerrainForces {
   StepHeader header;
   NodalForces forces;
 };
-void visit_fields(auto&& visit, FieldsOf<TerrainForces> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"forces", ""}, s.forces);
+void visit_fields(FieldsOf<TerrainForces> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.forces, Field{"forces", ""});
 }
 
 /// terrain → rig.
@@ -241,10 +243,10 @@ struct TerrainReport {
   TerrainState state;
   std::vector<ContactSums> contact;  // one per tire
 };
-void visit_fields(auto&& visit, FieldsOf<TerrainReport> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"state", ""}, s.state);
-  visit(Field{"contact", ""}, s.contact);
+void visit_fields(FieldsOf<TerrainReport> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.state, Field{"state", ""});
+  visit(s.contact, Field{"contact", ""});
 }
 
 /// rig → every node, before the handshake of a program's run: the folder that takes the results.
@@ -252,7 +254,7 @@ struct RunFolder {
   static constexpr MessageKind kKind = MessageKind::run_folder;
   std::string path;
 };
-void visit_fields(auto&& visit, FieldsOf<RunFolder> auto& s) { visit(Field{"path", ""}, s.path); }
+void visit_fields(FieldsOf<RunFolder> auto& s, auto&& visit) { visit(s.path, Field{"path", ""}); }
 
 /// Every node → rig once it has written its part of a checkpoint, or failed to.
 struct CheckpointPart {
@@ -262,11 +264,11 @@ struct CheckpointPart {
   std::string checksum;  // of the state it holds
   std::string problem;   // why it could not be written; empty: it was
 };
-void visit_fields(auto&& visit, FieldsOf<CheckpointPart> auto& s) {
-  visit(Field{"step"}, s.step);
-  visit(Field{"file", ""}, s.file);
-  visit(Field{"checksum", ""}, s.checksum);
-  visit(Field{"problem", ""}, s.problem);
+void visit_fields(FieldsOf<CheckpointPart> auto& s, auto&& visit) {
+  visit(s.step, Field{"step"});
+  visit(s.file, Field{"file", ""});
+  visit(s.checksum, Field{"checksum", ""});
+  visit(s.problem, Field{"problem", ""});
 }
 
 /// Every node → rig at the end.
@@ -282,19 +284,19 @@ struct FinalReport {
   std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
   HeightField height_before, height_after;  // terrain
 };
-void visit_fields(auto&& visit, FieldsOf<FinalReport> auto& s) {
-  visit(Field{"self", ""}, s.self);
-  visit(Field{"state_hash"}, s.state_hash);
-  visit(Field{"cpu_s", "s"}, s.cpu_s);
-  visit(Field{"compute_s", "s"}, s.compute_s);
-  visit(Field{"communicate_s", "s"}, s.communicate_s);
-  visit(Field{"wait_s", "s"}, s.wait_s);
-  visit(Field{"threads"}, s.threads);
-  visit(Field{"grains"}, s.grains);
-  visit(Field{"grains_begin"}, s.grains_begin);
-  visit(Field{"profile", "s"}, s.profile);
-  visit(Field{"height_before", ""}, s.height_before);
-  visit(Field{"height_after", ""}, s.height_after);
+void visit_fields(FieldsOf<FinalReport> auto& s, auto&& visit) {
+  visit(s.self, Field{"self", ""});
+  visit(s.state_hash, Field{"state_hash"});
+  visit(s.cpu_s, Field{"cpu_s", "s"});
+  visit(s.compute_s, Field{"compute_s", "s"});
+  visit(s.communicate_s, Field{"communicate_s", "s"});
+  visit(s.wait_s, Field{"wait_s", "s"});
+  visit(s.threads, Field{"threads"});
+  visit(s.grains, Field{"grains"});
+  visit(s.grains_begin, Field{"grains_begin"});
+  visit(s.profile, Field{"profile", "s"});
+  visit(s.height_before, Field{"height_before", ""});
+  visit(s.height_after, Field{"height_after", ""});
 }
 
 }  // namespace furrow

@@ -17,13 +17,6 @@
 namespace furrow {
 namespace {
 
-Address address_of(int rank, int tires) {
-  FURROW_ASSERT(rank >= 0 && tires >= 0, rank, tires);
-  if (rank == 0) return {Role::rig, 0};
-  if (rank <= tires) return {Role::tire, rank - 1};
-  return {Role::terrain, rank - 1 - tires};
-}
-
 std::vector<int> gather(const Communicator& comm, const std::vector<int>& own, std::vector<int>& counts) {
   int count = static_cast<int>(own.size());
   counts.resize(comm.size());
@@ -61,13 +54,13 @@ std::string launcher_text(const std::vector<std::string>& names) {
 Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& found) {
   FURROW_ASSERT(needed > 1, needed);
   std::string text = fmt::format(
-      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but {} were started; "
-      "start it with mpirun -n {} or srun -n {}",
+      "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but {} were started; start it with mpirun -n {} "
+      "or srun -n {}",
       needed, 1, tires, terrain_ranks, world_size(), needed, needed);
   if (world_size() == 1 && !found.empty())
     text = fmt::format(
-        "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but was started as a single "
-        "one: {}, with one start mpirun -n {}",
+        "this scenario needs {} ranks ({} rig, {} tire(s), {} terrain), but was started as a single one: {}, with one "
+        "start mpirun -n {}",
         needed, 1, tires, terrain_ranks, found, needed);
   return Error(ExitCode::bad_input, text);
 }

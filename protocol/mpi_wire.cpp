@@ -122,19 +122,10 @@ int MpiWire::unsent_to() const {
 
 std::optional<Bytes> MpiWire::take(int from, MessageKind kind) {
   FURROW_ASSERT(in_range(from, nodes_), from, nodes_);
-  const auto found = arrived_.find({from, static_cast<int>(kind)});
-  if (found == arrived_.end() || found->second.empty()) return std::nullopt;
-  std::optional<Bytes> first(std::move(found->second.front()));
-  found->second.pop_front();
-  return first;
+  return pop(arrived_[{from, static_cast<int>(kind)}]);
 }
 
-std::optional<ControlBytes> MpiWire::take_control() {
-  if (control_arrived_.empty()) return std::nullopt;
-  std::optional<ControlBytes> first(std::move(control_arrived_.front()));
-  control_arrived_.pop_front();
-  return first;
-}
+std::optional<ControlBytes> MpiWire::take_control() { return pop(control_arrived_); }
 
 void MpiWire::idle(int polls, double waited) {
   FURROW_ASSERT(polls >= 0 && waited >= 0.0, polls, waited);

@@ -1,6 +1,5 @@
 #include "protocol/peer_watch.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
@@ -24,13 +23,6 @@ PeerWatch::PeerWatch(Wire& wire, int tire_count)
       tire_count_(tire_count),
       peers_(wire.node_count()),
       last_heartbeat_(-std::numeric_limits<double>::infinity()) {}
-
-Address PeerWatch::address(int node) const {
-  FURROW_ASSERT(node >= 0, node);
-  if (node == 0) return {Role::rig, 0};
-  if (node <= tire_count_) return {Role::tire, node - 1};
-  return {Role::terrain, node - 1 - tire_count_};
-}
 
 std::string PeerWatch::name(int node) const {
   return to_string(address(node), static_cast<int>(peers_.size()) - 1 - tire_count_);

@@ -43,7 +43,7 @@ class PeerWatch {
   /// After this the node is about to fail: it does not report that its wait has ended.
   Error lost(int from, const std::string& what, double timeout);
 
-  Address address(int node) const;
+  Address address(int node) const { return address_of(node, tire_count_); }
   /// For people: "tire 0", "terrain 1".
   std::string name(int node) const;
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "protocol/messages.hpp"
@@ -16,6 +18,15 @@ struct ControlBytes {
   int from = 0;
   Bytes payload;
 };
+
+/// The first of a queue, which loses it.
+template <class T>
+std::optional<T> pop(std::deque<T>& queue) {
+  if (queue.empty()) return std::nullopt;
+  std::optional<T> first(std::move(queue.front()));
+  queue.pop_front();
+  return first;
+}
 
 class Wire {
  public:

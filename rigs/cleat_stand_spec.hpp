@@ -19,22 +19,22 @@ struct CleatStandOptions : RailOptions {
   double hold_axle_from = 0.5;  // until then the wheel is let down, from then on its axle keeps its height, s
   double carrier_mass = -1.0;   // wheel carrier with ballast, kg; in place of the load
 };
-void visit_fields(auto&& visit, FieldsOf<CleatStandOptions> auto& s) {
+void visit_fields(FieldsOf<CleatStandOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(keys::kSpeed, s.speed);
-  visit(keys::kRamp, s.ramp);
-  visit(keys::kMoveFrom, s.move_from);
-  visit(key("hold_axle_from", "s", from(0, 1e5),
+  visit(s.speed, keys::kSpeed);
+  visit(s.ramp, keys::kRamp);
+  visit(s.move_from, keys::kMoveFrom);
+  visit(s.hold_axle_from,
+        key("hold_axle_from", "s", from(0, 1e5),
             "Until then the damper lets the wheel of a cleat test stand down; from then on a stop holds its axle at "
-            "the height where it stands on its load."),
-        s.hold_axle_from);
-  visit(keys::kLoweringSpeed, s.lowering_speed);
-  visit(keys::kStart, s.start);
-  visit(keys::kLoad, s.load);
-  visit(keys::kCarrierMass, s.carrier_mass);
-  visit(keys::kRimMass, s.rim_mass);
-  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
-  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
+            "the height where it stands on its load."));
+  visit(s.lowering_speed, keys::kLoweringSpeed);
+  visit(s.start, keys::kStart);
+  visit(s.load, keys::kLoad);
+  visit(s.carrier_mass, keys::kCarrierMass);
+  visit(s.rim_mass, keys::kRimMass);
+  visit(s.rim_spin_inertia, keys::kRimSpinInertia);
+  visit(s.rim_diametral_inertia, keys::kRimDiametralInertia);
 }
 
 /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key

@@ -43,14 +43,14 @@ struct DrawbarRow {
   double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
   double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
 };
-void visit_fields(auto&& visit, FieldsOf<DrawbarRow> auto& r) {
+void visit_fields(FieldsOf<DrawbarRow> auto& r, auto&& visit) {
   using namespace column;
-  visit(mean("drawbar_pull_N", "N").following("slip"), r.pull);
-  visit(mean("drawbar_pull_raw_N", "N").following("energy_error_J"), r.pull_raw);
-  visit(mean("damper_force_N", "N").following("tire_momentum_travel_kg_m_per_s"), r.damper_force);
-  visit(cumulative("pull_work_J", "J").following("spindle_work_J"), r.pull_work);
-  visit(derived("tractive_efficiency"), r.tractive_efficiency);
-  visit(derived("motion_resistance_coefficient"), r.motion_resistance);
+  visit(r.pull, mean("drawbar_pull_N", "N").following("slip"));
+  visit(r.pull_raw, mean("drawbar_pull_raw_N", "N").following("energy_error_J"));
+  visit(r.damper_force, mean("damper_force_N", "N").following("tire_momentum_travel_kg_m_per_s"));
+  visit(r.pull_work, cumulative("pull_work_J", "J").following("spindle_work_J"));
+  visit(r.tractive_efficiency, derived("tractive_efficiency"));
+  visit(r.motion_resistance, derived("motion_resistance_coefficient"));
 }
 
 class DrawbarRig final : public AssembledRig {

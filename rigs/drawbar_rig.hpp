@@ -35,54 +35,51 @@ struct DrawbarRigOptions : RailOptions {
   Vec3 gravity = standard_gravity();  // m/s²
 };
 
-void visit_fields(auto&& visit, FieldsOf<DrawbarRigOptions> auto& s) {
+void visit_fields(FieldsOf<DrawbarRigOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("mode", "", words("fixed_angular_speed fixed_speed free_rolling"),
+  visit(s.mode,
+        key("mode", "", words("fixed_angular_speed fixed_speed free_rolling"),
             "What is imposed. fixed_angular_speed: the carriage moves at v = angular_speed · R · (1 − slip). "
             "fixed_speed: the wheel turns at ω = speed / (R · (1 − slip)). free_rolling: the speed is imposed, and "
-            "there is no spindle torque."),
-        s.mode);
-  visit(key("slip", "-", from(-10, 1),
+            "there is no spindle torque."));
+  visit(s.slip,
+        key("slip", "-", from(-10, 1),
             "Slip 1 − v/(ω R), R the undeformed tire radius. It is below 1 in mode fixed_speed. A braking slip of −0.2 "
-            "by the definition ω R/v − 1 is −0.25 here."),
-        s.slip);
-  visit(key("angular_speed", "rad/s", from(0, 1000).usual(0.1, 100), "Spin of the wheel, mode fixed_angular_speed."),
-        s.angular_speed);
-  visit(keys::kSpeed, s.speed);
-  visit(keys::kRamp, s.ramp);
-  visit(keys::kMoveFrom, s.move_from);
-  visit(key("touchdown_damping", "N s/m", from(0, 1e7).or_null(),
+            "by the definition ω R/v − 1 is −0.25 here."));
+  visit(s.angular_speed,
+        key("angular_speed", "rad/s", from(0, 1000).usual(0.1, 100), "Spin of the wheel, mode fixed_angular_speed."));
+  visit(s.speed, keys::kSpeed);
+  visit(s.ramp, keys::kRamp);
+  visit(s.move_from, keys::kMoveFrom);
+  visit(s.touchdown_damping,
+        key("touchdown_damping", "N s/m", from(0, 1e7).or_null(),
             "Coefficient of the vertical damper on the slider while the tire touches down. null: the load over "
-            "lowering_speed."),
-        s.touchdown_damping);
-  visit(keys::kTouchdownTime, s.touchdown_time);
-  visit(keys::kLoweringSpeed, s.lowering_speed);
-  visit(key("toe_angle", "rad", from(-1.5, 1.5).usual(-0.5, 0.5), "Angle between wheel plane and travel, about +z."),
-        s.toe_angle);
-  visit(key("toe_time", "s", from(0, 1e5),
+            "lowering_speed."));
+  visit(s.touchdown_time, keys::kTouchdownTime);
+  visit(s.lowering_speed, keys::kLoweringSpeed);
+  visit(s.toe_angle,
+        key("toe_angle", "rad", from(-1.5, 1.5).usual(-0.5, 0.5), "Angle between wheel plane and travel, about +z."));
+  visit(s.toe_time,
+        key("toe_time", "s", from(0, 1e5),
             "When the wheel turns from straight ahead to toe_angle: a step of the slip angle. 0: it has toe_angle from "
-            "the start."),
-        s.toe_time);
-  visit(key("toe_ramp", "s", above(0).to(1e4), "How long the turn at toe_time takes; it is smooth."), s.toe_ramp);
-  visit(key("camber_angle", "rad", from(-0.7, 0.7).usual(-0.3, 0.3),
-            "Inclination of the wheel about its forward axis. A positive one leans the top to the right of travel."),
-        s.camber_angle);
-  visit(key("travel_sign", "", shaped(R"({"type": "integer", "enum": [1, -1]})"),
-            "Direction of travel. 1: along +x. -1: along −x."),
-        s.travel_sign);
-  visit(keys::kStart, s.start);
-  visit(Field{"lateral", "m"}, s.lateral);
-  visit(keys::kLoad, s.load);
-  visit(keys::kCarrierMass, s.carrier_mass);
-  visit(
-      key("chassis_mass", "kg", above(0).to(1e6), "Mass that the rail carries, not the soil: the chassis of the rig."),
-      s.chassis_mass);
-  visit(key("set_toe_mass", "kg", above(0).to(1e6),
-            "Mass that the rail carries, not the soil: the part that sets the toe angle."),
-        s.set_toe_mass);
-  visit(keys::kRimMass, s.rim_mass);
-  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
-  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
+            "the start."));
+  visit(s.toe_ramp, key("toe_ramp", "s", above(0).to(1e4), "How long the turn at toe_time takes; it is smooth."));
+  visit(s.camber_angle,
+        key("camber_angle", "rad", from(-0.7, 0.7).usual(-0.3, 0.3),
+            "Inclination of the wheel about its forward axis. A positive one leans the top to the right of travel."));
+  visit(s.travel_sign, key("travel_sign", "", shaped(R"({"type": "integer", "enum": [1, -1]})"),
+                           "Direction of travel. 1: along +x. -1: along −x."));
+  visit(s.start, keys::kStart);
+  visit(s.lateral, Field{"lateral", "m"});
+  visit(s.load, keys::kLoad);
+  visit(s.carrier_mass, keys::kCarrierMass);
+  visit(s.chassis_mass, key("chassis_mass", "kg", above(0).to(1e6),
+                            "Mass that the rail carries, not the soil: the chassis of the rig."));
+  visit(s.set_toe_mass, key("set_toe_mass", "kg", above(0).to(1e6),
+                            "Mass that the rail carries, not the soil: the part that sets the toe angle."));
+  visit(s.rim_mass, keys::kRimMass);
+  visit(s.rim_spin_inertia, keys::kRimSpinInertia);
+  visit(s.rim_diametral_inertia, keys::kRimDiametralInertia);
 }
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options);

@@ -29,41 +29,40 @@ struct HalfCarOptions : QuarterCarOptions {
   double rear_suspension_stiffness = -1.0;  // k of the rear, N/m
   double rear_suspension_damping = -1.0;    // c of the rear, N s/m
 };
-void visit_fields(auto&& visit, FieldsOf<HalfCarOptions> auto& s) {
+void visit_fields(FieldsOf<HalfCarOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(keys::kSpeed, s.speed);
-  visit(keys::kRamp, s.ramp);
-  visit(keys::kMoveFrom, s.move_from);
-  visit(keys::kTouchdownTime, s.touchdown_time);
-  visit(keys::kLoweringSpeed, s.lowering_speed);
-  visit(keys::kStart, s.start);
-  visit(key("wheelbase", "m", above(0).to(1e3).usual(0.1, 20),
-            "Distance of the rear axle of a half car behind its front axle."),
-        s.wheelbase);
-  visit(key("front_share", "-", above(0).below(1).usual(0.2, 0.8),
+  visit(s.speed, keys::kSpeed);
+  visit(s.ramp, keys::kRamp);
+  visit(s.move_from, keys::kMoveFrom);
+  visit(s.touchdown_time, keys::kTouchdownTime);
+  visit(s.lowering_speed, keys::kLoweringSpeed);
+  visit(s.start, keys::kStart);
+  visit(s.wheelbase, key("wheelbase", "m", above(0).to(1e3).usual(0.1, 20),
+                         "Distance of the rear axle of a half car behind its front axle."));
+  visit(s.front_share,
+        key("front_share", "-", above(0).below(1).usual(0.2, 0.8),
             "Share of a half car's body weight on its front wheel at rest: distance of the rear axle from the body's "
-            "centre over the wheelbase."),
-        s.front_share);
-  visit(keys::kLoad, s.load);
-  visit(keys::kBodyMass, s.body_mass);
-  visit(key("pitch_inertia", "kg m²", above(0).to(1e8).usual(0.1, 1e5).or_null(),
+            "centre over the wheelbase."));
+  visit(s.load, keys::kLoad);
+  visit(s.body_mass, keys::kBodyMass);
+  visit(s.pitch_inertia,
+        key("pitch_inertia", "kg m²", above(0).to(1e8).usual(0.1, 1e5).or_null(),
             "Moment of inertia of a half car's body about the lateral axis through its centre. null: body_mass times "
-            "the distances of both axles from the centre, by which front and rear do not feel each other."),
-        s.pitch_inertia);
-  visit(keys::kUnsprungMass, s.unsprung_mass);
-  visit(keys::kSuspensionStiffness, s.suspension_stiffness);
-  visit(keys::kSuspensionDamping, s.suspension_damping);
-  visit(key("rear_suspension_stiffness", "N/m", from(0, 1e9).usual(10, 1e6).or_null(),
+            "the distances of both axles from the centre, by which front and rear do not feel each other."));
+  visit(s.unsprung_mass, keys::kUnsprungMass);
+  visit(s.suspension_stiffness, keys::kSuspensionStiffness);
+  visit(s.suspension_damping, keys::kSuspensionDamping);
+  visit(s.rear_suspension_stiffness,
+        key("rear_suspension_stiffness", "N/m", from(0, 1e9).usual(10, 1e6).or_null(),
             "Spring between body and rear wheel of a half car. null: suspension_stiffness in proportion to the body "
-            "weights that the wheels bear."),
-        s.rear_suspension_stiffness);
-  visit(key("rear_suspension_damping", "N s/m", from(0, 1e8).usual(0.1, 1e5).or_null(),
+            "weights that the wheels bear."));
+  visit(s.rear_suspension_damping,
+        key("rear_suspension_damping", "N s/m", from(0, 1e8).usual(0.1, 1e5).or_null(),
             "Damper between body and rear wheel of a half car. null: suspension_damping in proportion to the body "
-            "weights that the wheels bear."),
-        s.rear_suspension_damping);
-  visit(keys::kRimMass, s.rim_mass);
-  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
-  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
+            "weights that the wheels bear."));
+  visit(s.rim_mass, keys::kRimMass);
+  visit(s.rim_spin_inertia, keys::kRimSpinInertia);
+  visit(s.rim_diametral_inertia, keys::kRimDiametralInertia);
 }
 
 /// The body's own table (subject `body`).
@@ -74,13 +73,13 @@ struct HalfCarBodyRow {
   double pitch_acceleration = 0.0;  // rad/s²
   double drive_force = 0.0;         // of what keeps the trolley at its speed, N
 };
-void visit_fields(auto&& visit, FieldsOf<HalfCarBodyRow> auto& r) {
+void visit_fields(FieldsOf<HalfCarBodyRow> auto& r, auto&& visit) {
   using namespace column;
-  visit(instant("body_height_m", "m"), r.height);
-  visit(mean("body_acceleration_m_per_s2", "m/s²"), r.acceleration);
-  visit(instant("pitch_rad", "rad"), r.pitch);
-  visit(mean("pitch_acceleration_rad_per_s2", "rad/s²"), r.pitch_acceleration);
-  visit(mean("trolley_force_N", "N"), r.drive_force);
+  visit(r.height, instant("body_height_m", "m"));
+  visit(r.acceleration, mean("body_acceleration_m_per_s2", "m/s²"));
+  visit(r.pitch, instant("pitch_rad", "rad"));
+  visit(r.pitch_acceleration, mean("pitch_acceleration_rad_per_s2", "rad/s²"));
+  visit(r.drive_force, mean("trolley_force_N", "N"));
 }
 
 /// @pre every option is given

@@ -22,21 +22,21 @@ struct QuarterCarOptions : RailOptions {
   double suspension_stiffness = -1.0;  // k, N/m
   double suspension_damping = -1.0;    // c, N s/m
 };
-void visit_fields(auto&& visit, FieldsOf<QuarterCarOptions> auto& s) {
-  visit(keys::kSpeed, s.speed);
-  visit(keys::kRamp, s.ramp);
-  visit(keys::kMoveFrom, s.move_from);
-  visit(keys::kTouchdownTime, s.touchdown_time);
-  visit(keys::kLoweringSpeed, s.lowering_speed);
-  visit(keys::kStart, s.start);
-  visit(keys::kLoad, s.load);
-  visit(keys::kBodyMass, s.body_mass);
-  visit(keys::kUnsprungMass, s.unsprung_mass);
-  visit(keys::kSuspensionStiffness, s.suspension_stiffness);
-  visit(keys::kSuspensionDamping, s.suspension_damping);
-  visit(keys::kRimMass, s.rim_mass);
-  visit(keys::kRimSpinInertia, s.rim_spin_inertia);
-  visit(keys::kRimDiametralInertia, s.rim_diametral_inertia);
+void visit_fields(FieldsOf<QuarterCarOptions> auto& s, auto&& visit) {
+  visit(s.speed, keys::kSpeed);
+  visit(s.ramp, keys::kRamp);
+  visit(s.move_from, keys::kMoveFrom);
+  visit(s.touchdown_time, keys::kTouchdownTime);
+  visit(s.lowering_speed, keys::kLoweringSpeed);
+  visit(s.start, keys::kStart);
+  visit(s.load, keys::kLoad);
+  visit(s.body_mass, keys::kBodyMass);
+  visit(s.unsprung_mass, keys::kUnsprungMass);
+  visit(s.suspension_stiffness, keys::kSuspensionStiffness);
+  visit(s.suspension_damping, keys::kSuspensionDamping);
+  visit(s.rim_mass, keys::kRimMass);
+  visit(s.rim_spin_inertia, keys::kRimSpinInertia);
+  visit(s.rim_diametral_inertia, keys::kRimDiametralInertia);
 }
 
 /// @pre every option is given

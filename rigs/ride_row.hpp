@@ -12,12 +12,12 @@ struct RideRow {
   double force = 0.0;              // of the suspension upwards on the body, N
   double drive_force = 0.0;        // of what keeps the wheel at its speed, N
 };
-void visit_fields(auto&& visit, FieldsOf<RideRow> auto& r) {
-  visit(column::instant("body_height_m", "m"), r.body_height);
-  visit(column::mean("body_acceleration_m_per_s2", "m/s²"), r.body_acceleration);
-  visit(column::instant("suspension_travel_m", "m"), r.travel);
-  visit(column::mean("suspension_force_N", "N"), r.force);
-  visit(column::mean("trolley_force_N", "N"), r.drive_force);
+void visit_fields(FieldsOf<RideRow> auto& r, auto&& visit) {
+  visit(r.body_height, column::instant("body_height_m", "m"));
+  visit(r.body_acceleration, column::mean("body_acceleration_m_per_s2", "m/s²"));
+  visit(r.travel, column::instant("suspension_travel_m", "m"));
+  visit(r.force, column::mean("suspension_force_N", "N"));
+  visit(r.drive_force, column::mean("trolley_force_N", "N"));
 }
 
 }  // namespace furrow::rigs

@@ -43,20 +43,20 @@ struct WheelReport {
   /// Weight on the undisturbed ground of all that the wheel carries, N.
   double load() const { return -carried_mass * gravity.z(); }
 };
-void visit_fields(auto&& visit, FieldsOf<WheelReport> auto& s) {
-  visit(Field{"slip"}, s.slip);
-  visit(Field{"speed", "m/s"}, s.speed);
-  visit(Field{"spin", "rad/s"}, s.spin);
-  visit(Field{"drive_torque", "N m"}, s.drive_torque);
-  visit(Field{"lateral_force", "N"}, s.lateral_force);
-  visit(Field{"aligning_moment", "N m"}, s.aligning_moment);
-  visit(Field{"axle_height", "m"}, s.axle_height);
-  visit(Field{"axle_position", "m"}, s.axle_position);
-  visit(Field{"vertical_speed", "m/s"}, s.vertical_speed);
-  visit(Field{"vertical_momentum", "kg m/s"}, s.vertical_momentum);
-  visit(Field{"carried_mass", "kg"}, s.carried_mass);
-  visit(Field{"joint_drift", "m or rad"}, s.joint_drift);
-  visit(Field{"gravity", "m/s²"}, s.gravity);
+void visit_fields(FieldsOf<WheelReport> auto& s, auto&& visit) {
+  visit(s.slip, Field{"slip"});
+  visit(s.speed, Field{"speed", "m/s"});
+  visit(s.spin, Field{"spin", "rad/s"});
+  visit(s.drive_torque, Field{"drive_torque", "N m"});
+  visit(s.lateral_force, Field{"lateral_force", "N"});
+  visit(s.aligning_moment, Field{"aligning_moment", "N m"});
+  visit(s.axle_height, Field{"axle_height", "m"});
+  visit(s.axle_position, Field{"axle_position", "m"});
+  visit(s.vertical_speed, Field{"vertical_speed", "m/s"});
+  visit(s.vertical_momentum, Field{"vertical_momentum", "kg m/s"});
+  visit(s.carried_mass, Field{"carried_mass", "kg"});
+  visit(s.joint_drift, Field{"joint_drift", "m or rad"});
+  visit(s.gravity, Field{"gravity", "m/s²"});
 }
 
 /// What a rig has to say in the live line.

@@ -36,18 +36,18 @@ struct RigAccounts {
   /// All members 0, to count from.
   static RigAccounts none();
 };
-void visit_fields(auto&& visit, FieldsOf<RigAccounts> auto& s) {
-  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
-  visit(Field{"potential_energy", "J"}, s.potential_energy);
-  visit(Field{"drive_work", "J"}, s.drive_work);
-  visit(Field{"tow_work", "J"}, s.tow_work);
-  visit(Field{"guide_work", "J"}, s.guide_work);
-  visit(Field{"tire_work", "J"}, s.tire_work);
-  visit(Field{"damper_loss", "J"}, s.damper_loss);
-  visit(Field{"momentum", "kg m/s"}, s.momentum);
-  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
-  visit(Field{"guide_impulse", "N s"}, s.guide_impulse);
-  visit(Field{"tire_impulse", "N s"}, s.tire_impulse);
+void visit_fields(FieldsOf<RigAccounts> auto& s, auto&& visit) {
+  visit(s.kinetic_energy, Field{"kinetic_energy", "J"});
+  visit(s.potential_energy, Field{"potential_energy", "J"});
+  visit(s.drive_work, Field{"drive_work", "J"});
+  visit(s.tow_work, Field{"tow_work", "J"});
+  visit(s.guide_work, Field{"guide_work", "J"});
+  visit(s.tire_work, Field{"tire_work", "J"});
+  visit(s.damper_loss, Field{"damper_loss", "J"});
+  visit(s.momentum, Field{"momentum", "kg m/s"});
+  visit(s.gravity_impulse, Field{"gravity_impulse", "N s"});
+  visit(s.guide_impulse, Field{"guide_impulse", "N s"});
+  visit(s.tire_impulse, Field{"tire_impulse", "N s"});
 }
 
 inline RigAccounts RigAccounts::none() {

@@ -22,16 +22,16 @@ struct RigOptions {
   double drop_height = 0.0;  // of all tires above the ground at t = 0, m
 };
 
-void visit_fields(auto&& visit, FieldsOf<RigOptions> auto& s) {
+void visit_fields(FieldsOf<RigOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("type", "", "Kind of rig."), s.type);
-  visit(key("substeps", "", from(1, 1000), "Number of steps that the rig takes in one communication step."),
-        s.substeps);
+  visit(s.type, key("type", "", "Kind of rig."));
+  visit(s.substeps,
+        key("substeps", "", from(1, 1000), "Number of steps that the rig takes in one communication step."));
   visit(
+      s.drop_height,
       key("drop_height", "m", from(0, 100),
           "Height that the tires fall before they meet the ground, beyond the gap they start with. The damper of "
-          "touchdown_damping slows the fall unless that is 0. A vehicle falls freely unless lowering_speed is given."),
-      s.drop_height);
+          "touchdown_damping slows the fall unless that is 0. A vehicle falls freely unless lowering_speed is given."));
 }
 
 struct RigKind {

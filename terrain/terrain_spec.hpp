@@ -39,16 +39,16 @@ struct CommonOptions {
   int ranks = 1;     // MPI ranks
   int substeps = 1;  // of the terrain in one communication step
 };
-void visit_fields(auto&& visit, FieldsOf<CommonOptions> auto& s) {
+void visit_fields(FieldsOf<CommonOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("engine", "", "Engine of the terrain."), s.engine);
-  visit(key("ranks", "", from(1, 4096),
+  visit(s.engine, key("engine", "", "Engine of the terrain."));
+  visit(s.ranks,
+        key("ranks", "", from(1, 4096),
             "Number of MPI ranks of the terrain. Engine liggghts takes up to 4096, each with one core, and parts of "
             "the bed at least three grains long. Engines dem, rigid and scm take one rank; only dem takes more than "
-            "one thread."),
-        s.ranks);
-  visit(key("substeps", "", from(1, 1000), "Number of steps that the terrain takes in one communication step."),
-        s.substeps);
+            "one thread."));
+  visit(s.substeps,
+        key("substeps", "", from(1, 1000), "Number of steps that the terrain takes in one communication step."));
 }
 
 /// A terrain ends at the walls of a bin: x from 0 to length, y from −width/2 to width/2.

@@ -18,21 +18,21 @@ struct RimProperties {
   double carrier_mass = -1.0;       // what the wheel carries besides rim and tire, kg
 };
 
-void visit_fields(auto&& visit, FieldsOf<RimProperties> auto& s) {
+void visit_fields(FieldsOf<RimProperties> auto& s, auto&& visit) {
   constexpr Allowed kPositive = allowed::above(0).optional();
-  visit(key("mass", "kg", kPositive, "Mass of the rim with its spindle, without the tire; rig.rim_mass overrides it."),
-        s.mass);
-  visit(key("spin_inertia", "kg m²", kPositive,
-            "Moment of inertia of the rim about its axle, without the tire; rig.rim_spin_inertia overrides it."),
-        s.spin_inertia);
-  visit(key("diametral_inertia", "kg m²", kPositive,
+  visit(s.mass,
+        key("mass", "kg", kPositive, "Mass of the rim with its spindle, without the tire; rig.rim_mass overrides it."));
+  visit(s.spin_inertia,
+        key("spin_inertia", "kg m²", kPositive,
+            "Moment of inertia of the rim about its axle, without the tire; rig.rim_spin_inertia overrides it."));
+  visit(s.diametral_inertia,
+        key("diametral_inertia", "kg m²", kPositive,
             "Moment of inertia of the rim about a diameter, without the tire; rig.rim_diametral_inertia overrides it. "
             "The "
-            "default is half of the spin inertia, as of a thin ring."),
-        s.diametral_inertia);
-  visit(key("carrier_mass", "kg", kPositive,
-            "Mass that the wheel carries besides rim and tire; rig.load and rig.carrier_mass override it."),
-        s.carrier_mass);
+            "default is half of the spin inertia, as of a thin ring."));
+  visit(s.carrier_mass,
+        key("carrier_mass", "kg", kPositive,
+            "Mass that the wheel carries besides rim and tire; rig.load and rig.carrier_mass override it."));
 }
 
 }  // namespace furrow::tire

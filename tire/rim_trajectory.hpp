@@ -36,11 +36,11 @@ class RimTrajectory {
   void restore(const Archive& archive);
 
  private:
-  friend void visit_fields(auto&& visit, FieldsOf<RimTrajectory> auto& s) {
-    visit(furrow::Field{"start", ""}, s.start_);
-    visit(furrow::Field{"end", ""}, s.end_);
-    visit(furrow::Field{"duration", "s"}, s.duration_);
-    visit(furrow::Field{"turn", "rad"}, s.turn_);
+  friend void visit_fields(FieldsOf<RimTrajectory> auto& s, auto&& visit) {
+    visit(s.start_, furrow::Field{"start", ""});
+    visit(s.end_, furrow::Field{"end", ""});
+    visit(s.duration_, furrow::Field{"duration", "s"});
+    visit(s.turn_, furrow::Field{"turn", "rad"});
   }
 
   RimState start_, end_;

@@ -53,13 +53,11 @@ struct MaxwellBranch {
   double modulus = 0.0;  // g, relative to the long-term stiffness
   double time = 0.0;     // relaxation time, s
 };
-void visit_fields(auto&& visit, FieldsOf<MaxwellBranch> auto& s) {
-  visit(
-      needed(
-          "relative_modulus", "-", allowed::above(0),
-          "g_i: stiffness of the branch relative to the materials' moduli, which are those after complete relaxation."),
-      s.modulus);
-  visit(needed("relaxation_time", "s", allowed::above(0), "tau_i: relaxation time of the branch."), s.time);
+void visit_fields(FieldsOf<MaxwellBranch> auto& s, auto&& visit) {
+  visit(s.modulus, needed("relative_modulus", "-", allowed::above(0),
+                          "g_i: stiffness of the branch relative to the materials' moduli, which are those after "
+                          "complete relaxation."));
+  visit(s.time, needed("relaxation_time", "s", allowed::above(0), "tau_i: relaxation time of the branch."));
 }
 
 /// One knot of the meridian of the mid-surface.
@@ -97,41 +95,37 @@ struct TireFile {
 };
 
 /// The keys of our own layout. Materials, sections and profile refer to each other: read_tire_file.cpp reads them.
-void visit_fields(auto&& visit, FieldsOf<TireFile> auto& s) {
+void visit_fields(FieldsOf<TireFile> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("template", "", role::by_hand, shaped(R"({"const": "ancf_shell"})").required(), "Name of the layout."),
-        s.path);
-  visit(needed("radius", "m", keys::kSize,
-               "Radius of the undeformed mid-surface at the crown; must agree with the profile within 1 %."),
-        s.radius);
-  visit(needed("rim_radius", "m", keys::kSize, "Radius at which the beads sit."), s.rim_radius);
-  visit(needed("rim_width", "m", keys::kSize, "Distance between the beads' seats."), s.rim_width);
-  visit(keys::kPressure, s.pressure);
-  visit(needed("structural_damping", "s", from(0), "Kelvin-Voigt time tau: stress = C (strain + tau × strain rate)."),
-        s.structural_damping);
-  visit(key("prony", "", optional(),
+  visit(s.path,
+        key("template", "", role::by_hand, shaped(R"({"const": "ancf_shell"})").required(), "Name of the layout."));
+  visit(s.radius, needed("radius", "m", keys::kSize,
+                         "Radius of the undeformed mid-surface at the crown; must agree with the profile within 1 %."));
+  visit(s.rim_radius, needed("rim_radius", "m", keys::kSize, "Radius at which the beads sit."));
+  visit(s.rim_width, needed("rim_width", "m", keys::kSize, "Distance between the beads' seats."));
+  visit(s.pressure, keys::kPressure);
+  visit(s.structural_damping,
+        needed("structural_damping", "s", from(0), "Kelvin-Voigt time tau: stress = C (strain + tau × strain rate)."));
+  visit(s.prony,
+        key("prony", "", optional(),
             "Generalised Maxwell model beside tau: stress = C (strain + tau × strain rate + sum of g_i h_i), h_i' = "
             "strain "
-            "rate - h_i / tau_i. The same in all layers; static results are those without it."),
-        s.prony);
-  visit(key("tread_mass_per_area", "kg/m²", from(0),
-            "Mass of rubber outside the tread's layup; adds inertia, no stiffness."),
-        s.tread_mass_per_area);
-  visit(needed("elements_circumference", "", from(8, kMaxAround), "Elements around the tire."),
-        s.elements_circumference);
-  visit(keys::kContact, s.contact);
-  visit(key("materials", "", role::by_hand, shaped(kMaterialsShape).required(),
-            "Materials by name; x along the fibre, y across it in the layer, z through the thickness."),
-        s.materials);
-  visit(key("sections", "", role::by_hand, shaped(kSectionsShape).required(),
-            "The bands from each bead to the crown; both sides are alike."),
-        s.bead);
+            "rate - h_i / tau_i. The same in all layers; static results are those without it."));
+  visit(s.tread_mass_per_area, key("tread_mass_per_area", "kg/m²", from(0),
+                                   "Mass of rubber outside the tread's layup; adds inertia, no stiffness."));
+  visit(s.elements_circumference,
+        needed("elements_circumference", "", from(8, kMaxAround), "Elements around the tire."));
+  visit(s.contact, keys::kContact);
+  visit(s.materials, key("materials", "", role::by_hand, shaped(kMaterialsShape).required(),
+                         "Materials by name; x along the fibre, y across it in the layer, z through the thickness."));
+  visit(s.bead, key("sections", "", role::by_hand, shaped(kSectionsShape).required(),
+                    "The bands from each bead to the crown; both sides are alike."));
   visit(
+      s.profile,
       key("profile", "", role::by_hand, shaped(kProfileShape).required(),
           "Meridian of the mid-surface from the left to the right bead: rows t, x, y with t from 0 to 1, x the height "
           "above the rim radius in m, y axial in m. Natural cubic splines interpolate it; node rows lie at equal steps "
-          "of t."),
-      s.profile);
+          "of t."));
 }
 
 /// Stiffness matrix in material axes; strain order xx, yy, 2xy, zz, 2xz, 2yz.

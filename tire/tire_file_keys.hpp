@@ -18,15 +18,15 @@ inline constexpr Key kContact = needed("contact");
 struct ContactBlock : ContactMaterial {
   static constexpr SchemaName kSchema{"contact", "What grains and ground feel of the tread."};
 };
-void visit_fields(auto&& visit, FieldsOf<ContactBlock> auto& s) {
+void visit_fields(FieldsOf<ContactBlock> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("young_modulus", "Pa", above(0), "Young's modulus of the tread surface, law mindlin."), s.young_modulus);
-  visit(needed("poisson_ratio", "-", from(0).below(0.5), "Poisson's ratio of the tread surface, law mindlin."),
-        s.poisson_ratio);
-  visit(needed("friction", "-", from(0), "Coulomb coefficient."), s.friction);
-  visit(needed("restitution", "-", from(0, 1), "Coefficient of restitution, law mindlin."), s.restitution);
-  visit(needed("normal_stiffness", "N/m^1.5", above(0), "Normal stiffness, law hertz_tanh."), s.normal_stiffness);
-  visit(needed("normal_damping", "N s/m^1.5", from(0), "Normal damping, law hertz_tanh."), s.normal_damping);
+  visit(s.young_modulus, needed("young_modulus", "Pa", above(0), "Young's modulus of the tread surface, law mindlin."));
+  visit(s.poisson_ratio,
+        needed("poisson_ratio", "-", from(0).below(0.5), "Poisson's ratio of the tread surface, law mindlin."));
+  visit(s.friction, needed("friction", "-", from(0), "Coulomb coefficient."));
+  visit(s.restitution, needed("restitution", "-", from(0, 1), "Coefficient of restitution, law mindlin."));
+  visit(s.normal_stiffness, needed("normal_stiffness", "N/m^1.5", above(0), "Normal stiffness, law hertz_tanh."));
+  visit(s.normal_damping, needed("normal_damping", "N s/m^1.5", from(0), "Normal damping, law hertz_tanh."));
 }
 
 }  // namespace furrow::tire

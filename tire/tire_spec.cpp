@@ -22,19 +22,17 @@ std::vector<std::string> idle_keys(const TireSpec& tire) {
   const std::vector<std::string> takes = tire.describe().takes;
   const TireOptions defaults;
   std::vector<const void*> members;  // of the defaults, in the order of the list
-  visit_fields([&](const furrow::Field&, const auto& value) { members.push_back(&value); }, defaults);
+  visit_fields(defaults, [&](const auto& value, const furrow::Field&) { members.push_back(&value); });
   std::vector<std::string> idle;
   std::size_t place = 0;
-  visit_fields(
-      [&](const furrow::Field& field, const auto& value) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        const bool stated = !(value == *static_cast<const Value*>(members[place++]));
-        const auto named = [&](const auto& names) {
-          return std::find(names.begin(), names.end(), field.name) != names.end();
-        };
-        if (stated && !named(takes) && !named(kOfEveryModel)) idle.emplace_back(field.name);
-      },
-      tire.options());
+  visit_fields(tire.options(), [&](const auto& value, const furrow::Field& field) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    const bool stated = !(value == *static_cast<const Value*>(members[place++]));
+    const auto named = [&](const auto& names) {
+      return std::find(names.begin(), names.end(), field.name) != names.end();
+    };
+    if (stated && !named(takes) && !named(kOfEveryModel)) idle.emplace_back(field.name);
+  });
   return idle;
 }
 

@@ -34,12 +34,12 @@ struct TireOptions {
   int substeps = 1;                  // of the tire in one communication step
 };
 
-void visit_fields(auto&& visit, FieldsOf<TireOptions> auto& s) {
+void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("file", "", not_empty().required(),
-            "Tire file, relative to the scenario, then to the folders rigs/ and tire/data/."),
-        s.file);
-  visit(key("pressure", "Pa",
+  visit(s.file, key("file", "", not_empty().required(),
+                    "Tire file, relative to the scenario, then to the folders rigs/ and tire/data/."));
+  visit(s.pressure,
+        key("pressure", "Pa",
             from(0, 1e8)
                 .usual(5e3, 2e6)
                 .shaped(
@@ -49,27 +49,24 @@ void visit_fields(auto&& visit, FieldsOf<TireOptions> auto& s) {
                 .or_null(),
             "Inflation pressure above the atmosphere. A list of [t, p] in s and Pa makes it a function of time: "
             "straight between the entries, constant before the first and after the last. Rigid tires ignore it. null: "
-            "as in the tire file."),
-        s.pressure);
-  visit(key("friction", "-", from(0, 10).or_null(), "Coulomb coefficient of the tread. null: as in the tire file."),
-        s.friction);
-  visit(key("elements_circumference", "", from(8, 10000).or_null(),
-            "Shell elements around the tire. null: as in the tire file."),
-        s.elements_circumference);
-  visit(key("elements_width", "", from(6, 1000).multiple_of(2).or_null(),
-            "Shell elements across the tire from bead to bead. null: as in the tire file."),
-        s.elements_width);
-  visit(key("structural_damping", "s", from(0, 10).usual(1e-5, 0.2).or_null(),
-            "Time constant τ of the Kelvin–Voigt law, the factor of the strain rate. null: as in the tire file."),
-        s.structural_damping);
-  visit(key("rigid", "", "Hold the tire rigid: same surface and mass, but no deformation."), s.rigid);
-  visit(key("contact_tangent", "",
+            "as in the tire file."));
+  visit(s.friction,
+        key("friction", "-", from(0, 10).or_null(), "Coulomb coefficient of the tread. null: as in the tire file."));
+  visit(s.elements_circumference, key("elements_circumference", "", from(8, 10000).or_null(),
+                                      "Shell elements around the tire. null: as in the tire file."));
+  visit(s.elements_width, key("elements_width", "", from(6, 1000).multiple_of(2).or_null(),
+                              "Shell elements across the tire from bead to bead. null: as in the tire file."));
+  visit(s.structural_damping,
+        key("structural_damping", "s", from(0, 10).usual(1e-5, 0.2).or_null(),
+            "Time constant τ of the Kelvin–Voigt law, the factor of the strain rate. null: as in the tire file."));
+  visit(s.rigid, key("rigid", "", "Hold the tire rigid: same surface and mass, but no deformation."));
+  visit(s.contact_tangent,
+        key("contact_tangent", "",
             "Contact tangents: with each contact force the terrain sends how it changes with the tire's motion, and "
             "the tire applies that within its step. The coupling is then stable at several times the step. Rigid tires "
-            "do not use it."),
-        s.contact_tangent);
-  visit(key("substeps", "", from(1, 1000), "Number of steps that the tire takes in one communication step."),
-        s.substeps);
+            "do not use it."));
+  visit(s.substeps,
+        key("substeps", "", from(1, 1000), "Number of steps that the tire takes in one communication step."));
 }
 
 /// What is known of a tire before its model is made. How far it reaches once inflated only the model can say

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,8 +26,8 @@ std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const
     if (state == ReachState::reached) return;
     if (state == ReachState::not_known) {
       warnings.push_back(
-          fmt::format("whether {} of {} is reached is not known: {}, expected an error of {} at most; "
-                      "more beds ('seeds') or evaluations, or closer bounds tell more",
+          fmt::format("whether {} of {} is reached is not known: {}, expected an error of {} at most; more beds "
+                      "('seeds') or evaluations, or closer bounds tell more",
                       target.name, with_error(target.y[k], target.sigma[k]), with_error(r.value, r.error),
                       digits(kWithin * target.sigma[k])));
       return;
@@ -109,8 +108,8 @@ std::vector<std::string> calibration_warnings(const Calibration& calibration, co
     const Parameter& p = calibration.parameters[k];
     if (c.estimates[k].at == Bound::none) continue;
     warnings.push_back(
-        fmt::format("{} ends at its {} bound of {}{}: its error is not known, and the data ask for a value "
-                    "beyond it or do not determine it",
+        fmt::format("{} ends at its {} bound of {}{}: its error is not known, and the data ask for a value beyond it "
+                    "or do not determine it",
                     p.name, c.estimates[k].at == Bound::lower ? "lower" : "upper", digits(c.estimates[k].value),
                     p.unit == "-" ? "" : " " + p.unit));
   }

@@ -1,6 +1,5 @@
 #include "nodes/calibrate/evaluations.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -72,10 +71,9 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
     text.resize(text.rfind('\n') + 1);  // 0 where it was cut short before the first line was whole
     if (!text.empty() && !text.starts_with(mark))
       throw input_error(folder.string(), "--out",
-                        std::string(text.starts_with(kMark)
-                                        ? "holds the evaluations of another calibration: its start file, parameters, "
-                                          "targets or program differ"
-                                        : "holds an evaluations.csv that no calibration wrote") +
+                        std::string(text.starts_with(kMark) ? "holds the evaluations of another calibration: its start "
+                                                              "file, parameters, targets or program differ"
+                                                            : "holds an evaluations.csv that no calibration wrote") +
                             ", expected a new folder or --overwrite");
     if (text.size() < mark.size() + head.size()) text.clear();
     if (!text.empty()) read(text.substr(mark.size()), head);

@@ -27,8 +27,8 @@ std::string with_root(std::string_view name) { return fmt::format("{}.{}", kRoot
 
 std::string explain_all() {
   std::string text =
-      "calibrate\n  A study that fits the parameters of a model to data, with the error of each: furrow "
-      "calibrate STUDY.\n\nkeys of the file\n";
+      "calibrate\n  A study that fits the parameters of a model to data, with the error of each: furrow calibrate "
+      "STUDY.\n\nkeys of the file\n";
   for (const CalibrationKey& key : calibration_keys()) text += row(with_root(key.name), key.meaning);
   text += "\nkinds\n";
   for (const CalibrationKind& kind : calibration_kinds())

@@ -13,11 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <numbers>
-#include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,19 +24,19 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/soil_material.hpp"
 #include "nodes/study/study.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/fields_json.hpp"
 #include "protocol/files/json_text.hpp"
-#include "protocol/files/nearest_words.hpp"
 #include "terrain/soil/soil_tests.hpp"
 
 namespace furrow::calibrate {
 namespace {
 
+using scenario::Settings;
 using terrain::dem::DemOptions;
 using terrain::soil::Measured, terrain::soil::SoilOptions, terrain::soil::SoilParameters, terrain::soil::SoilResults;
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 /// K of the shear cell, in diameters of a grain, is above this for all soils of terrain/README.md (0.5 to 1.2 there).
@@ -98,12 +95,6 @@ Measured bulk_density(const SoilResults& results) {
   return terrain::soil::mean_of(beds);
 }
 
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 // ---- the model
 
 struct TestSettings {
@@ -119,20 +110,18 @@ TestSettings read_tests(OrderedJsonReader& whole) {
   if (takes(reader, "seeds")) tests.seeds = reader.count("seeds", 1, kMostSeeds);
   if (takes(reader, "speed")) tests.speed = reader.positive("speed");
   if (tests.speed > kMostSpeed)
-    reader.fail("speed",
-                fmt::format("is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed), kMostSpeed));
+    reader.fail("speed", "is {} m/s, expected above 0 up to {:g} m/s", number_text(tests.speed), kMostSpeed);
   if (takes(reader, "stresses")) {
     std::vector<double>& stresses = tests.stresses = reader.numbers("stresses");
     std::sort(stresses.begin(), stresses.end());
     const bool differ = std::adjacent_find(stresses.begin(), stresses.end()) == stresses.end();
     if (stresses.size() < 2 || stresses.size() > kMostStresses || !differ)
-      reader.fail("stresses",
-                  fmt::format("expected two to {} different normal stresses, Pa: c and φ are of a line through them",
-                              kMostStresses));
+      reader.fail("stresses", "expected two to {} different normal stresses, Pa: c and φ are of a line through them",
+                  kMostStresses);
     const double odd = stresses.front() > 0.0 ? stresses.back() : stresses.front();
     if (!(odd > 0.0 && odd <= kMostStress))
-      reader.fail("stresses", fmt::format("has {} Pa, expected each above 0 up to {} Pa", number_text(odd),
-                                          number_text(kMostStress)));
+      reader.fail("stresses", "has {} Pa, expected each above 0 up to {} Pa", number_text(odd),
+                  number_text(kMostStress));
   }
   reader.finish();
   return tests;
@@ -207,7 +196,7 @@ class GrainModel final : public CalibrationModel {
   /// All figures of the tests that some target needs; NaN for those of others.
   Prediction tested(std::span<const double> values, const ProgressCall& progress) const {
     Prediction found;
-    const double begin = processor_time();
+    const double begin = processor_time(CLOCK_PROCESS_CPUTIME_ID);
     try {
       SoilOptions options;
       options.material = grains_of(values);
@@ -234,7 +223,7 @@ class GrainModel final : public CalibrationModel {
       found.problem = error.what();
     }
     if (!found.problem.empty()) found.values.clear(), found.errors.clear();
-    found.processor_time = processor_time() - begin;
+    found.processor_time = processor_time(CLOCK_PROCESS_CPUTIME_ID) - begin;
     return found;
   }
 
@@ -278,8 +267,7 @@ class GrainModel final : public CalibrationModel {
     const Quantity& quantity = entry_named(kQuantities, named, [&](const std::string& what) {
       return reader.wrong("quantity", "'" + named + "' " + what);
     });
-    if (needed(quantity))
-      reader.fail("quantity", fmt::format("is {} a second time, expected each once", quantity.name));
+    if (needed(quantity)) reader.fail("quantity", "is {} a second time, expected each once", quantity.name);
     Target target;
     target.name = target_name(reader, named);
     target.y.push_back(target_value(reader, quantity, study, target));
@@ -303,12 +291,11 @@ class GrainModel final : public CalibrationModel {
     const auto target = targets_.fitted.begin() + (at - of_fitted.begin());
     const double least = kLeastK * 2.0 * grains_.radius;
     if (target->y.front() + 2.0 * target->sigma.front() >= least) return;
-    notes_.push_back(
-        fmt::format("{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} mm, {:g} of "
-                    "the diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm or "
-                    "less could reach it",
-                    target->name, 1e3 * target->y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK,
-                    1e3 * target->y.front() / kLeastK));
+    notes_.push_back(fmt::format(
+        "{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} mm, {:g} of the "
+        "diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm or less could reach it",
+        target->name, 1e3 * target->y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK,
+        1e3 * target->y.front() / kLeastK));
     targets_.held_out.push_back(*target), of_held_out.push_back(*at);
     targets_.fitted.erase(target), of_fitted.erase(at);
     if (targets_.fitted.empty())

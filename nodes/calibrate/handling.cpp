@@ -21,7 +21,6 @@
 #include "nodes/calibrate/optimum.hpp"
 #include "nodes/calibrate/statistics.hpp"
 #include "protocol/core/error.hpp"
-#include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
 #include "tire/handling/handling_spec.hpp"
 #include "tire/handling/sweep_table.hpp"
@@ -103,7 +102,7 @@ ParameterRule rule_of(const std::string& name, const std::string& unit) {
 
 double* coefficient(MagicFormula& tire, const std::string& name) {
   double* found = nullptr;
-  visit_coefficients([&](const Field& field, double& value) { found = name == field.name ? &value : found; }, tire);
+  visit_coefficients(tire, [&](double& value, const Field& field) { found = name == field.name ? &value : found; });
   return found;
 }
 
@@ -122,8 +121,8 @@ class HandlingModel final : public CalibrationModel {
  public:
   explicit HandlingModel(CalibrationInput& input) : CalibrationModel(input), stem_(start_.stem().string() + "_fitted") {
     if (!tire::is_tir(start_))
-      throw input_error(input.study.string(), "start",
-                        fmt::format("is '{}', expected a tire property file (.tir)", start_.filename().string()));
+      throw input_error(input.study.string(), "start", "is '{}', expected a tire property file (.tir)",
+                        start_.filename().string());
     formula_ = tire::handling::read_tir(start_);
     for (const TargetSet set : kBothSets)
       for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);
@@ -248,7 +247,7 @@ class HandlingModel final : public CalibrationModel {
 std::vector<ParameterRule> rules_of_coefficients() {
   std::vector<ParameterRule> all;
   const MagicFormula none;
-  visit_coefficients([&](const Field& field, const double&) { all.push_back(rule_of(field.name, field.unit)); }, none);
+  visit_coefficients(none, [&](const double&, const Field& field) { all.push_back(rule_of(field.name, field.unit)); });
   return all;
 }
 

@@ -4,14 +4,12 @@
 // model by this interface alone.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -177,12 +175,10 @@ const auto& entry_named(const Table& table, std::string_view name, const Wrong& 
 template <class Options>
 auto* number_named(Options& options, std::string_view name) {
   std::conditional_t<std::is_const_v<Options>, const double, double>* found = nullptr;
-  visit_fields(
-      [&](const auto& field, auto& value) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-          if (name == field.name) found = &value;
-      },
-      options);
+  visit_fields(options, [&](auto& value, const auto& field) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+      if (name == field.name) found = &value;
+  });
   return found;
 }
 

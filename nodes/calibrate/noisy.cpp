@@ -12,9 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
-#include <fmt/format.h>
 #include <Eigen/LU>
 
 #include "nodes/calibrate/least_squares.hpp"
@@ -51,17 +49,11 @@ Eigen::VectorXd even_place(const Eigen::VectorXd& first, int n) {
 /// The surrogates of all figures beside the data.
 class Misfit {
  public:
-  Misfit(const Calibration& calibration, const Places& places, const std::vector<Prediction>& found) {
-    std::vector<double> data, sigma;
-    for (const Target& target : calibration.model->targets(TargetSet::fitted)) {
-      data.insert(data.end(), target.y.begin(), target.y.end());
-      sigma.insert(sigma.end(), target.sigma.begin(), target.sigma.end());
-    }
-    data_ = Eigen::Map<const Eigen::VectorXd>(data.data(), static_cast<Eigen::Index>(data.size()));
-    sigma_ = Eigen::Map<const Eigen::VectorXd>(sigma.data(), data_.size());
+  Misfit(const Objective& objective, const Places& places, const std::vector<Prediction>& found)
+      : data_(objective.data()), sigma_(objective.sigma()) {
     Eigen::MatrixXd at(places.front().size(), static_cast<Eigen::Index>(places.size()));
     for (std::size_t i = 0; i < places.size(); ++i) at.col(static_cast<Eigen::Index>(i)) = places[i];
-    for (std::size_t q = 0; q < data.size(); ++q) {
+    for (std::size_t q = 0; q < objective.points(); ++q) {
       Eigen::VectorXd values(at.cols());
       std::vector<double> errors;
       for (std::size_t i = 0; i < places.size(); ++i) {
@@ -102,7 +94,8 @@ class Misfit {
   }
 
  private:
-  Eigen::VectorXd data_, sigma_, scale_;
+  const Eigen::VectorXd &data_, &sigma_;  // the objective's
+  Eigen::VectorXd scale_;
   std::vector<Surrogate> surrogates_;
 };
 
@@ -119,7 +112,7 @@ class Noisy {
     require_answers();
     Eigen::VectorXd before;  // the least before this one
     for (;;) {
-      Misfit misfit(objective_.calibration(), places_, found_);
+      Misfit misfit(objective_, places_, found_);
       const Eigen::VectorXd least = minimise(misfit, before);
       if (before.size() > 0 && stays(misfit, before, least) && misfit.doubts(least).maxCoeff() <= 1.0)
         return result(misfit, "converged");
@@ -155,9 +148,8 @@ class Noisy {
     const std::size_t least = objective_.parameters() + 2;
     if (places_.size() < least)
       throw physics_error(
-          fmt::format("{}: the model answers at {} of the {} places of the design, expected {} or more; "
-                      "where it does not: {}",
-                      objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_));
+          "{}: the model answers at {} of the {} places of the design, expected {} or more; where it does not: {}",
+          objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_);
   }
 
   /// Of all that was asked for.

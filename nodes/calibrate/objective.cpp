@@ -2,10 +2,7 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
-#include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
 
 namespace furrow::calibrate {

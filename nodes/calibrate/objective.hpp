@@ -2,7 +2,6 @@
 // fitted targets, as a function of the parameters on their scales from 0 to 1 (kind.hpp).
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +21,9 @@ class Objective {
   std::size_t parameters() const { return calibration_.parameters.size(); }
   std::size_t points() const { return static_cast<std::size_t>(data_.size()); }
   const Calibration& calibration() const { return calibration_; }
+  /// Of all points of the fitted targets, with their standard errors.
+  const Eigen::VectorXd& data() const { return data_; }
+  const Eigen::VectorXd& sigma() const { return sigma_; }
   /// Evaluations asked for so far, of which `computed()` were not in the table.
   std::size_t asked() const { return asked_; }
   std::size_t computed() const { return computed_; }
@@ -47,7 +49,7 @@ class Objective {
   EvaluationTable& table_;
   ProgressCall progress_;
   std::string held_out_state_;
-  Eigen::VectorXd data_, sigma_;  // of all points of the fitted targets
+  Eigen::VectorXd data_, sigma_;
   std::size_t asked_ = 0, computed_ = 0;
 };
 

@@ -1,7 +1,6 @@
 // What a calibration leaves behind.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <span>
 

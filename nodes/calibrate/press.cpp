@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -100,8 +99,8 @@ tire::PressObstacle obstacle_of(OrderedJsonReader& reader, std::string& what) {
   const auto within = [&](const char* key, double least, double most, double otherwise) {
     const double value = reader.given(key) ? reader.number(key) : otherwise;
     if (!(value > least && value <= most))
-      reader.fail(key, fmt::format("is {} m, expected above {} up to {} m", number_text(value), number_text(least),
-                                   number_text(most)));
+      reader.fail(key, "is {} m, expected above {} up to {} m", number_text(value), number_text(least),
+                  number_text(most));
     return value;
   };
   if (!reader.given("cleat_width")) reader.fail("cleat_width", "is missing, expected the width of the cleat, m");
@@ -157,9 +156,8 @@ class PressModel final : public CalibrationModel {
   PressModel(const PressKind& kind, CalibrationInput& input)
       : CalibrationModel(input), kind_(kind), file_(load_json(start_, "a tire file in JSON")) {
     if (!file_.contains("model") || file_["model"] != kind.model)
-      throw input_error(start_.string(), "model",
-                        fmt::format("is not '{}', expected the file of such a tire in 'start' of {}", kind.model,
-                                    input.study.string()));
+      throw input_error(start_.string(), "model", "is not '{}', expected the file of such a tire in 'start' of {}",
+                        kind.model, input.study.string());
     (void)kind_.read(file_, options_for({}));
     if (fits(kSoftening) && fits("sidewall_2"))
       throw input_error(input.study.string(), std::string("parameters.") + kSoftening,
@@ -229,12 +227,11 @@ class PressModel final : public CalibrationModel {
     press.options.obstacle = obstacle_of(reader, target.what);
     if (takes(reader, "pressure")) {
       if (!kind_.has_pressure)
-        reader.fail("pressure",
-                    fmt::format("is given for a {} tire, whose material stands for one pressure", kind_.model));
+        reader.fail("pressure", "is given for a {} tire, whose material stands for one pressure", kind_.model);
       press.pressure = reader.not_negative("pressure");
       if (*press.pressure > kMostPressure)
-        reader.fail("pressure", fmt::format("is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
-                                            number_text(kMostPressure)));
+        reader.fail("pressure", "is {} Pa, expected 0 to {} Pa", number_text(*press.pressure),
+                    number_text(kMostPressure));
       target.what += fmt::format(", {:g} kPa", 1e-3 * *press.pressure);
       for (const scenario::Problem& odd :
            scenario::Schema::of_scenarios().unusual({{"tire", {{"pressure", *press.pressure}}}}))
@@ -275,21 +272,14 @@ class PressModel final : public CalibrationModel {
   PerSet<std::vector<PressTarget>> presses_;
 };
 
+template <const PressKind& kKind>
+std::unique_ptr<CalibrationModel> read_press(CalibrationInput& input) {
+  return std::make_unique<PressModel>(kKind, input);
+}
+
 }  // namespace
 
-CalibrationKind ring_kind() {
-  return {"ring", "a tire file", kRingRules,
-          [](CalibrationInput& input) -> std::unique_ptr<CalibrationModel> {
-            return std::make_unique<PressModel>(kRing, input);
-          },
-          optimize_smooth};
-}
-CalibrationKind planar_kind() {
-  return {"planar", "a tire file", kPlanarRules,
-          [](CalibrationInput& input) -> std::unique_ptr<CalibrationModel> {
-            return std::make_unique<PressModel>(kPlanar, input);
-          },
-          optimize_smooth};
-}
+CalibrationKind ring_kind() { return {"ring", "a tire file", kRingRules, read_press<kRing>, optimize_smooth}; }
+CalibrationKind planar_kind() { return {"planar", "a tire file", kPlanarRules, read_press<kPlanar>, optimize_smooth}; }
 
 }  // namespace furrow::calibrate

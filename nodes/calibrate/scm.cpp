@@ -128,7 +128,7 @@ class ScmModel final : public CalibrationModel {
     if (on != "plate" && on != "shear") reader.fail("on", "is '" + on + "', expected 'plate' or 'shear'");
     const bool plate = on == "plate";
     const char *one = plate ? "width" : "normal_stress", *other = plate ? "normal_stress" : "width";
-    if (reader.has(other)) reader.fail(other, fmt::format("is given with \"on\": \"{}\", expected {}", on, one));
+    if (reader.has(other)) reader.fail(other, "is given with \"on\": \"{}\", expected {}", on, one);
     reader.skip(one);
     reader.finish();
     for (const auto& [mark, points] : tests_of(keys.target.data, plate, reader, one)) {
@@ -171,8 +171,7 @@ class ScmModel final : public CalibrationModel {
     if (!table.has(y)) throw table.wrong(0, fmt::format("has no column '{}' above it, expected one", y));
     const bool marked = table.has(mark);
     if (marked && reader.has(key))
-      reader.fail(key, fmt::format("is given, and {} has the column '{}', expected one of them",
-                                   file.filename().string(), mark));
+      reader.fail(key, "is given, and {} has the column '{}', expected one of them", file.filename().string(), mark);
     if (!marked && !reader.has(key))
       throw table.wrong(
           0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
@@ -190,7 +189,7 @@ class ScmModel final : public CalibrationModel {
       if (point.sigma <= 0.0) throw table.wrong(row, "sigma_Pa is " + number_text(point.sigma) + ", expected above 0");
       tests[which].push_back(point);
     }
-    if (tests.empty()) throw input_error(file.string(), "", fmt::format("has no point with {} above 0", x));
+    if (tests.empty()) throw input_error(file.string(), "", "has no point with {} above 0", x);
     for (auto& [unused, points] : tests)
       std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
     return tests;

@@ -2,8 +2,6 @@
 // several starts.
 #include <limits>
 
-#include <fmt/format.h>
-
 #include "nodes/calibrate/least_squares.hpp"
 #include "nodes/calibrate/objective.hpp"
 #include "nodes/calibrate/optimum.hpp"
@@ -47,13 +45,13 @@ Optimum optimize_smooth(Objective& objective, const OptimizerOptions& options) {
   }
   const std::string file = objective.calibration().file.string();
   if (optimum.place.size() == 0)
-    throw physics_error(fmt::format("{}: the model has no answer at any of the {} starts: {}", file, options.starts,
-                                    objective.predict(objective.start()).problem));
+    throw physics_error("{}: the model has no answer at any of the {} starts: {}", file, options.starts,
+                        objective.predict(objective.start()).problem);
   optimum.residuals = *objective.residuals(optimum.place);
   const auto J = objective.jacobian(optimum.place, optimum.residuals);
   if (!J)
-    throw physics_error(fmt::format(
-        "{}: the least lies where the model has no answer on either side: narrower bounds are needed", file));
+    throw physics_error("{}: the least lies where the model has no answer on either side: narrower bounds are needed",
+                        file);
   optimum.jacobian = *J;
   return optimum;
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,8 +32,8 @@ constexpr auto kKeys = std::to_array<CalibrationKey>({
     {"description", "What the calibration is for, for people and 'furrow list'."},
     {"calibrate", "Kind of the model that is fitted."},
     {"start",
-     "File that the fit begins from, relative to the study, then to the files that come with furrow. What is "
-     "not fitted stays as it is there."},
+     "File that the fit begins from, relative to the study, then to the files that come with furrow. What is not "
+     "fitted stays as it is there."},
     {"set", "Settings of the scenario that grains begin from, by dotted path, as of a study.", false},
     {"tests", "The virtual soil tests of each evaluation: seeds, stresses (Pa) and speed (m/s).", false},
     {"parameters", "What is fitted: an object of names, each with lower, upper, start and scale ('log' or 'linear')."},
@@ -59,16 +58,15 @@ Parameter parameter_of(Reader reader, const ParameterRule& rule) {
   const auto read = [&](const char* key, double& value, double least, double most, const char* expected) {
     if (takes(reader, key)) value = reader.number(key);
     if (value < least || value > most)
-      reader.fail(key, fmt::format("is {}, expected {}{} to {} {}", number_text(value), expected, number_text(least),
-                                   number_text(most), rule.unit));
+      reader.fail(key, "is {}, expected {}{} to {} {}", number_text(value), expected, number_text(least),
+                  number_text(most), rule.unit);
   };
   read("lower", p.lower, rule.least, rule.most, ""), read("upper", p.upper, rule.least, rule.most, "");
   read("start", p.start, p.lower, p.upper, "a value from lower to upper, ");
   if (!(p.lower < p.upper))
-    reader.fail("upper",
-                fmt::format("is {}, expected more than lower, {}", number_text(p.upper), number_text(p.lower)));
+    reader.fail("upper", "is {}, expected more than lower, {}", number_text(p.upper), number_text(p.lower));
   if (p.logarithmic && !(p.lower > 0.0))
-    reader.fail("lower", fmt::format("is {}, expected above 0 for the scale 'log'", number_text(p.lower)));
+    reader.fail("lower", "is {}, expected above 0 for the scale 'log'", number_text(p.lower));
   reader.finish();
   return p;
 }
@@ -92,7 +90,7 @@ std::vector<Reader> targets_of(Reader& reader, const std::string& key, std::size
   if (least == 0 && !takes(reader, key)) return {};
   const Json& list = reader.array(key);
   if (list.size() < least || list.size() > kMostTargets)
-    reader.fail(key, fmt::format("has {} entries, expected {} to {}", list.size(), least, kMostTargets));
+    reader.fail(key, "has {} entries, expected {} to {}", list.size(), least, kMostTargets);
   std::vector<Reader> readers;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const std::string path = fmt::format("{}[{}]", key, k);
@@ -121,11 +119,9 @@ void take_starts(std::vector<Parameter>& parameters, const CalibrationModel& mod
     if (!std::isfinite(p.start))
       reader.fail("parameters." + p.name, "has no 'start', and the start file has no such value, expected a 'start'");
     if (p.start < p.lower || p.start > p.upper)
-      reader.fail(
-          "parameters." + p.name,
-          fmt::format(
-              "begins at {} {}, which is the start file's, expected bounds around it or a 'start' within {} to {}",
-              number_text(p.start), p.unit, number_text(p.lower), number_text(p.upper)));
+      reader.fail("parameters." + p.name,
+                  "begins at {} {}, which is the start file's, expected bounds around it or a 'start' within {} to {}",
+                  number_text(p.start), p.unit, number_text(p.lower), number_text(p.upper));
   }
 }
 
@@ -187,7 +183,7 @@ Calibration load_calibration(const std::filesystem::path& name) {
   c.name = file.stem().string();
   c.description = reader.text_or("description", "");
   c.kind = &kind;
-  if (!reader.given("start")) reader.fail("start", fmt::format("is missing, expected {}", kind.start));
+  if (!reader.given("start")) reader.fail("start", "is missing, expected {}", kind.start);
   c.start = find_file(reader.text("start"), "start", file);
   c.parameters = parameters_of(reader, kind);
   const auto count = [&](const char* key, int least, int most, int otherwise) {
@@ -208,9 +204,9 @@ Calibration load_calibration(const std::filesystem::path& name) {
   const std::size_t points = points_of(c.model->targets(TargetSet::fitted));
   if (points < c.parameters.size() + (kind.noisy ? 0 : 1)) {
     const std::vector<std::string>& notes = c.model->notes();  // why a target was left out, where one was
-    reader.fail("targets", fmt::format("has {} points, expected {} there are parameters, {}{}{}", points,
-                                       kind.noisy ? "as many as" : "more than", c.parameters.size(),
-                                       notes.empty() ? "" : "; ", fmt::join(notes, "; ")));
+    reader.fail("targets", "has {} points, expected {} there are parameters, {}{}{}", points,
+                kind.noisy ? "as many as" : "more than", c.parameters.size(), notes.empty() ? "" : "; ",
+                fmt::join(notes, "; "));
   }
   c.digest = digest_of(c);
   return c;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -43,7 +42,7 @@ template <class T>
 Json as_json(const T& value) {
   Json json;
   if constexpr (HasFields<T>) {
-    visit_fields([&](const Field& field, const auto& one) { json[field.name] = as_json(one); }, value);
+    visit_fields(value, [&](const auto& one, const Field& field) { json[field.name] = as_json(one); });
   } else if constexpr (kIsListOfStructs<T>) {
     json = Json::array();
     for (const auto& one : value) json.push_back(as_json(one));
@@ -57,7 +56,7 @@ Json as_json(const T& value) {
 template <class T>
 void take(const Json& json, T& value) {
   if constexpr (HasFields<T>) {
-    visit_fields([&](const Field& field, auto& one) { take(json.at(field.name), one); }, value);
+    visit_fields(value, [&](auto& one, const Field& field) { take(json.at(field.name), one); });
   } else if constexpr (kIsListOfStructs<T>) {
     for (const Json& one : json) take(one, value.emplace_back());
   } else {

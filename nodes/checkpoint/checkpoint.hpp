@@ -36,20 +36,20 @@ struct CheckpointManifest {
   double write_s = 0.0;           // wall time that the run stood still for it, until this was written
 };
 /// All but scenario and segments, which have forms of their own in the manifest.
-void visit_fields(auto&& visit, FieldsOf<CheckpointManifest> auto& s) {
-  visit(Field{"version", ""}, s.version);
-  visit(Field{"build", ""}, s.build);
-  visit(Field{"cpu", ""}, s.cpu);
-  visit(Field{"name", ""}, s.name);
-  visit(Field{"scenario_digest", ""}, s.scenario_digest);
-  visit(Field{"file_hashes", ""}, s.file_hashes);
-  visit(Field{"step"}, s.step);
-  visit(Field{"time_s", "s"}, s.time);
-  visit(Field{"bytes"}, s.bytes);
-  visit(Field{"write_s", "s"}, s.write_s);
-  visit(Field{"parts", ""}, s.parts);
-  visit(Field{"series", ""}, s.series);
-  visit(Field{"frames", ""}, s.frames);
+void visit_fields(FieldsOf<CheckpointManifest> auto& s, auto&& visit) {
+  visit(s.version, Field{"version", ""});
+  visit(s.build, Field{"build", ""});
+  visit(s.cpu, Field{"cpu", ""});
+  visit(s.name, Field{"name", ""});
+  visit(s.scenario_digest, Field{"scenario_digest", ""});
+  visit(s.file_hashes, Field{"file_hashes", ""});
+  visit(s.step, Field{"step"});
+  visit(s.time, Field{"time_s", "s"});
+  visit(s.bytes, Field{"bytes"});
+  visit(s.write_s, Field{"write_s", "s"});
+  visit(s.parts, Field{"parts", ""});
+  visit(s.series, Field{"series", ""});
+  visit(s.frames, Field{"frames", ""});
 }
 
 /// Where a run continues.

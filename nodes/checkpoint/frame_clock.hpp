@@ -37,10 +37,10 @@ struct FrameClock {
     return (step + every - 1) / every;
   }
 };
-void visit_fields(auto&& visit, FieldsOf<FrameClock> auto& s) {
-  visit(Field{"every"}, s.every);
-  visit(Field{"first_step"}, s.first_step);
-  visit(Field{"first_index"}, s.first_index);
+void visit_fields(FieldsOf<FrameClock> auto& s, auto&& visit) {
+  visit(s.every, Field{"every"});
+  visit(s.first_step, Field{"first_step"});
+  visit(s.first_index, Field{"first_index"});
 }
 
 }  // namespace furrow::checkpoint

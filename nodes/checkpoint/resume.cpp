@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using scenario::Settings;
 
 /// "/rig/slip" as "rig.slip".
 std::string dotted(const std::string& pointer) {
@@ -53,10 +54,9 @@ json changes(const fs::path& run, const json& before, const json& now, bool fail
     if (!finer && !scenario::may_change_on_resume(key))
       throw input_error(
           run.string(), key,
-          fmt::format("is {} but the run was computed with {}, expected the same: a run that is continued "
-                      "may change run.end, run.average_from, run.threads, run.peer_timeout, "
-                      "output.frame_interval and checkpoint.*, not its physics{}",
-                      value_text(is), value_text(was), reason_for(key)));
+          "is {} but the run was computed with {}, expected the same: a run that is continued may change run.end, "
+          "run.average_from, run.threads, run.peer_timeout, output.frame_interval and checkpoint.*, not its physics{}",
+          value_text(is), value_text(was), reason_for(key));
     changed[key] = is;
   }
   return changed;
@@ -96,12 +96,12 @@ void count_in_steps_of(double step, double before, const fs::path& run, Checkpoi
   const auto ratio = static_cast<std::int64_t>(std::llround(before / step));
   if (ratio < 1 || std::abs(before - static_cast<double>(ratio) * step) > 1e-9 * before)
     throw input_error(run.string(), "run.step",
-                      fmt::format("is {} s but the run was computed with {} s, expected a half, a third, … of it",
-                                  number_text(step), number_text(before)));
+                      "is {} s but the run was computed with {} s, expected a half, a third, … of it",
+                      number_text(step), number_text(before));
   const auto count = [&](std::int64_t& steps) {
     if (steps > kMostSteps / ratio)
-      throw input_error(run.string(), "run.step",
-                        fmt::format("is {} s, too many steps to be counted, expected more", number_text(step)));
+      throw input_error(run.string(), "run.step", "is {} s, too many steps to be counted, expected more",
+                        number_text(step));
     steps *= ratio;
   };
   count(manifest.step), count(manifest.frames.every), count(manifest.frames.first_step);
@@ -115,8 +115,8 @@ void check_finer(const fs::path& run, const json& before, const json& changed) {
     const json::json_pointer pointer("/" + key.substr(0, key.find('.')) + "/substeps");
     const auto was = before.value(pointer, 1);
     if (value.is_number_integer() && value.get<int>() < was)
-      throw input_error(run.string(), key,
-                        fmt::format("is {} but the run was computed with {}, expected more", value.get<int>(), was));
+      throw input_error(run.string(), key, "is {} but the run was computed with {}, expected more", value.get<int>(),
+                        was);
   }
 }
 
@@ -147,8 +147,6 @@ json with_places_of(json document, const json& other, const scenario::Scenario& 
   }
   return document;
 }
-
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// The bed between two passes lies in the study's folder, and where that was moved, its name leads nowhere.
 Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
@@ -203,9 +201,9 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   std::error_code error;
   const fs::path file = run / "scenario.json";
   if (fs::exists(run / "sweep.json", error))
-    throw input_error(run.string(), "",
-                      "holds several runs, expected the folder of one of them; the command that began them "
-                      "continues them all");
+    throw input_error(
+        run.string(), "",
+        "holds several runs, expected the folder of one of them; the command that began them continues them all");
   if (!fs::exists(file, error) && list_checkpoints(run).empty())
     throw input_error(
         run.string(), "",
@@ -224,19 +222,18 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   // It is made of what the checkpoint at the end and the series hold.
   const bool again = lost.size() == 1 && lost.front() == "results.h5" && !list_checkpoints(run).empty();
   for (const std::string& file : lost)
-    plan.warnings.push_back(
-        (run / file).string() +
-        (again ? ": is missing and is written again from the last checkpoint"
-               : ": is missing and cannot be made again: bring it back, or compute the run anew with furrow "
-                 "run --overwrite"));
+    plan.warnings.push_back((run / file).string() + (again
+                                                         ? ": is missing and is written again from the last checkpoint"
+                                                         : ": is missing and cannot be made again: bring it back, or "
+                                                           "compute the run anew with furrow run --overwrite"));
   if (done && !again) {
     const json now = json::parse(plan.scenario.completed);
     const json before = json::parse(scenario::load_scenario(file, moved).completed);
     const json asked = changes(run, with_places_of(before, now, plan.scenario), now, false);
     for (const auto& [key, value] : asked.items())
       plan.warnings.push_back(
-          fmt::format("{}: key '{}': is not changed to {}, as the run is finished; with a later --until "
-                      "it is, and the run continues",
+          fmt::format("{}: key '{}': is not changed to {}, as the run is finished; with a later --until it is, and the "
+                      "run continues",
                       run.string(), key, value.dump()));
     plan.finished = true;
     plan.ended = static_cast<double>(ended) * plan.scenario.run.step;
@@ -252,10 +249,9 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
                                         run.string(), terrain.engine));
   const std::int64_t reached = std::max(ended, manifest.step);
   if (steps < reached)
-    throw input_error(
-        run.string(), "run.end",
-        fmt::format("is {} s, but the run has reached {} s, expected that or later", number_text(plan.scenario.run.end),
-                    number_text(static_cast<double>(reached) * plan.scenario.run.step)));
+    throw input_error(run.string(), "run.end", "is {} s, but the run has reached {} s, expected that or later",
+                      number_text(plan.scenario.run.end),
+                      number_text(static_cast<double>(reached) * plan.scenario.run.step));
   if (manifest.build != build_id())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" + manifest.version +
                             "): the run continues, but not bit for bit");

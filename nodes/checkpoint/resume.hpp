@@ -2,9 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "nodes/checkpoint/checkpoint.hpp"
@@ -24,8 +22,7 @@ struct ResumePlan {
 /// to be continued. Looks, and changes nothing: every rank finds the same.
 /// @throws Error(bad_input) when `run` holds no run or no checkpoint, or a key that decides the results has changed;
 ///         Error(io) when every checkpoint is damaged
-ResumePlan plan_resume(const std::filesystem::path& run,
-                       const std::vector<std::pair<std::string, std::string>>& settings);
+ResumePlan plan_resume(const std::filesystem::path& run, const scenario::Settings& settings);
 
 /// A run whose scenario.json was lost has it again from its newest checkpoint. @returns what to warn of; empty: nothing
 /// was restored. @throws Error(io) when no checkpoint is whole or the file cannot be written

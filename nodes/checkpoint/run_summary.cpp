@@ -1,6 +1,7 @@
 #include "nodes/checkpoint/run_summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "nodes/launch/run_list.hpp"
 #include "protocol/files/json_text.hpp"
@@ -73,6 +74,11 @@ Json value_at(const Json& summary, const std::string& path) {
     from = to + 1;
   }
   return *at;
+}
+
+double number_at(const Json& summary, const std::string& path) {
+  const Json value = value_at(summary, path);
+  return value.is_number() ? value.get<double>() : std::nan("");
 }
 
 }  // namespace furrow::checkpoint

@@ -30,4 +30,7 @@ std::vector<std::string> lost_results(const std::filesystem::path& run, bool fra
 /// summary["a"]["b"][1] for "a.b.1"; null where there is no such entry.
 nlohmann::ordered_json value_at(const nlohmann::ordered_json& summary, const std::string& path);
 
+/// The number there; NaN where there is none.
+double number_at(const nlohmann::ordered_json& summary, const std::string& path);
+
 }  // namespace furrow::checkpoint

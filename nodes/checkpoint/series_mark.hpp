@@ -13,11 +13,11 @@ struct SeriesMark {
   std::string checksum;               // of those bytes
   std::string subject;                // whose table it is: "wheel0", "vehicle"
 };
-void visit_fields(auto&& visit, FieldsOf<SeriesMark> auto& s) {
-  visit(Field{"subject", ""}, s.subject);
-  visit(Field{"bytes"}, s.bytes);
-  visit(Field{"lines"}, s.lines);
-  visit(Field{"checksum", ""}, s.checksum);
+void visit_fields(FieldsOf<SeriesMark> auto& s, auto&& visit) {
+  visit(s.subject, Field{"subject", ""});
+  visit(s.bytes, Field{"bytes"});
+  visit(s.lines, Field{"lines"});
+  visit(s.checksum, Field{"checksum", ""});
 }
 
 }  // namespace furrow::checkpoint

@@ -1,5 +1,4 @@
 // `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
-#include <cmath>
 #include <iostream>
 
 #include <nlohmann/json.hpp>
@@ -66,11 +65,7 @@ ExitCode make_bed(const scenario::Scenario& scenario) {
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const double begin = wall_clock();
-  const ProgressCall progress = [&](const std::string& what, double share) {
-    if (launch::stop_signalled())
-      throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
-    display.show({.phase = what, .share = share});
-  };
+  const ProgressCall progress = launch::shown_on(display, " while the bed was being prepared");
   const terrain::dem::PreparedBed prepared = terrain::dem::prepare_bed(grains, progress);
   terrain::dem::GrainSolver solver(terrain::dem::solver_params(grains));
   terrain::dem::restore_bed(solver, prepared);

@@ -1,14 +1,11 @@
 // `furrow bench grains`: what the command line says, and the result as JSON.
-#include <cmath>
 #include <memory>
 #include <string>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/commands/command_table.hpp"
-#include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "terrain/dem/grain_bench.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -58,9 +55,8 @@ terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   options.threads = options.settle_threads = bench.threads;
   const terrain::dem::StableStep stable = terrain::dem::stable_at(options, terrain::dem::stated_overlap(options));
   if (bench.step > stable.step)
-    throw input_error("command line", "--step",
-                      fmt::format("is {:g} s, expected at most the stable step of {:.3g} s ({})", bench.step,
-                                  stable.step, stable.reason));
+    throw input_error("command line", "--step", "is {:g} s, expected at most the stable step of {:.3g} s ({})",
+                      bench.step, stable.step, stable.reason);
   return options;
 }
 
@@ -96,26 +92,21 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
 
 Action add_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<GrainBench>();
-  command
-      .add_option("--bed", arguments->bed,
-                  "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, "
-                  "y from 0 to 0.6 and z ≥ 0. 'default' is the reference bed.")
-      ->capture_default_str();
-  command.add_option("--law", arguments->law, "Choose the contact law: " + terrain::dem::law_names() + ".")
-      ->capture_default_str();
-  command.add_option("--precision", arguments->precision, "Choose the precision of the contact law: mixed or double.")
-      ->capture_default_str();
-  command.add_option("--cohesion", arguments->cohesion, "Set the cohesion of the contacts, Pa.")->capture_default_str();
-  command.add_option("--rolling-friction", arguments->rolling_friction, "Set the coefficient of rolling resistance.")
-      ->capture_default_str();
-  command.add_option("--threads", arguments->threads, "Use this number of threads.")->capture_default_str();
-  command.add_option("--steps", arguments->steps, "Time this number of steps.")->capture_default_str();
-  command.add_option("--warm", arguments->warm, "Take this number of steps before the timed ones.")
-      ->capture_default_str();
-  command.add_option("--settle", arguments->settle, "Let the bed settle first, for at most this time, s.")
-      ->capture_default_str();
+  command.option_defaults()->always_capture_default();
+  command.add_option(
+      "--bed", arguments->bed,
+      "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, y from 0 to "
+      "0.6 and z ≥ 0. 'default' is the reference bed.");
+  command.add_option("--law", arguments->law, "Choose the contact law: " + terrain::dem::law_names() + ".");
+  command.add_option("--precision", arguments->precision, "Choose the precision of the contact law: mixed or double.");
+  command.add_option("--cohesion", arguments->cohesion, "Set the cohesion of the contacts, Pa.");
+  command.add_option("--rolling-friction", arguments->rolling_friction, "Set the coefficient of rolling resistance.");
+  command.add_option("--threads", arguments->threads, "Use this number of threads.");
+  command.add_option("--steps", arguments->steps, "Time this number of steps.");
+  command.add_option("--warm", arguments->warm, "Take this number of steps before the timed ones.");
+  command.add_option("--settle", arguments->settle, "Let the bed settle first, for at most this time, s.");
   command.add_option("--save-bed", arguments->save, "Write the positions before the timed steps to this CSV file.");
-  command.add_option("--step", arguments->step, "Set the time step, s.")->capture_default_str();
+  command.add_option("--step", arguments->step, "Set the time step, s.");
   return [arguments] {
     return run_bench(arguments->threads,
                      [&](const ProgressCall& progress) { return bench_grains(*arguments, progress); });

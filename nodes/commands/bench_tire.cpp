@@ -4,7 +4,6 @@
 // speed and rolls without pull.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -40,12 +39,8 @@ struct TireBench {
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
 
-/// Processor time of this thread: the cost of a step, whatever else runs on the machine.
-double processor_time() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+/// The cost of a step, whatever else runs on the machine.
+double own_time() { return processor_time(CLOCK_THREAD_CPUTIME_ID); }
 
 struct Spent {
   double wall = 0.0, processor = 0.0;  // s
@@ -73,9 +68,9 @@ void check(const TireBench& bench) {
 /// One step; what the tire took of it.
 Spent step(rigs::RollingTire& rolling, double damper) {
   rolling.push();
-  const double begin = wall_clock(), begin_processor = processor_time();
+  const double begin = wall_clock(), begin_processor = own_time();
   rolling.roll();
-  const Spent spent{wall_clock() - begin, processor_time() - begin_processor};
+  const Spent spent{wall_clock() - begin, own_time() - begin_processor};
   rolling.follow(damper);
   return spent;
 }
@@ -179,37 +174,25 @@ std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
 
 Action add_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<TireBench>();
-  command.add_option("--tire", arguments->tire, "Read this tire file. 'default' is the layered tire.")
-      ->capture_default_str();
-  command.add_option("--threads", arguments->threads, "Use this number of threads.")->capture_default_str();
-  command.add_option("--steps", arguments->steps, "Time this number of steps; 0 means one revolution.")
-      ->capture_default_str();
-  command.add_option("--step", arguments->step, "Set the time step, s.")->capture_default_str();
-  command
-      .add_option("--warm", arguments->warm,
-                  "Roll for this time before the timed steps, so that the touch-down is over, s.")
-      ->capture_default_str();
-  command.add_option("--pressure", arguments->pressure, "Set the inflation pressure (gauge), Pa.")
-      ->capture_default_str();
-  command.add_option("--load", arguments->load, "Set the mass that the tire carries, kg.")->capture_default_str();
-  command.add_option("--speed", arguments->speed, "Set the angular speed of the rim, rad/s.")->capture_default_str();
-  command
-      .add_option("--tolerance", arguments->tolerance,
-                  "Set the tolerance of the free residual, relative to the norm of the pressure forces.")
-      ->capture_default_str();
-  command
-      .add_option("--renewal", arguments->renewal,
-                  "Renew a sector's part of the factor once its shape has changed by this share; 0 renews it "
-                  "in every step.")
-      ->capture_default_str();
-  command
-      .add_option("--elements-circumference", arguments->columns,
-                  "Set the number of elements around the tire; 0 keeps the file's.")
-      ->capture_default_str();
-  command
-      .add_option("--elements-width", arguments->width,
-                  "Set the number of elements across the tire; 0 keeps the file's.")
-      ->capture_default_str();
+  command.option_defaults()->always_capture_default();
+  command.add_option("--tire", arguments->tire, "Read this tire file. 'default' is the layered tire.");
+  command.add_option("--threads", arguments->threads, "Use this number of threads.");
+  command.add_option("--steps", arguments->steps, "Time this number of steps; 0 means one revolution.");
+  command.add_option("--step", arguments->step, "Set the time step, s.");
+  command.add_option("--warm", arguments->warm,
+                     "Roll for this time before the timed steps, so that the touch-down is over, s.");
+  command.add_option("--pressure", arguments->pressure, "Set the inflation pressure (gauge), Pa.");
+  command.add_option("--load", arguments->load, "Set the mass that the tire carries, kg.");
+  command.add_option("--speed", arguments->speed, "Set the angular speed of the rim, rad/s.");
+  command.add_option("--tolerance", arguments->tolerance,
+                     "Set the tolerance of the free residual, relative to the norm of the pressure forces.");
+  command.add_option(
+      "--renewal", arguments->renewal,
+      "Renew a sector's part of the factor once its shape has changed by this share; 0 renews it in every step.");
+  command.add_option("--elements-circumference", arguments->columns,
+                     "Set the number of elements around the tire; 0 keeps the file's.");
+  command.add_option("--elements-width", arguments->width,
+                     "Set the number of elements across the tire; 0 keeps the file's.");
   return [arguments] {
     return run_bench(arguments->threads,
                      [&](const ProgressCall& progress) { return bench_tire(*arguments, progress); });

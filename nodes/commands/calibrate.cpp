@@ -96,7 +96,7 @@ ExitCode calibrate_study(const CalibrateArguments& arguments) {
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   directory.add(files);
-  launch::say(fmt::format("furrow: calibration {}, results in {}\n", calibration.name, folder.string()));
+  launch::say("furrow: calibration {}, results in {}\n", calibration.name, folder.string());
   const std::vector<std::string> notes = calibration.model->notes();
   for (const std::string& note : notes) print_warning(note);
   try {
@@ -160,8 +160,8 @@ Command calibrate_entry() {
   return {.name = "calibrate",
           .task = task::compare,
           .purpose =
-              "Fit the parameters of a tire or a soil to data, with the error of each, or continue an "
-              "interrupted calibration.",
+              "Fit the parameters of a tire or a soil to data, with the error of each, or continue an interrupted "
+              "calibration.",
           .options = calibrate_options,
           .examples = {{"calibrate calibrate_ring.json", "Fit the ring to the shell, with errors."}}};
 }

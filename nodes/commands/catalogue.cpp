@@ -100,8 +100,7 @@ ExitCode list(const ListArguments& arguments) {
     kinds += (kinds.empty() ? "'" : ", '") + std::string(kind.name) + "'";
     known = known || only == kind.name;
   }
-  if (!known)
-    throw input_error("command line", "KIND", fmt::format("is {}, expected one of {}", value_text(Json(only)), kinds));
+  if (!known) throw input_error("command line", "KIND", "is {}, expected one of {}", value_text(Json(only)), kinds);
   const Json all = catalogue(only);
   if (arguments.json) {
     std::cout << all.dump(2) << "\n";
@@ -130,8 +129,8 @@ ExitCode write_new(const NewArguments& arguments) {
                                  .load = arguments.load.value_or(0.0)});
   std::cout << file.string() << "\n";
   const std::string name = scenario::shell_quoted(file.string());
-  launch::say(fmt::format("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n",
-                          file.string(), name, name));
+  launch::say("furrow: '{}' is written; check it with: furrow validate {}; run it with: furrow run {}\n", file.string(),
+              name, name);
   return ExitCode::done;
 }
 

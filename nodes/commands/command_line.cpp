@@ -41,8 +41,8 @@ std::string closing_words(std::span<const Example> examples) {
   for (const Example& example : examples)
     text += fmt::format("  furrow {:{}}  {}\n", example.line, width, example.purpose);
   return text + (examples.empty() ? "" : "\n") +
-         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, "
-         "6 memory or another limit ran out, 70 a fault of the program itself, 75 stopped by a signal.";
+         "Exit codes: 0 done, 2 bad input, 3 the physics failed, 4 a rank was lost, 5 input/output, 6 memory or "
+         "another limit ran out, 70 a fault of the program itself, 75 stopped by a signal.";
 }
 
 /// The command whose help says more, with a blank after it.

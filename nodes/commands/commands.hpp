@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/error.hpp"
 
 namespace furrow::commands {
 
-using Settings = std::vector<std::pair<std::string, std::string>>;  // --set key=value
+using scenario::Settings;
 
 struct RunArguments {
   std::filesystem::path scenario;
@@ -36,6 +38,9 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
 void require_launch(const scenario::Scenario& scenario);
 /// `furrow run --seeds N` (seeds.cpp). @throws Error
 ExitCode run_on_beds(const RunArguments& arguments);
+
+/// A finished run leaves nothing to do. @param ended s
+void tell_finished(const std::filesystem::path& run, double ended);
 
 /// Whether this command line runs as a rank of MPI: run and resume do where a launcher's variables are set. All other
 /// commands ignore them.
@@ -61,9 +66,18 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
 std::string expected_text(const scenario::ExpectedResult& expected, int beds, double pull, double sinkage,
                           double rut_depth);
 
+/// @throws Error(bad_input) naming the option
+inline void require_option(bool ok, const char* option, const std::string& what) {
+  if (!ok) throw input_error("command line", option, what);
+}
+
 /// "furrow: error: …", one line for every line of `text`.
 void print_error(const std::string& text);
 void print_warning(const std::string& text);
+template <class First, class... More>
+void print_warning(fmt::format_string<First, More...> text, First&& first, More&&... more) {
+  print_warning(fmt::format(text, std::forward<First>(first), std::forward<More>(more)...));
+}
 /// Before it, what looks odd about the scenario that is refused with it.
 void print_error(const Error& error);
 

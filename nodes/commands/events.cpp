@@ -15,8 +15,6 @@
 namespace furrow::commands {
 namespace {
 
-constexpr double kAddressSpace = 512e6;  // bytes; numpy's BLAS waits forever for less
-
 struct EventsArguments {
   std::filesystem::path directory;
   std::optional<double> from, to;  // window of the means, s
@@ -26,13 +24,7 @@ struct EventsArguments {
 ExitCode list_events(const EventsArguments& arguments) {
   launch::require_run_directory(arguments.directory);
   launch::require_plain_files(arguments.directory);
-  PythonScript script{.name = "events.py",
-                      .arguments = {},
-                      .folders = {arguments.directory},
-                      .what = "the table of events",
-                      .address_space = kAddressSpace,
-                      .quiet = false,
-                      .deadline = std::nullopt};
+  PythonScript script{.name = "events.py", .folders = {arguments.directory}, .what = "the table of events"};
   if (arguments.from) script.arguments.push_back(fmt::format("--from={}", *arguments.from));
   if (arguments.to) script.arguments.push_back(fmt::format("--to={}", *arguments.to));
   if (arguments.json) script.arguments.emplace_back("--json");

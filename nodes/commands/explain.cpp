@@ -22,10 +22,9 @@ ExitCode explain(const std::string& key) {
 
 Action explain_options(CLI::App& command, Typed&) {
   const auto key = std::make_shared<std::string>();
-  command.add_option(
-      "KEY", *key,
-      "Explain the key of this dotted path, for example terrain.cohesion, or calibrate for calibration studies "
-      "(default: list all keys of a scenario).");
+  command.add_option("KEY", *key,
+                     "Explain the key of this dotted path, for example terrain.cohesion, or calibrate for calibration "
+                     "studies (default: list all keys of a scenario).");
   return [key] { return explain(*key); };
 }
 

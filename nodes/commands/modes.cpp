@@ -78,10 +78,7 @@ tire::ModesOptions modes_options(const ModesArguments& arguments, const tire::Mo
 tire::ModesResults compute(const tire::ModalTest& test, const tire::ModesOptions& options) {
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
-  tire::ModesResults results = test.modes(options, [&](const std::string& what, double share) {
-    if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during " + what);
-    display.show({.phase = what, .share = share});
-  });
+  tire::ModesResults results = test.modes(options, launch::shown_on(display, " during {}"));
   display.clear();
   return results;
 }
@@ -97,19 +94,20 @@ void warn_of_unstable(const tire::ModesResults& results) {
   const auto first = std::ranges::find_if(results.modes, unstable);
   if (first == results.modes.end()) return;
   print_warning(
-      fmt::format("this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are "
-                  "negative, growth rates over "
-                  "2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
-                  first->order, std::ranges::count_if(results.modes, unstable), results.modes.size()));
+      "this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are negative, "
+      "growth rates over 2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
+      first->order, std::ranges::count_if(results.modes, unstable), results.modes.size());
 }
 
 ExitCode modes(const ModesArguments& arguments) {
   const std::unique_ptr<tire::TireSpec> spec = tire_of(arguments);
   const std::unique_ptr<tire::ModalTest> test = spec->modal_test();
   if (!test)
-    throw refused("TIRE", fmt::format("is '{}', a {} tire: it has no masses that vibrate; expected a shell, "
-                                      "a flexible ring or a planar tire",
-                                      spec->options().file.filename().string(), spec->describe().name));
+    throw refused(
+        "TIRE",
+        fmt::format(
+            "is '{}', a {} tire: it has no masses that vibrate; expected a shell, a flexible ring or a planar tire",
+            spec->options().file.filename().string(), spec->describe().name));
   const tire::ModesOptions options = modes_options(arguments, *test);
   const tire::ModesResults results = compute(*test, options);
   warn_of_unstable(results);
@@ -171,8 +169,8 @@ Command modes_entry() {
   return {.name = "modes",
           .task = task::test,
           .purpose =
-              "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential "
-              "order, and print the folder of the results.",
+              "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential order, and print "
+              "the folder of the results.",
           .options = add_options,
           .examples = {{"modes hmmwv_lumped.json --orders 3", "Get the frequencies of the lowest orders."}}};
 }

@@ -1,6 +1,5 @@
 // `furrow press`: a tire of a scenario against a plate or a cleat.
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -41,19 +40,17 @@ struct PressArguments {
 
 /// An option overrides the scenario's key; the schema has checked the latter.
 tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
-  const auto require = [](bool ok, const char* key, const std::string& what) {
-    if (!ok) throw input_error("command line", key, what);
-  };
   const scenario::PressKeys& keys = scenario.press;
   const std::string on = arguments.on.value_or(keys.on);
-  require(on == "plate" || on == "cleat" || on == "profile", "--on",
-          "is '" + on + "', expected plate, cleat or profile");
+  require_option(on == "plate" || on == "cleat" || on == "profile", "--on",
+                 "is '" + on + "', expected plate, cleat or profile");
   const bool profile = on == "profile";
-  require(!profile || !arguments.profile.empty(), "--profile", "is missing, expected a CSV file for --on profile");
-  require(profile || arguments.profile.empty(), "--profile",
-          "is given for --on " + on + ", expected it for --on profile alone");
+  require_option(!profile || !arguments.profile.empty(), "--profile",
+                 "is missing, expected a CSV file for --on profile");
+  require_option(profile || arguments.profile.empty(), "--profile",
+                 "is given for --on " + on + ", expected it for --on profile alone");
   const auto of_cleat = [&](const std::optional<double>& given, const char* key) {
-    require(!given || on == "cleat", key, "is given for --on " + on + ", expected it for --on cleat alone");
+    require_option(!given || on == "cleat", key, "is given for --on " + on + ", expected it for --on cleat alone");
   };
   of_cleat(arguments.cleat_height, "--cleat-height");
   of_cleat(arguments.cleat_width, "--cleat-width");
@@ -67,8 +64,8 @@ tire::PressOptions press_options(const scenario::Scenario& scenario, const Press
   const double height = arguments.cleat_height.value_or(keys.cleat_height),
                width = arguments.cleat_width.value_or(keys.cleat_width),
                position = arguments.cleat_position.value_or(keys.cleat_position);
-  const auto within = [&require](bool is, const char* key, double value, const char* range) {
-    require(is, key, fmt::format("is {:g}, expected {}", value, range));
+  const auto within = [](bool is, const char* key, double value, const char* range) {
+    require_option(is, key, fmt::format("is {:g}, expected {}", value, range));
   };
   within(o.deflection > 0.0 && o.deflection <= 0.2, "--deflection", o.deflection, "above 0 up to 0.2 m");
   within(o.points >= 1 && o.points <= 1000, "--points", o.points, "1 to 1000");
@@ -89,9 +86,8 @@ std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario
   std::unique_ptr<tire::StaticTest> test = tire.static_test();
   if (test) return test;
   throw input_error(scenario.file.string(), "tire",
-                    fmt::format("is a {} tire, which cannot be pressed, expected a model that deflects, with "
-                                "tire.rigid false",
-                                tire.describe().name));
+                    "is a {} tire, which cannot be pressed, expected a model that deflects, with tire.rigid false",
+                    tire.describe().name);
 }
 
 /// The answer in a line, from the summary; empty where the load was not reached.
@@ -111,14 +107,14 @@ std::string result_line(const nlohmann::ordered_json& summary) {
 std::string not_reached(const tire::PressOptions& options, const tire::PressResults& results) {
   if (results.at_load.force == 0.0)
     return fmt::format(
-        "within a deflection of {:g} m the tire touches nothing: no stiffness and no footprint is given; press "
-        "further (--deflection){}",
+        "within a deflection of {:g} m the tire touches nothing: no stiffness and no footprint is given; press further "
+        "(--deflection){}",
         options.deflection,
         options.obstacle.position != 0.0 ? ", or move the cleat nearer to the middle (--cleat-position)" : "");
   return fmt::format(
-      "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the "
-      "footprint is that of this force; press further (--deflection) or ask for less (--load); see "
-      "tire/README.md, \"Static pressing\"",
+      "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the footprint is "
+      "that of this force; press further (--deflection) or ask for less (--load); see tire/README.md, \"Static "
+      "pressing\"",
       options.load, results.at_load.force);
 }
 
@@ -127,18 +123,14 @@ ExitCode press(const scenario::Scenario& scenario, const PressArguments& argumen
   const tire::PressOptions options = press_options(scenario, arguments);
   const tire::PressureSchedule& pressure = scenario.tires.front()->options().pressure;
   if (pressure.varies())
-    print_warning(
-        fmt::format("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0)));
+    print_warning("tire.pressure changes in time: the tire is pressed at that of t = 0, {:g} Pa", pressure.at(0.0));
   launch::RunDirectory directory(scenario.name + "-press", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
   std::string ended;
   try {
     launch::ProgressDisplay display;
     const double begin = wall_clock();
-    const tire::PressResults results = test->press(options, [&](const std::string& what, double share) {
-      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during pressing");
-      display.show({.phase = what, .share = share});
-    });
+    const tire::PressResults results = test->press(options, launch::shown_on(display, " during pressing"));
     display.clear();
     nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
                                       {"version", FURROW_VERSION},
@@ -176,17 +168,16 @@ Action add_options(CLI::App& command, Typed& typed) {
                      "Compute this number of points of the load–deflection curve (press.points).");
   command.add_option("--load", arguments->load, "Compute the footprint at this load, N (press.load).");
   command.add_option("--camber", arguments->camber,
-                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of "
-                     "travel. Shell tires only (press.camber).");
+                     "Tilt the wheel about its forward axis, rad; positive leans the top to the right of travel. Shell "
+                     "tires only (press.camber).");
   command.add_option("--cleat-height", arguments->cleat_height, "Set the height of the cleat, m (press.cleat_height).");
   command.add_option("--cleat-width", arguments->cleat_width,
                      "Set the width of the cleat's top along the direction of travel, m (press.cleat_width).");
   command.add_option("--cleat-position", arguments->cleat_position,
                      "Set the position of the cleat's middle, forward of the axle, m (press.cleat_position).");
-  command.add_option(
-      "--profile", arguments->profile,
-      "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs --on "
-      "profile and a flexible ring or planar tire.");
+  command.add_option("--profile", arguments->profile,
+                     "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs "
+                     "--on profile and a flexible ring or planar tire.");
   return [arguments, &typed] { return press(load(typed), *arguments); };
 }
 
@@ -196,8 +187,8 @@ Command press_entry() {
   return {.name = "press",
           .task = task::test,
           .purpose =
-              "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder "
-              "of the results.",
+              "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder of the "
+              "results.",
           .options = add_options,
           .examples = {{"press rigid_ground.json --load 6000", "Get the load-deflection curve, and a footprint."},
                        {"press cleat_press.json --cleat-height 0.025", "Press the tire on a cleat."}}};

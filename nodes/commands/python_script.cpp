@@ -104,9 +104,10 @@ Finished run_python(const PythonScript& script) {
   if (access(kPython, X_OK) != 0)
     throw io_error(kPython, "is missing, expected Debian's python3 with python3-matplotlib and python3-h5py");
   if (access(path.c_str(), R_OK) != 0)
-    throw io_error(path.string(), fmt::format("is missing, expected the script that makes {} (FURROW_HOME "
-                                              "names the folder that holds scripts/)",
-                                              script.what));
+    throw io_error(
+        path.string(),
+        fmt::format("is missing, expected the script that makes {} (FURROW_HOME names the folder that holds scripts/)",
+                    script.what));
   if (const MemoryLimit limit = address_space_limit(); limit.bytes < script.address_space)
     throw limit_error(fmt::format("{}: {} need {:.0f} MB of memory, limit {:.0f} MB ({})",
                                   script.folders.front().string(), script.what, script.address_space / 1e6,

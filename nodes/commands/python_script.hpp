@@ -12,13 +12,14 @@
 namespace furrow::commands {
 
 struct PythonScript {
-  std::string name;                                               // in scripts/
-  std::vector<std::string> arguments;                             // options; the folders follow them
-  std::vector<std::filesystem::path> folders;                     // that it reads; messages name the first
-  std::string what;                                               // it makes, for errors: "plots"
-  double address_space = 0.0;                                     // bytes that it must have
-  bool quiet = false;                                             // nothing on standard error
-  std::optional<std::chrono::steady_clock::time_point> deadline;  // when it is ended
+  std::string name;                            // in scripts/
+  std::vector<std::string> arguments = {};     // options; the folders follow them
+  std::vector<std::filesystem::path> folders;  // that it reads; messages name the first
+  std::string what;                            // it makes, for errors: "plots"
+  /// Bytes that it must have: a plot takes 300 MB, and numpy's BLAS waits for ever for less.
+  double address_space = 512e6;
+  bool quiet = false;                                                  // nothing on standard error
+  std::optional<std::chrono::steady_clock::time_point> deadline = {};  // when it is ended
   /// Given both, the script is asked to say how far it is, and its standard error comes line by line.
   std::function<void(double share)> progress = {};
   std::function<void(const std::string& line)> message = {};

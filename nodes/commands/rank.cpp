@@ -11,8 +11,6 @@
 #include <thread>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "nodes/checkpoint/resume.hpp"
 #include "nodes/commands/commands.hpp"
 #include "nodes/launch/held_folder.hpp"
@@ -208,13 +206,6 @@ void read_task(const RunArguments& arguments, Task& task) try {
   throw scenario::out_of_memory();
 }
 
-/// A finished run leaves nothing to do: the message is that of `furrow resume` without a launcher.
-void tell_finished(const checkpoint::ResumePlan& plan, const RunArguments& arguments) {
-  launch::say(fmt::format("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n",
-                          arguments.out.string(), plan.ended));
-  std::cout << arguments.out.string() << std::endl;
-}
-
 }  // namespace
 
 bool first_rank_speaks() {
@@ -243,7 +234,7 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return error.code();
   }
   if (task.plan.finished) {
-    if (reporter.rank() == 0) tell_finished(task.plan, arguments);
+    if (reporter.rank() == 0) tell_finished(arguments.out, task.plan.ended);
     return ExitCode::done;
   }
   const scenario::Scenario& scenario = *task.scenario;

@@ -25,7 +25,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kAddressSpace = 512e6;        // bytes; a plot takes 300 MB, and numpy's BLAS waits forever for less
 constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked for
 constexpr std::chrono::seconds kShort{5};      // what takes no longer needs no progress, unless it was asked for
 
@@ -63,10 +62,8 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   if (std::filesystem::exists(report.out) && !is_directory(report.out))
     throw input_error(report.out.string(), "", "is a file, expected a folder");
   PythonScript script{.name = "report.py",
-                      .arguments = {},
                       .folders = report.runs,
                       .what = "plots",
-                      .address_space = kAddressSpace,
                       .quiet = report.unasked,
                       .deadline = report.unasked ? std::optional(Clock::now() + kPatience) : std::nullopt};
   if (!report.out.empty()) script.arguments = {"--out", report.out.string()};
@@ -99,13 +96,8 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
 /// Writes the frames of a run as VTP files into a new folder, and prints the names of the lists of these files.
 /// @returns how it ended; the script has said what was wrong. @throws Error
 ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder) {
-  PythonScript script{.name = "frames_vtk.py",
-                      .arguments = {"--out", folder.string()},
-                      .folders = {run},
-                      .what = "VTP files",
-                      .address_space = kAddressSpace,
-                      .quiet = false,
-                      .deadline = std::nullopt};
+  PythonScript script{
+      .name = "frames_vtk.py", .arguments = {"--out", folder.string()}, .folders = {run}, .what = "VTP files"};
   launch::ProgressDisplay display;
   show_progress(script, display, "writing the frames", false);
   const Finished finished = run_python(script);
@@ -183,8 +175,7 @@ Command report_entry() {
   return {.name = "report",
           .task = task::compare,
           .purpose =
-              "Plot results of any command: PNG files and report.html, a page with plots and, of "
-              "a run, 3-D playback.",
+              "Plot results of any command: PNG files and report.html, a page with plots and, of a run, 3-D playback.",
           .options = report_options,
           .examples = {{"report results/first_look-001", "Make plots and report.html of a run."},
                        {"report results/a results/b --out both", "Compare runs on one page."}}};

@@ -17,12 +17,9 @@ namespace furrow::commands {
 namespace {
 
 using json = nlohmann::ordered_json;
+using checkpoint::number_at;
 
 constexpr double kDeep = 0.5, kHigh = 0.05;  // sinkage, radii, beyond which a wheel is warned of
-
-double number(const json& object, const char* key) {
-  return object.is_object() && object.contains(key) && object[key].is_number() ? object[key].get<double>() : NAN;
-}
 
 json summary_of(const std::filesystem::path& run) {
   json summary = checkpoint::read_summary(run);
@@ -32,14 +29,14 @@ json summary_of(const std::filesystem::path& run) {
 
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
   const json pull = summary.value("drawbar_pull_N", json::object());
-  const double mean = number(pull, "mean"), load = number(summary, "vertical_load_N");
+  const double mean = number_at(pull, "mean"), load = number_at(summary, "vertical_load_N");
   const json force = summary.value("net_terrain_force_N", json::array());
   if (force.size() == 3 && force[2].is_number() && force[2].get<double>() == 0.0)
     return "furrow: the tire did not touch the terrain in the averaging window: nothing was measured\n";
   std::string text =
       fmt::format("furrow: drawbar pull {} N, {:.1f} % of the load of {} N, mean over {:.3g} to {:.3g} s\n",
-                  with_error(mean, number(pull, "sem")), 100.0 * mean / load, digits(load), number(pull, "from_s"),
-                  number(pull, "to_s"));
+                  with_error(mean, number_at(pull, "sem")), 100.0 * mean / load, digits(load),
+                  number_at(pull, "from_s"), number_at(pull, "to_s"));
   if (const terrain::dem::DemOptions* grains = scenario.terrain->grains())
     text += fmt::format("furrow: ± is one standard error within this bed; {}\n",
                         grains->bed.empty() ? "the spread from bed to bed is not in it: furrow run --seeds 5"
@@ -56,7 +53,8 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
     const bool ends = json::parse(scenario.completed)["terrain"].contains("length");  // hard ground has none
     text += ends ? " and a longer terrain.length\n" : "\n";
   }
-  return text + expected_text(scenario.expected, 1, mean, number(summary, "sinkage_m"), number(summary, "rut_depth_m"));
+  return text +
+         expected_text(scenario.expected, 1, mean, number_at(summary, "sinkage_m"), number_at(summary, "rut_depth_m"));
 }
 
 /// What each rank did; a table where there are more than rig, one tire and terrain.
@@ -69,13 +67,14 @@ std::string ranks_text(const json& summary) {
     for (const json& rank : ranks)
       table += fmt::format("furrow: {:<10} {:>9} {:>9.3g} {:>7} {:>9.1f} {:>9.1f} {:>9.1f} {:>4.0f} %\n",
                            rank.value("node", std::string("?")), rank.value("size", std::int64_t{0}),
-                           number(rank, "step_s"), rank.value("threads", 0), number(rank, "compute_s"),
-                           number(rank, "communicate_s"), number(rank, "wait_s"), 100.0 * number(rank, "busy_share"));
+                           number_at(rank, "step_s"), rank.value("threads", 0), number_at(rank, "compute_s"),
+                           number_at(rank, "communicate_s"), number_at(rank, "wait_s"),
+                           100.0 * number_at(rank, "busy_share"));
     return table;
   }
   for (const json& rank : summary.value("ranks", json::array()))
     parts.push_back(
-        fmt::format("{} {:.0f} % busy", rank.value("node", std::string("?")), 100.0 * number(rank, "busy_share")));
+        fmt::format("{} {:.0f} % busy", rank.value("node", std::string("?")), 100.0 * number_at(rank, "busy_share")));
   return parts.empty() ? "\n" : fmt::format(": {}\n", fmt::join(parts, ", "));
 }
 
@@ -83,27 +82,25 @@ std::string ranks_text(const json& summary) {
 std::string accounts_line(const json& summary) {
   const json accounts = summary.value("accounts", json::object());
   const json energy = accounts.value("energy", json::object()), momentum = accounts.value("momentum", json::object());
-  if (!std::isfinite(number(energy, "turnover"))) return "";
+  if (!std::isfinite(number_at(energy, "turnover"))) return "";
   std::string text = fmt::format(
-      "furrow: accounts: energy residual {:.2g} % of {} J turned over, momentum residual {:.2g} of the "
-      "largest "
+      "furrow: accounts: energy residual {:.2g} % of {} J turned over, momentum residual {:.2g} of the largest "
       "impulse, {} N s\n",
-      100.0 * number(energy, "residual_share"), digits(number(energy, "turnover")), number(momentum, "residual_share"),
-      digits(number(momentum, "largest")));
+      100.0 * number_at(energy, "residual_share"), digits(number_at(energy, "turnover")),
+      number_at(momentum, "residual_share"), digits(number_at(momentum, "largest")));
   if (!energy.value("closes", false)) {
     const json parts = energy.value("residual_of", json::object());
     text += fmt::format(
-        "furrow: WARNING: the account of energy does not close: {:.3g} J are left over, expected at most "
-        "{:.3g} J "
+        "furrow: WARNING: the account of energy does not close: {:.3g} J are left over, expected at most {:.3g} J "
         "(terrain {:.3g}, tires {:.3g}, rig {:.3g} J); halve run.step and compare, or report it "
         "(nodes/output/README.md, \"Accounts\")\n",
-        number(energy, "residual"), number(energy, "bound"), number(parts, "terrain"), number(parts, "tires"),
-        number(parts, "rig"));
+        number_at(energy, "residual"), number_at(energy, "bound"), number_at(parts, "terrain"),
+        number_at(parts, "tires"), number_at(parts, "rig"));
   }
   if (!momentum.value("closes", false))
     text +=
-        "furrow: WARNING: the account of momentum does not close: see accounts.momentum of summary.json, and "
-        "report it (nodes/output/README.md, \"Accounts\")\n";
+        "furrow: WARNING: the account of momentum does not close: see accounts.momentum of summary.json, and report it "
+        "(nodes/output/README.md, \"Accounts\")\n";
   return text;
 }
 
@@ -112,11 +109,11 @@ std::string subject_lines(const json& summary, double average_from) {
   std::string text;
   const json subjects = summary.value("subjects", json::object());
   for (const auto& [name, figures] : subjects.items()) {
-    const auto told = [&, &of = figures](const char* key) { return digits(number(of, key)); };
-    if (std::isfinite(number(figures, "distance_m")))
+    const auto told = [&, &of = figures](const char* key) { return digits(number_at(of, key)); };
+    if (std::isfinite(number_at(figures, "distance_m")))
       text += fmt::format(
-          "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and "
-          "ground {} W\n",
+          "furrow: {}: {} m in all; from {:g} s on {} m/s on average, engine {} W, wheels {} W, tires and ground {} "
+          "W\n",
           name, told("distance_m"), average_from, told("speed_m_s"), told("power_W"), told("wheel_power_W"),
           told("soil_power_W"));
   }
@@ -125,18 +122,17 @@ std::string subject_lines(const json& summary, double average_from) {
 
 /// Of a wheel that stands where no wheel drives. @param yields  the ground does, so that no wheel can climb it
 std::string place_warning(const json& wheel, bool yields) {
-  if (number(wheel, "interface_work_J") == 0.0) return "";  // it has not come down yet
-  const double share = number(wheel, "sinkage_m") / number(wheel, "tire_radius_m");
+  if (number_at(wheel, "interface_work_J") == 0.0) return "";  // it has not come down yet
+  const double share = number_at(wheel, "sinkage_m") / number_at(wheel, "tire_radius_m");
   if (share > kDeep)
     return fmt::format(
-        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, or it spins "
-        "itself in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on "
-        "stronger soil\n",
+        "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, or it spins itself "
+        "in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on stronger soil\n",
         share);
   if (yields && share < -kHigh)
     return fmt::format(
-        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; "
-        "take a smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
+        "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; take a "
+        "smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
         -share);
   return "";
 }
@@ -148,11 +144,11 @@ std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
   const std::string why = reason == "overturned" ? "the vehicle has turned over"
                                                  : fmt::format("a tire came near {} wall (rig.stop_before_wall)",
                                                                reason == "end_wall" ? "the end" : "a side");
-  std::string text = fmt::format("furrow: the run ended at {:g} s, before {:g} s: {}\n", number(summary, "end_time_s"),
-                                 scenario.run.end, why);
-  if (number(summary, "average_from_s") != scenario.run.average_from)
+  std::string text = fmt::format("furrow: the run ended at {:g} s, before {:g} s: {}\n",
+                                 number_at(summary, "end_time_s"), scenario.run.end, why);
+  if (number_at(summary, "average_from_s") != scenario.run.average_from)
     text += fmt::format("furrow: so means are from {:.3g} s on, not from run.average_from = {:g} s\n",
-                        number(summary, "average_from_s"), scenario.run.average_from);
+                        number_at(summary, "average_from_s"), scenario.run.average_from);
   return text;
 }
 
@@ -167,11 +163,11 @@ std::string event_lines(const json& summary) {
   for (const json& event : summary.value("events", json::array())) {
     Kind& kind = kinds[event.value("event", std::string("?"))];
     if (kind.count++ == 0) {
-      kind.first = number(event, "from_s");
+      kind.first = number_at(event, "from_s");
       if (event.contains("wheel")) kind.wheel = fmt::format(", wheel {}", event.value("wheel", 0));
     }
-    const double to = number(event, "to_s");
-    kind.time += (std::isfinite(to) ? to : number(summary, "end_time_s")) - number(event, "from_s");
+    const double to = number_at(event, "to_s");
+    kind.time += (std::isfinite(to) ? to : number_at(summary, "end_time_s")) - number_at(event, "from_s");
   }
   std::string text;
   for (const auto& [name, kind] : kinds)
@@ -211,7 +207,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
   const json wheels = summary.value("wheels", json::array());
   for (std::size_t k = 0; k < wheels.size(); ++k) {
     const json& wheel = wheels[k];
-    const auto millimetres = [&](const char* key) { return 1e3 * number(wheel, key); };
+    const auto millimetres = [&](const char* key) { return 1e3 * number_at(wheel, key); };
     if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
     if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario);
     const auto told = [&](const char* key, const char* sem) {
@@ -226,17 +222,17 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
       text += ", no rut measured: " + why.get<std::string>();
     text += "\n" + place_warning(wheel, scenario.terrain->describe().yields);
   }
-  if (const double added = number(summary, "substeps_added"); added > 0.0)
+  if (const double added = number_at(summary, "substeps_added"); added > 0.0)
     text += fmt::format(
-        "furrow: hard contacts: the terrain took {:.0f} more substeps, in {:.2g} % of the time, of at least "
-        "1/{:.0f} "
+        "furrow: hard contacts: the terrain took {:.0f} more substeps, in {:.2g} % of the time, of at least 1/{:.0f} "
         "of the step\n",
-        added, 100.0 * number(summary, "substeps_refined_share"), number(summary, "substeps_most_parts"));
-  text += subject_lines(summary, number(summary, "average_from_s"));
+        added, 100.0 * number_at(summary, "substeps_refined_share"), number_at(summary, "substeps_most_parts"));
+  text += subject_lines(summary, number_at(summary, "average_from_s"));
   text += end_lines(summary, scenario) + event_lines(summary);
   text += accounts_line(summary);
-  text += fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}", number(summary, "wall_s"),
-                      number(summary, "simulated_s"), number(summary, "settle_wall_s"), ranks_text(summary));
+  text +=
+      fmt::format("furrow: {:.1f} s for {:g} simulated s, {:.1f} s to prepare the bed{}", number_at(summary, "wall_s"),
+                  number_at(summary, "simulated_s"), number_at(summary, "settle_wall_s"), ranks_text(summary));
   return text;
 }
 

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <memory>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/checkpoint.hpp"
@@ -50,10 +49,10 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
   const auto page = std::find_if(made.begin(), made.end(),
                                  [](const std::filesystem::path& file) { return file.extension() == ".html"; });
   if (page != made.end())
-    launch::say(fmt::format("furrow: open {} in a browser to see the whole run; {} plots are beside it\n",
-                            page->string(), made.size() - 1));
+    launch::say("furrow: open {} in a browser to see the whole run; {} plots are beside it\n", page->string(),
+                made.size() - 1);
   else
-    launch::say(fmt::format("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1));
+    launch::say("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1);
 }
 
 /// What can be done with a run that did not finish. Physics that failed fails again where nothing is changed.
@@ -68,8 +67,8 @@ void tell_how_to_continue(const std::filesystem::path& directory, const launch::
                  physics ? ", perhaps with a smaller run.step" : "");
   else if (physics)
     std::fprintf(stderr,
-                 "furrow: a resumed run would fail at the same step; to continue from the last checkpoint "
-                 "with a smaller step: furrow resume %s --set run.step=%s\n",
+                 "furrow: a resumed run would fail at the same step; to continue from the last checkpoint with a "
+                 "smaller step: furrow resume %s --set run.step=%s\n",
                  folder.c_str(), number_text(0.5 * scenario.run.step).c_str());
   else
     std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n", folder.c_str());
@@ -175,10 +174,10 @@ void refuse_tasks_without_mpi() {
   const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
   if (!tasks || std::atoi(tasks) < 2) return;
   const char* task = std::getenv("SLURM_PROCID");
-  const Error error = input_error("srun", "",
-                                  fmt::format("started {} tasks without MPI, expected srun --mpi=pmix, or furrow run "
-                                              "without srun, which starts its own ranks",
-                                              tasks));
+  const Error error = input_error(
+      "srun", "",
+      "started {} tasks without MPI, expected srun --mpi=pmix, or furrow run without srun, which starts its own ranks",
+      tasks);
   if (task && std::atoi(task) > 0 && first_rank_speaks()) std::exit(static_cast<int>(error.code()));
   throw error;
 }
@@ -190,7 +189,7 @@ ExitCode run_supervised(const RunArguments& arguments) {
   require_launch(scenario);
   launch::RunDirectory directory(scenario.name, arguments.out, arguments.overwrite, arguments.scenario);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: {}, results in {}\n", scenario.name, directory.path().string()));
+  launch::say("furrow: {}, results in {}\n", scenario.name, directory.path().string());
   return supervise_run(scenario, directory, arguments);
 }
 
@@ -203,15 +202,13 @@ ExitCode resume_supervised(const RunArguments& arguments) {
   for (const auto* warnings : {&plan.scenario.warnings, &plan.warnings})
     for (const std::string& warning : *warnings) print_warning(warning);
   if (plan.finished) {
-    launch::say(fmt::format("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n",
-                            directory.path().string(), plan.ended));
-    std::cout << directory.path().string() << "\n";
+    tell_finished(directory.path(), plan.ended);
     return ExitCode::done;
   }
   require_launch(plan.scenario);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name,
-                          plan.point.manifest.time, directory.path().string()));
+  launch::say("furrow: continuing {} from t = {:g} s, results in {}\n", plan.scenario.name, plan.point.manifest.time,
+              directory.path().string());
   return supervise_run(plan.scenario, directory, arguments);
 }
 
@@ -238,9 +235,8 @@ Action run_options(CLI::App& command, Typed& typed) {
                    "Write profile.json too: where the time of each step goes (Chrome trace).");
   add_no_plots(command, arguments->plots);
   command.add_option("--seeds", arguments->seeds,
-                     "Run on this number of beds, 2 to 1000, with run.seed, run.seed + 1, …, and write means and "
-                     "95 % intervals. "
-                     "The same command continues interrupted ones.");
+                     "Run on this number of beds, 2 to 1000, with run.seed, run.seed + 1, …, and write means and 95 % "
+                     "intervals. The same command continues interrupted ones.");
   command.add_option(
       "--jobs", arguments->jobs,
       "Run this number of beds at once, each with its share of the cores (default: 1). It needs --seeds.");
@@ -267,6 +263,11 @@ void require_launch(const scenario::Scenario& scenario) {
   launch::require_files(scenario::rank_table(scenario).size());
 }
 
+void tell_finished(const std::filesystem::path& run, double ended) {
+  launch::say("furrow: {} is finished: it ended at {:g} s; there is nothing to do\n", run.string(), ended);
+  std::cout << run.string() << std::endl;
+}
+
 Command run_entry() {
   return {
       .name = "run",
@@ -282,8 +283,7 @@ Command resume_entry() {
   return {.name = "resume",
           .task = task::run,
           .purpose =
-              "Continue a run from its last checkpoint. The result is bit-identical to that of an "
-              "uninterrupted run.",
+              "Continue a run from its last checkpoint. The result is bit-identical to that of an uninterrupted run.",
           .options = resume_options,
           .examples = {{"resume results/first_look-001", "Go to the end that the scenario gives."},
                        {"resume results/first_look-001 --until 3", "Lengthen a finished run to 3 s."}}};

@@ -21,36 +21,28 @@ namespace furrow::commands {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using checkpoint::value_at;
+using checkpoint::number_at, checkpoint::value_at;
 
 constexpr int kMostBeds = 1000;
 
 void require_options(const RunArguments& arguments) {
-  const auto require = [](bool ok, const std::string& option, const std::string& what) {
-    if (!ok) throw input_error("command line", option, what);
-  };
-  require(*arguments.seeds >= 2 && *arguments.seeds <= kMostBeds, "--seeds",
-          fmt::format("is {}, expected 2 to {} beds", *arguments.seeds, kMostBeds));
-  require(arguments.jobs.value_or(1) >= 1 && arguments.jobs.value_or(1) <= 1024, "--jobs",
-          fmt::format("is {}, expected 1 to 1024", arguments.jobs.value_or(1)));
-  require(!arguments.profile, "--profile", "is given with --seeds, expected it for a run on one bed");
-}
-
-double number(const Json& summary, const std::string& path) {
-  const Json value = value_at(summary, path);
-  return value.is_number() ? value.get<double>() : NAN;
+  require_option(*arguments.seeds >= 2 && *arguments.seeds <= kMostBeds, "--seeds",
+                 fmt::format("is {}, expected 2 to {} beds", *arguments.seeds, kMostBeds));
+  require_option(arguments.jobs.value_or(1) >= 1 && arguments.jobs.value_or(1) <= 1024, "--jobs",
+                 fmt::format("is {}, expected 1 to 1024", arguments.jobs.value_or(1)));
+  require_option(!arguments.profile, "--profile", "is given with --seeds, expected it for a run on one bed");
 }
 
 /// "sinkage 21.0 ± 0.6 mm", empty where it was not measured.
 std::string figure_text(const Json& wheel, const char* words, const char* figure, double scale, const char* unit) {
-  const double mean = number(wheel, std::string(figure) + ".mean");
+  const double mean = number_at(wheel, std::string(figure) + ".mean");
   if (!std::isfinite(mean)) return "";
-  const double half = number(wheel, std::string(figure) + ".half_width_95");
+  const double half = number_at(wheel, std::string(figure) + ".half_width_95");
   return fmt::format("{} {} {}", words, with_error(scale * mean, scale * half), unit);
 }
 
 std::string wheel_text(const Json& wheel, int beds, const scenario::Scenario& scenario) {
-  if (number(wheel, "drawbar_pull_N.mean") == 0.0 && number(wheel, "drawbar_pull_N.sd") == 0.0)
+  if (number_at(wheel, "drawbar_pull_N.mean") == 0.0 && number_at(wheel, "drawbar_pull_N.sd") == 0.0)
     return fmt::format(
         "furrow: {} beds: the tire did not touch the terrain in the averaging window: nothing was measured\n", beds);
   std::vector<std::string> parts;
@@ -60,10 +52,10 @@ std::string wheel_text(const Json& wheel, int beds, const scenario::Scenario& sc
     if (!part.empty()) parts.push_back(part);
   std::string text =
       fmt::format("furrow: {} beds: {} (mean over beds and 95 % interval)\n", beds, fmt::join(parts, ", "));
-  if (const double sd = number(wheel, "drawbar_pull_N.sd"); std::isfinite(sd))
+  if (const double sd = number_at(wheel, "drawbar_pull_N.sd"); std::isfinite(sd))
     text += fmt::format("furrow: from bed to bed the pull varies by {} N (standard deviation)\n", digits(sd));
-  text += expected_text(scenario.expected, beds, number(wheel, "drawbar_pull_N.mean"), number(wheel, "sinkage_m.mean"),
-                        number(wheel, "rut_depth_m.mean"));
+  text += expected_text(scenario.expected, beds, number_at(wheel, "drawbar_pull_N.mean"),
+                        number_at(wheel, "sinkage_m.mean"), number_at(wheel, "rut_depth_m.mean"));
   return text;
 }
 
@@ -75,7 +67,7 @@ std::string beds_text(const Json& summary, const scenario::Scenario& scenario) {
   std::string text;
   const Json failed = value_at(summary, "failed.beds"), unsteady = value_at(summary, "not_steady");
   const Json wheels = value_at(summary, "wheels");
-  const auto beds = static_cast<int>(number(summary, "seeds")) - static_cast<int>(failed.size());
+  const auto beds = static_cast<int>(number_at(summary, "seeds")) - static_cast<int>(failed.size());
   if (beds < 2) return text;
   for (std::size_t k = 0; k < wheels.size(); ++k) {
     if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
@@ -99,7 +91,7 @@ ExitCode run_beds_in(launch::RunDirectory& directory, const scenario::Scenario& 
   study::begin_beds(directory, scenario.digest, arguments.overwrite);
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: {} on {} beds, results in {}\n", scenario.name, *arguments.seeds, folder.string()));
+  launch::say("furrow: {} on {} beds, results in {}\n", scenario.name, *arguments.seeds, folder.string());
   const ExitCode code = sweep.run(directory.lock());
   if (code != ExitCode::done && directory.replaces()) {
     const std::vector<study::Sweep::Outcome> outcomes = sweep.outcomes();

@@ -3,6 +3,7 @@
 // (scripts/cluster/README.md).
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <regex>
 
@@ -13,6 +14,7 @@
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow::commands {
 namespace {
@@ -87,13 +89,9 @@ launch::HostView host_view(const Layout& layout, int node, int tires, int cores)
   launch::HostView host;
   host.machine_cores = cores;
   std::vector<int> numbers(static_cast<std::size_t>(cores));
-  for (int i = 0; i < cores; ++i) numbers[static_cast<std::size_t>(i)] = i;
-  for (int rank = node * layout.each; rank < std::min(layout.ranks, (node + 1) * layout.each); ++rank) {
-    const Address address = rank == 0       ? Address{Role::rig, 0}
-                            : rank <= tires ? Address{Role::tire, rank - 1}
-                                            : Address{Role::terrain, rank - 1 - tires};
-    host.nodes.push_back({address, numbers, false});
-  }
+  std::iota(numbers.begin(), numbers.end(), 0);
+  for (int rank = node * layout.each; rank < std::min(layout.ranks, (node + 1) * layout.each); ++rank)
+    host.nodes.push_back({address_of(rank, tires), numbers, false});
   return host;
 }
 
@@ -146,7 +144,7 @@ std::string directives(const scenario::Scenario& scenario, const SlurmArguments&
 /// This program; of an installed tree the command that takes the build for the processor where the job runs.
 std::filesystem::path program_for_all_nodes() {
   std::error_code error;
-  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path own = this_program();
   const std::filesystem::path builds = own.parent_path().parent_path();  // libexec/furrow/<level>/furrow
   const std::filesystem::path command = builds.parent_path().parent_path() / "bin" / "furrow";
   const bool installed = builds.filename() == "furrow" && builds.parent_path().filename() == "libexec";
@@ -186,8 +184,8 @@ exit "$code"
 
 CLI::Option* add_slurm_options(CLI::App& command, SlurmArguments& job) {
   CLI::Option* slurm = command.add_flag("--slurm")->description(
-      "Print a batch script for sbatch. It saves the run before its time "
-      "is over, and continues when it is queued again.");
+      "Print a batch script for sbatch. It saves the run before its time is over, and continues when it is queued "
+      "again.");
   const auto of_slurm = [&](CLI::Option* option) { option->needs(slurm); };
   of_slurm(
       command.add_option("--nodes", job.nodes, "Use this number of nodes; the ranks are spread over them in order.")
@@ -198,9 +196,8 @@ CLI::Option* add_slurm_options(CLI::App& command, SlurmArguments& job) {
                ->check(above_zero()));
   of_slurm(command.add_option("--partition", job.partition, "Submit to this partition (default: the cluster's)."));
   of_slurm(command.add_option("--time", job.time,
-                              "Limit one start of the job to this time, in minutes, as hh:mm:ss or as "
-                              "days-hh:mm:ss. A longer run takes "
-                              "several starts (default: the partition's limit)."));
+                              "Limit one start of the job to this time, in minutes, as hh:mm:ss or as days-hh:mm:ss. A "
+                              "longer run takes several starts (default: the partition's limit)."));
   of_slurm(command.add_option("--account", job.account, "Charge the job to this account (default: your own)."));
   of_slurm(command.add_option(
       "--out", job.out,

@@ -3,8 +3,6 @@
 #include <iostream>
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "nodes/commands/command_table.hpp"
 #include "nodes/launch/messages.hpp"
 #include "nodes/launch/progress.hpp"
@@ -30,12 +28,9 @@ struct SoilArguments {
 };
 
 terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains, const SoilArguments& arguments) {
-  const auto require = [](bool ok, const char* key, const std::string& what) {
-    if (!ok) throw input_error("command line", key, what);
-  };
-  require(arguments.seeds >= 1 && arguments.seeds <= 100, "--seeds",
-          "is " + std::to_string(arguments.seeds) + ", expected 1 to 100");
-  require(arguments.speed > 0.0 && arguments.speed <= 10.0, "--speed", "expected above 0 up to 10 m/s");
+  require_option(arguments.seeds >= 1 && arguments.seeds <= 100, "--seeds",
+                 "is " + std::to_string(arguments.seeds) + ", expected 1 to 100");
+  require_option(arguments.speed > 0.0 && arguments.speed <= 10.0, "--speed", "expected above 0 up to 10 m/s");
   terrain::soil::SoilOptions o;
   o.material = grains;
   o.seeds = arguments.quick ? 1 : arguments.seeds;
@@ -45,19 +40,19 @@ terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains, 
   o.stresses = arguments.stresses;
   std::sort(o.stresses.begin(), o.stresses.end());
   for (const double stress : o.stresses)
-    require(stress > 0.0 && stress <= 1e7, "--stress",
-            "is " + number_text(stress) + " Pa, expected above 0 up to 1e7 Pa");
-  require(o.stresses.empty() || o.stresses.front() < o.stresses.back(), "--stress",
-          o.stresses.size() == 1
-              ? "is given once, expected two stresses or more: c and φ are of a line through them"
-              : "is the same each time, expected two stresses or more: c and φ are of a line through them");
+    require_option(stress > 0.0 && stress <= 1e7, "--stress",
+                   "is " + number_text(stress) + " Pa, expected above 0 up to 1e7 Pa");
+  require_option(o.stresses.empty() || o.stresses.front() < o.stresses.back(), "--stress",
+                 o.stresses.size() == 1
+                     ? "is given once, expected two stresses or more: c and φ are of a line through them"
+                     : "is the same each time, expected two stresses or more: c and φ are of a line through them");
   const auto& only = arguments.only;
   const auto asked = [&](const char* test) {
     return only.empty() || std::find(only.begin(), only.end(), test) != only.end();
   };
   for (const std::string& test : only)
-    require(test == "plate" || test == "shear" || test == "cone" || test == "repose", "--only",
-            "is '" + test + "', expected plate, shear, cone or repose");
+    require_option(test == "plate" || test == "shear" || test == "cone" || test == "repose", "--only",
+                   "is '" + test + "', expected plate, shear, cone or repose");
   o.plate = asked("plate"), o.shear = asked("shear"), o.cone = asked("cone"), o.repose = asked("repose");
   return o;
 }
@@ -82,7 +77,7 @@ ExitCode test_soil(const scenario::Scenario& scenario, const SoilArguments& argu
                       .what());
   launch::RunDirectory directory(scenario.name + "-soil", arguments.out, arguments.overwrite);
   launch::catch_stop_signals();
-  launch::say(fmt::format("furrow: soil tests of {}, results in {}\n", scenario.name, directory.path().string()));
+  launch::say("furrow: soil tests of {}, results in {}\n", scenario.name, directory.path().string());
   try {
     launch::ProgressDisplay display;
     const double begin = wall_clock();
@@ -121,9 +116,8 @@ Action soil_options(CLI::App& command, Typed& typed) {
       ->allow_extra_args(false);
   command
       .add_option("--stress", arguments->stresses,
-                  "Shear under this normal stress, Pa. Repeat the option: two stresses or more are needed "
-                  "(default: 20, "
-                  "50 and 100 kPa, less for soft grains).")
+                  "Shear under this normal stress, Pa. Repeat the option: two stresses or more are needed (default: "
+                  "20, 50 and 100 kPa, less for soft grains).")
       ->take_all()
       ->allow_extra_args(false);
   command.add_flag("--quick", arguments->quick,
@@ -137,8 +131,8 @@ Command soil_entry() {
   return {.name = "soil",
           .task = task::test,
           .purpose =
-              "Run virtual soil tests on a scenario's grains (plate sinkage, direct shear, "
-              "cone, angle of repose) and print the results as JSON.",
+              "Run virtual soil tests on a scenario's grains (plate sinkage, direct shear, cone, angle of repose) and "
+              "print the results as JSON.",
           .options = soil_options,
           .examples = {
               {"soil drawbar_pull_small.json --quick", "Get an impression within seconds."},

@@ -3,8 +3,6 @@
 #include <iostream>
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "nodes/commands/command_table.hpp"
 #include "nodes/launch/run_directory.hpp"
 #include "nodes/launch/signals.hpp"
@@ -33,9 +31,9 @@ ExitCode sweep_study(const SweepArguments& arguments) {
   sweep.require_places();
   if (const std::size_t others = sweep.runs_of_another_study(); others > 0)
     print_warning(
-        fmt::format("{}: held {} run{} of another study, or of this one before it was changed, and is replaced; "
-                    "they stay in {}, and that study's sweep makes its table again",
-                    (folder / "sweep.csv").string(), others, others > 1 ? "s" : "", (folder / "runs").string()));
+        "{}: held {} run{} of another study, or of this one before it was changed, and is replaced; they "
+        "stay in {}, and that study's sweep makes its table again",
+        (folder / "sweep.csv").string(), others, others > 1 ? "s" : "", (folder / "runs").string());
   launch::remove_unfinished(folder);
   launch::catch_stop_signals();
   const ExitCode code = sweep.run(directory.lock());

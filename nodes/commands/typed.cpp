@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <fmt/format.h>
-
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/printable.hpp"
 
@@ -36,8 +34,7 @@ Settings settings_of(const Typed& typed) {
   const auto add = [&](const char* option, const std::string& value, const char* key) {
     if (value.empty()) return;
     for (const auto& [other, unused] : settings)
-      if (other == key)
-        throw input_error("command line", option, fmt::format("is given with --set {}, expected one of them", key));
+      if (other == key) throw input_error("command line", option, "is given with --set {}, expected one of them", key);
     settings.emplace_back(key, value);
   };
   add("--threads", typed.threads, "run.threads");

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/calibrate/study.hpp"
@@ -29,8 +28,8 @@ ExitCode validate(Typed& typed, bool json) {
   if (vehicle || calibration) {
     if (!settings_of(typed).empty())
       throw input_error("command line", typed.threads.empty() ? "--set" : "--threads",
-                        fmt::format("is given with {}, expected a scenario",
-                                    vehicle ? "the file of a vehicle" : "a calibration study"));
+                        "is given with {}, expected a scenario",
+                        vehicle ? "the file of a vehicle" : "a calibration study");
     return vehicle ? validate_vehicle(typed.scenario, json) : validate_calibration(typed.scenario, json);
   }
   const scenario::Scenario scenario = load(typed);
@@ -79,8 +78,8 @@ Command validate_entry() {
   return {.name = "validate",
           .task = task::ask,
           .purpose =
-              "Check a scenario and estimate what a run of it will need, check a vehicle and print "
-              "its state at rest, or check a calibration study and print what it fits.",
+              "Check a scenario and estimate what a run of it will need, check a vehicle and print its state at rest, "
+              "or check a calibration study and print what it fits.",
           .options = validate_options,
           .examples = {{"validate drawbar_pull.json", "Learn time, memory and disk of a run before it."},
                        {"validate hmmwv.json", "See axle loads, ride heights and modes."}}};

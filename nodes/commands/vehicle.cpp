@@ -1,6 +1,5 @@
 // `furrow kc` and `furrow validate` of a vehicle: what there is to know of it before it drives.
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -40,14 +39,11 @@ struct KinematicsArguments {
 };
 
 void check(const KinematicsArguments& arguments) {
-  const auto require = [](bool ok, const char* key, const std::string& what) {
-    if (!ok) throw input_error("command line", key, what);
-  };
-  require(arguments.travel >= 0.0 && arguments.travel <= kMostTravel, "--travel",
-          fmt::format("is {}, expected above 0 up to {:g} m, or 0: a fifth of the smallest tire's radius",
-                      number_text(arguments.travel), kMostTravel));
-  require(arguments.points >= kLeastPoints && arguments.points <= kMostPoints, "--points",
-          fmt::format("is {}, expected {} to {}", arguments.points, kLeastPoints, kMostPoints));
+  require_option(arguments.travel >= 0.0 && arguments.travel <= kMostTravel, "--travel",
+                 fmt::format("is {}, expected above 0 up to {:g} m, or 0: a fifth of the smallest tire's radius",
+                             number_text(arguments.travel), kMostTravel));
+  require_option(arguments.points >= kLeastPoints && arguments.points <= kMostPoints, "--points",
+                 fmt::format("is {}, expected {} to {}", arguments.points, kLeastPoints, kMostPoints));
 }
 
 /// The vehicle on its tires; presses them where the cache does not know them.
@@ -57,16 +53,13 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
   launch::catch_stop_signals();
   launch::ProgressDisplay display;
   const auto tires = scenario::tires_of(spec);
-  const auto stop_if_signalled = [](const char* doing) {
-    if (launch::stop_signalled()) throw Error(ExitCode::stopped, fmt::format("stopped by a signal while {}", doing));
-  };
-  const auto standing = scenario::standing_tires(spec, tires, [&](const std::string& what, double share) {
-    stop_if_signalled("tires were pressed");
-    display.show({.phase = what + " the tires", .share = share});
-  });
+  const ProgressCall pressing = launch::shown_on(display, " while tires were pressed");
+  const auto standing = scenario::standing_tires(
+      spec, tires, [&](const std::string& what, double share) { pressing(what + " the tires", share); });
   const double pressed = wall_clock();
   vehicle::VehiclePage page = vehicle::vehicle_page(spec, standing, [&](const std::string& what, double share) {
-    stop_if_signalled("the vehicle was made to stand");
+    if (launch::stop_signalled())
+      throw Error(ExitCode::stopped, "stopped by a signal while the vehicle was made to stand");
     if (wall_clock() - pressed > kQuiet) display.show({.phase = what, .share = share});
   });
   display.clear();
@@ -78,10 +71,7 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
 std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,
                                           const vehicle::KinematicsOptions& options) {
   launch::ProgressDisplay display;
-  const ProgressCall show = [&](const std::string& what, double share) {
-    if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while suspensions were moved");
-    display.show({.phase = what, .share = share});
-  };
+  const ProgressCall show = launch::shown_on(display, " while suspensions were moved");
   try {
     std::vector<vehicle::KinematicsRow> rows = vehicle::kinematics(spec, page.loaded_radii, options, show);
     if (rows.empty())
@@ -89,9 +79,8 @@ std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, cons
     return rows;
   } catch (const Error& error) {
     if (error.code() != ExitCode::physics) throw;
-    throw input_error("command line", "--travel",
-                      fmt::format("is {:.4g} m: {}, expected a travel that every axle of {} can follow", options.travel,
-                                  error.what(), spec.file));
+    throw input_error("command line", "--travel", "is {:.4g} m: {}, expected a travel that every axle of {} can follow",
+                      options.travel, error.what(), spec.file);
   }
 }
 
@@ -177,8 +166,7 @@ Command kinematics_entry() {
   return {.name = "kc",
           .task = task::test,
           .purpose =
-              "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more "
-              "against travel and "
+              "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more against travel and "
               "steering, and print the folder of the results.",
           .options = add_options,
           .examples = {{"kc hmmwv.json --travel 0.05", "Move the wheels by 50 mm up and down."}}};

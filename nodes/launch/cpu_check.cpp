@@ -20,8 +20,8 @@ void say(const char* text) {
   if (!missing) return;
   say("furrow: error: this program was built for a processor with ");
   say(missing);
-  say(", which this one lacks; build it here with scripts/build.sh, or for any processor with "
-      "scripts/build.sh --portable\n");
+  say(", which this one lacks; build it here with scripts/build.sh, or for any processor with scripts/build.sh "
+      "--portable\n");
   _exit(2);
 }
 

@@ -9,7 +9,6 @@
 #include <cctype>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -81,17 +80,16 @@ bool end_left_launchers(const struct stat& file) {
   const std::vector<pid_t> holders = processes_with(file);
   if (holders.empty() || !std::ranges::all_of(holders, is_left_launcher)) return false;
   for (const pid_t process : holders) {
-    say(fmt::format("furrow: {} did not end although its ranks had; it is killed\n", process_text(process)));
+    say("furrow: {} did not end although its ranks had; it is killed\n", process_text(process));
     kill(process, SIGKILL);
   }
   return true;
 }
 
 Error taken(const fs::path& folder, const std::string& key, const struct stat& list) {
-  return input_error(
-      folder.string(), key,
-      fmt::format("is in use by a run that has not ended: {}; expected another folder, or that they end first",
-                  holders_text(list)));
+  return input_error(folder.string(), key,
+                     "is in use by a run that has not ended: {}; expected another folder, or that they end first",
+                     holders_text(list));
 }
 
 }  // namespace
@@ -120,8 +118,8 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
       begin = wall_clock();
     }
     if (!told)
-      say(fmt::format("furrow: {} is in use by a run that has not ended: {}; waiting for up to {:.0f} s\n",
-                      folder.string(), holders_text(list), patience));
+      say("furrow: {} is in use by a run that has not ended: {}; waiting for up to {:.0f} s\n", folder.string(),
+          holders_text(list), patience);
     told = true;
     usleep(kPause);
   }
@@ -133,8 +131,8 @@ bool FolderLock::try_to_take(int operation) const {
     if (errno == EINTR) continue;
     if (errno == EWOULDBLOCK) return false;
     if (operation == LOCK_EX)
-      say(fmt::format("furrow: warning: {} cannot be locked ({}): make sure that no other run uses it\n",
-                      folder_.string(), std::strerror(errno)));
+      say("furrow: warning: {} cannot be locked ({}): make sure that no other run uses it\n", folder_.string(),
+          std::strerror(errno));
     break;
   }
   return true;

@@ -15,9 +15,9 @@ HeldFolder::HeldFolder(const std::filesystem::path& folder)
 
 void HeldFolder::check() {
   if (!lock_.stands())
-    throw io_error(folder_.string(),
-                   "was moved, removed or emptied while the run was under way; the run ends here and writes nothing "
-                   "elsewhere");
+    throw io_error(
+        folder_.string(),
+        "was moved, removed or emptied while the run was under way; the run ends here and writes nothing elsewhere");
   for (Part& part : parts_) {
     struct stat now {};
     const bool there = stat(part.folder.c_str(), &now) == 0 && S_ISDIR(now.st_mode);

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <climits>
 #include <cstdlib>
 #include <exception>
 #include <new>
@@ -17,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "protocol/host.hpp"
 
 namespace furrow::launch {
 namespace {
@@ -93,8 +93,7 @@ void require_stack(char** argv) {
   if (setrlimit(RLIMIT_STACK, &limit) != 0)
     throw limit_error(
         fmt::format("the stack may take {} kB (ulimit -s), expected {} kB or more", given >> 10, kStack >> 10));
-  std::array<char, PATH_MAX> path{};
-  if (readlink("/proc/self/exe", path.data(), path.size() - 1) > 0) execv(path.data(), argv);
+  execv(this_program().c_str(), argv);
 }
 
 void require_files(std::size_t ranks) {

@@ -44,7 +44,6 @@ void end_where_processor_time_runs_out();
 /// wait for the other ranks.
 void end_where_no_thread_starts(const std::string& line, int descriptor = 2);
 inline constexpr const char* kNoThread =
-    "threads could not be started (ulimit -u, ulimit -v, or no memory), expected a higher limit or fewer "
-    "--threads";
+    "threads could not be started (ulimit -u, ulimit -v, or no memory), expected a higher limit or fewer --threads";
 
 }  // namespace furrow::launch

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace furrow::launch {
 
@@ -16,5 +19,9 @@ bool messages_are_silenced();
 
 /// Writes `text`, whole lines, unless messages are silenced.
 void say(const std::string& text);
+template <class First, class... More>
+void say(fmt::format_string<First, More...> text, First&& first, More&&... more) {
+  say(fmt::format(text, std::forward<First>(first), std::forward<More>(more)...));
+}
 
 }  // namespace furrow::launch

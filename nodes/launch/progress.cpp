@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 
 #include "nodes/launch/messages.hpp"
+#include "nodes/launch/signals.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/printable.hpp"
 
@@ -104,6 +106,13 @@ void ProgressDisplay::say_error(const std::string& text) {
 void ProgressDisplay::clear() {
   if (drawn_) std::fputs("\r\033[K", stderr);
   drawn_ = false;
+}
+
+ProgressCall shown_on(ProgressDisplay& display, const std::string& when) {
+  return [&display, when](const std::string& what, double share) {
+    if (stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal" + fmt::format(fmt::runtime(when), what));
+    display.show({.phase = what, .share = share});
+  };
 }
 
 }  // namespace furrow::launch

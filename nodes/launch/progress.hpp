@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "protocol/core/progress_call.hpp"
+
 namespace furrow::launch {
 
 struct Progress {
@@ -63,5 +65,10 @@ class ProgressDisplay {
   std::string phase_;
   PhaseClock clock_;
 };
+
+/// Shows on `display` what long work reports of itself, and ends the work when a signal asks for a stop.
+/// @param when of the message: " during {}", in which {} stands for what is done
+/// @throws Error(stopped) out of the call
+ProgressCall shown_on(ProgressDisplay& display, const std::string& when);
 
 }  // namespace furrow::launch

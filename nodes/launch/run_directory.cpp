@@ -25,7 +25,7 @@ constexpr const char* kKinematics = "kinematics.csv";  // of `furrow kc`
 constexpr const char* kModes = "modes.csv";            // of `furrow modes`
 
 Error no_list(const fs::path& folder, const std::string& key, const std::string& why) {
-  return input_error(folder.string(), key, fmt::format("holds no run's list of its files ({}): {}", kRunList, why));
+  return input_error(folder.string(), key, "holds no run's list of its files ({}): {}", kRunList, why);
 }
 
 /// What one command makes, and what the list of its folder holds from the start.
@@ -72,11 +72,6 @@ bool may_be_own(const fs::path& folder) {
   return bare || has_run_list(folder);
 }
 
-bool stands(const fs::path& at) {
-  std::error_code error;
-  return fs::exists(fs::symlink_status(at, error));
-}
-
 }  // namespace
 
 RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, bool overwrite, const fs::path& reads) {
@@ -113,13 +108,13 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
   require_plain_files(existing);
   if (!has_run_list(path_))
     throw no_list(path_, "",
-                  "an earlier version of furrow made it; continue it with that version, or start again with "
-                  "furrow run in a new folder");
+                  "an earlier version of furrow made it; continue it with that version, or start again with furrow run "
+                  "in a new folder");
   require_writable("");
   const RunList list = RunList::read(path_);
   for (const Kind& kind : kOthers)
     if (list.holds(kind.mark))
-      throw input_error(path_.string(), "", fmt::format("holds {}, expected a run; {}", kind.holds, kind.continued));
+      throw input_error(path_.string(), "", "holds {}, expected a run; {}", kind.holds, kind.continued);
   if (!lock_.stands()) lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
   require_no_links(true);
   take_back(path_);  // of who had the folder until now
@@ -139,8 +134,8 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
     } else {
       std::error_code error;
       if (!fs::is_directory(path_, error))
-        throw input_error(folder.string(), "--out",
-                          fmt::format("exists and is not a folder, expected a new one or that of a {}", kind.name));
+        throw input_error(folder.string(), "--out", "exists and is not a folder, expected a new one or that of a {}",
+                          kind.name);
       if (!may_be_own(path_))
         throw no_list(folder, "--out",
                       fmt::format("no {} made it, or an earlier version of furrow did; expected a new or empty folder",
@@ -150,8 +145,7 @@ RunDirectory::RunDirectory(const Continued& kind, const fs::path& folder, bool o
       take_back(path_);
       const RunList list = RunList::read(path_);
       if (!list.forms().empty() && !list.holds(kind.mark))
-        throw input_error(folder.string(), "--out",
-                          fmt::format("holds a run, expected a new folder or that of a {}", kind.name));
+        throw input_error(folder.string(), "--out", "holds a run, expected a new folder or that of a {}", kind.name);
       require_own(path_, files);
       if (overwrite) replace();
     }
@@ -212,8 +206,8 @@ bool RunDirectory::make() {
     if (reason == EEXIST && folder != missing.back()) continue;  // another run made it at the same time
     discard();
     if (reason == EEXIST) return false;
-    throw input_error(path_.string(), "--out",
-                      fmt::format("cannot be made ({}), expected a place that can be written", std::strerror(reason)));
+    throw input_error(path_.string(), "--out", "cannot be made ({}), expected a place that can be written",
+                      std::strerror(reason));
   }
   return true;
 }
@@ -229,9 +223,9 @@ void RunDirectory::begin() {
 
 void RunDirectory::take_over(const fs::path& reads) {
   if (!may_be_own(path_))
-    throw no_list(path_, "--out",
-                  "no run made it, or an earlier version of furrow did; expected a new or empty folder (move "
-                  "this one away)");
+    throw no_list(
+        path_, "--out",
+        "no run made it, or an earlier version of furrow did; expected a new or empty folder (move this one away)");
   require_writable("--out");
   lock_ = FolderLock(path_, "--out", FolderLock::Mode::alone);
   std::error_code error;
@@ -239,8 +233,8 @@ void RunDirectory::take_over(const fs::path& reads) {
   const RunList list = RunList::read(path_);
   for (const auto& [mark, name] : {std::pair{kStudy, "study"}, {kCalibration, "calibration"}})
     if (list.holds(mark))
-      throw input_error(path_.string(), "--out",
-                        fmt::format("holds a {}, expected a run's folder to overwrite, or a new one", name));
+      throw input_error(path_.string(), "--out", "holds a {}, expected a run's folder to overwrite, or a new one",
+                        name);
   require_no_links(false);
   take_back(path_);
   set_aside_ = set_aside(path_, reads);
@@ -311,12 +305,10 @@ void require_run_directory(const fs::path& folder) {
   if (!fs::is_directory(folder, error))
     throw input_error(folder.string(), "", "is not a folder, expected the folder of a run");
   if (access(folder.c_str(), R_OK | X_OK) != 0)
-    throw input_error(folder.string(), "",
-                      fmt::format("cannot be read: {}, expected the folder of a run", std::strerror(errno)));
+    throw input_error(folder.string(), "", "cannot be read: {}, expected the folder of a run", std::strerror(errno));
   if (is_run(folder)) return;
   if (has_run_list(folder) && RunList::read(folder).holds(kCalibration))
-    throw input_error(folder.string(), "",
-                      fmt::format("holds a calibration that has not ended; {}", kOthers[0].continued));
+    throw input_error(folder.string(), "", "holds a calibration that has not ended; {}", kOthers[0].continued);
   throw input_error(folder.string(), "", "holds no run, expected scenario.json or run.log in it");
 }
 

@@ -112,6 +112,11 @@ bool is_of_form(std::string_view name, std::string_view form, std::int64_t* numb
   return name.empty();
 }
 
+bool stands(const fs::path& at) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(at, error));
+}
+
 bool has_run_list(const fs::path& folder) {
   std::error_code error;
   return fs::is_regular_file(fs::symlink_status(folder / kRunList, error));
@@ -135,9 +140,8 @@ RunList RunList::read(const fs::path& folder) {
       continue;
     }
     if (line.starts_with(kKind))
-      throw input_error(file.string(), "",
-                        fmt::format("is of version '{}', expected {}: another version of furrow wrote it",
-                                    line.substr(kKind.size()), kVersion));
+      throw input_error(file.string(), "", "is of version '{}', expected {}: another version of furrow wrote it",
+                        line.substr(kKind.size()), kVersion);
     if (!begun || !is_inside(line))
       throw input_error(file.string() + ":" + place_in_text(text, from), "",
                         begun

@@ -49,6 +49,8 @@ class RunList {
   std::vector<std::string> forms_;
 };
 
+/// Whether anything is at this place, a link that leads nowhere too.
+bool stands(const std::filesystem::path& at);
 /// Whether the folder has a list.
 bool has_run_list(const std::filesystem::path& folder);
 

@@ -20,11 +20,6 @@ constexpr std::ptrdiff_t kHeadLines = 2;  // of evaluations.csv, before the firs
 /// What a command may list before its results: `furrow run` before its ranks are placed.
 const std::vector<std::string> kEarly{"run.log", "scenario.json", "summary_failed.json", kAsideFolder};
 
-bool stands(const fs::path& at) {
-  std::error_code error;
-  return fs::exists(fs::symlink_status(at, error));
-}
-
 std::ptrdiff_t lines_in(const fs::path& file) {
   if (!stands(file)) return 0;
   const std::string text = read_whole_file(file);

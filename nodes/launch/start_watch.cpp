@@ -38,7 +38,7 @@ double start_patience() {
   char* end = nullptr;
   const double seconds = std::strtod(text, &end);
   if (*end != '\0' || !(seconds > 0.0) || !std::isfinite(seconds))
-    throw input_error("environment", kVariable, fmt::format("is '{}', expected a number of seconds above 0", text));
+    throw input_error("environment", kVariable, "is '{}', expected a number of seconds above 0", text);
   return seconds;
 }
 

@@ -94,8 +94,7 @@ std::vector<std::string> launcher_command(const Launch& launch) {
       command.insert(command.end(), {"-x", variable});
   }
   command.insert(command.end(), {"-n", std::to_string(launch.ranks.size())});
-  std::error_code error;
-  command.push_back(std::filesystem::read_symlink("/proc/self/exe", error).string());
+  command.push_back(this_program().string());
   command.insert(command.end(), launch.arguments.begin(), launch.arguments.end());
   return command;
 }
@@ -117,10 +116,7 @@ void set_environment(const std::string& supervisor, bool yield) {
   if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // otherwise protocol/mpi_yield.hpp
   // Open MPI will not begin without a way to other machines, even where it needs none.
   if (!on_path("ssh") && !on_path("rsh")) setenv("OMPI_MCA_plm_rsh_agent", "/bin/false", 0);
-  for (const std::string& pair : passive_environment()) {
-    const std::size_t equals = pair.find('=');
-    setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 0);
-  }
+  set_passive_environment();
 }
 
 class Supervisor {

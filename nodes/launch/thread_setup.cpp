@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -75,8 +74,7 @@ std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
   const bool together = host.nodes.size() > 1 && all_share_the_same_cores(host);
   if (cores.size() > 1 || host.machine_cores < 2 || !wants_more || together) return {};
   return fmt::format(
-      "{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more "
-      "--cpus-per-task",
+      "{} is pinned to core {} of {}{}; start mpirun with --bind-to none, or srun with more --cpus-per-task",
       to_string(host.nodes[node].node), cores.front(), host.machine_cores,
       wanted > 1 ? fmt::format(" while {} threads are wanted", wanted) : std::string());
 }
@@ -211,20 +209,16 @@ void apply(const ThreadPlan& plan) {
   }
 }
 
-std::vector<std::string> passive_environment() { return {"OMP_WAIT_POLICY=passive", "OPENBLAS_NUM_THREADS=1"}; }
+void set_passive_environment() {
+  setenv("OMP_WAIT_POLICY", "passive", 0);
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+}
 
 void wait_passively(char** argv) {
   FURROW_ASSERT(argv != nullptr && argv[0] != nullptr, "argv");
   if (std::getenv("OMP_WAIT_POLICY")) return;
-  for (const std::string& pair : passive_environment()) {
-    const std::size_t equals = pair.find('=');
-    setenv(pair.substr(0, equals).c_str(), pair.substr(equals + 1).c_str(), 0);
-  }
-  char path[PATH_MAX];
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  if (length <= 0) return;  // no /proc: the threads spin, which costs time but no result
-  path[length] = '\0';
-  execv(path, argv);
+  set_passive_environment();
+  execv(this_program().c_str(), argv);  // without /proc the threads spin, which costs time but no result
 }
 
 }  // namespace furrow::launch

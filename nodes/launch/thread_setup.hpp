@@ -57,7 +57,7 @@ void apply(const ThreadPlan& plan);
 /// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program again.
 void wait_passively(char** argv);
 
-/// The variables that wait_passively sets, as NAME=value: for a supervisor to set them for the ranks it starts.
-std::vector<std::string> passive_environment();
+/// Sets the variables that wait_passively sets, but for those that are set already: for the ranks of a supervisor.
+void set_passive_environment();
 
 }  // namespace furrow::launch

@@ -22,32 +22,30 @@ struct AccountsRow {
   double residual = 0.0, turnover = 0.0;  // J
   Vec3 momentum_residual = Vec3::Zero();  // N s
 };
-void visit_fields(auto&& visit, FieldsOf<AccountsRow> auto& r) {
+void visit_fields(FieldsOf<AccountsRow> auto& r, auto&& visit) {
   using column::cumulative;
-  visit(column::instant("time_s", "s"), r.time);
-  visit_fields(visit, r.energy.work);
-  visit_fields(visit, r.energy.stored);
-  visit_fields(visit, r.energy.lost);
-  visit(cumulative("terrain_residual_J", "J"), r.energy.terrain_residual);
-  visit(cumulative("tire_residual_J", "J"), r.energy.tire_residual);
-  visit(cumulative("rig_residual_J", "J"), r.energy.rig_residual);
-  visit(cumulative("residual_J", "J"), r.residual);
-  visit(cumulative("turnover_J", "J"), r.turnover);
-  visit(cumulative("momentum_residual_x_Ns", "N s"), r.momentum_residual.x());
-  visit(cumulative("momentum_residual_y_Ns", "N s"), r.momentum_residual.y());
-  visit(cumulative("momentum_residual_z_Ns", "N s"), r.momentum_residual.z());
+  visit(r.time, column::instant("time_s", "s"));
+  visit_fields(r.energy.work, visit);
+  visit_fields(r.energy.stored, visit);
+  visit_fields(r.energy.lost, visit);
+  visit(r.energy.terrain_residual, cumulative("terrain_residual_J", "J"));
+  visit(r.energy.tire_residual, cumulative("tire_residual_J", "J"));
+  visit(r.energy.rig_residual, cumulative("rig_residual_J", "J"));
+  visit(r.residual, cumulative("residual_J", "J"));
+  visit(r.turnover, cumulative("turnover_J", "J"));
+  visit(r.momentum_residual.x(), cumulative("momentum_residual_x_Ns", "N s"));
+  visit(r.momentum_residual.y(), cumulative("momentum_residual_y_Ns", "N s"));
+  visit(r.momentum_residual.z(), cumulative("momentum_residual_z_Ns", "N s"));
 }
 
 /// Σ entries, Σ|entries|.
 template <HasFields S>
 std::pair<double, double> sums(const S& entries) {
   std::pair<double, double> sum{0.0, 0.0};
-  visit_fields(
-      [&](const Column&, const double& value) {
-        sum.first += value;
-        sum.second += std::abs(value);
-      },
-      entries);
+  visit_fields(entries, [&](const double& value, const Column&) {
+    sum.first += value;
+    sum.second += std::abs(value);
+  });
   return sum;
 }
 

@@ -30,19 +30,19 @@ struct TireAccount {
   Vec3 added_gravity_impulse = Vec3::Zero();  // of the same, N s
   Vec3 rim_velocity = Vec3::Zero();           // now, m/s
 };
-void visit_fields(auto&& visit, FieldsOf<TireAccount> auto& s) {
-  visit(Field{"model", ""}, s.model);
-  visit(Field{"terrain_work", "J"}, s.terrain_work);
-  visit(Field{"rim_work", "J"}, s.rim_work);
-  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
-  visit(Field{"terrain_impulse", "N s"}, s.terrain_impulse);
-  visit(Field{"spindle_impulse", "N s"}, s.spindle_impulse);
-  visit(Field{"sent_by_terrain", "N s"}, s.sent_by_terrain);
-  visit(Field{"sent_to_rig", "N s"}, s.sent_to_rig);
-  visit(Field{"added_energy", "J"}, s.added_energy);
-  visit(Field{"added_momentum", "kg m/s"}, s.added_momentum);
-  visit(Field{"added_gravity_impulse", "N s"}, s.added_gravity_impulse);
-  visit(Field{"rim_velocity", "m/s"}, s.rim_velocity);
+void visit_fields(FieldsOf<TireAccount> auto& s, auto&& visit) {
+  visit(s.model, Field{"model", ""});
+  visit(s.terrain_work, Field{"terrain_work", "J"});
+  visit(s.rim_work, Field{"rim_work", "J"});
+  visit(s.gravity_impulse, Field{"gravity_impulse", "N s"});
+  visit(s.terrain_impulse, Field{"terrain_impulse", "N s"});
+  visit(s.spindle_impulse, Field{"spindle_impulse", "N s"});
+  visit(s.sent_by_terrain, Field{"sent_by_terrain", "N s"});
+  visit(s.sent_to_rig, Field{"sent_to_rig", "N s"});
+  visit(s.added_energy, Field{"added_energy", "J"});
+  visit(s.added_momentum, Field{"added_momentum", "kg m/s"});
+  visit(s.added_gravity_impulse, Field{"added_gravity_impulse", "N s"});
+  visit(s.rim_velocity, Field{"rim_velocity", "m/s"});
 }
 
 /// What all parts say at one synchronization.
@@ -53,12 +53,12 @@ struct Books {
   rigs::RigAccounts rig;
   std::vector<TireAccount> tires;
 };
-void visit_fields(auto&& visit, FieldsOf<Books> auto& s) {
-  visit(Field{"time", "s"}, s.time);
-  visit(Field{"terrain", ""}, s.terrain);
-  visit(Field{"grains", ""}, s.grains);
-  visit(Field{"rig", ""}, s.rig);
-  visit(Field{"tires", ""}, s.tires);
+void visit_fields(FieldsOf<Books> auto& s, auto&& visit) {
+  visit(s.time, Field{"time", "s"});
+  visit(s.terrain, Field{"terrain", ""});
+  visit(s.grains, Field{"grains", ""});
+  visit(s.rig, Field{"rig", ""});
+  visit(s.tires, Field{"tires", ""});
 }
 
 /// Work done from outside, J.
@@ -68,12 +68,12 @@ struct WorkAccount {
   double guide = 0.0;  // by rails and steering
   double walls = 0.0;  // by walls and floor on the terrain
 };
-void visit_fields(auto&& visit, FieldsOf<WorkAccount> auto& s) {
+void visit_fields(FieldsOf<WorkAccount> auto& s, auto&& visit) {
   using column::cumulative;
-  visit(cumulative("drive_work_J", "J"), s.drive);
-  visit(cumulative("tow_work_J", "J"), s.tow);
-  visit(cumulative("guide_work_J", "J"), s.guide);
-  visit(cumulative("wall_work_J", "J"), s.walls);
+  visit(s.drive, cumulative("drive_work_J", "J"));
+  visit(s.tow, cumulative("tow_work_J", "J"));
+  visit(s.guide, cumulative("guide_work_J", "J"));
+  visit(s.walls, cumulative("wall_work_J", "J"));
 }
 
 /// What is stored, beyond what was stored at the start, J.
@@ -83,19 +83,19 @@ struct StoredAccount {
   double tire_kinetic = 0.0, tire_elastic = 0.0, tire_pressure = 0.0, tire_potential = 0.0;
   double rig_kinetic_and_potential = 0.0;  // without the tires' added masses
 };
-void visit_fields(auto&& visit, FieldsOf<StoredAccount> auto& s) {
+void visit_fields(FieldsOf<StoredAccount> auto& s, auto&& visit) {
   using column::instant;
-  visit(instant("terrain_kinetic_J", "J"), s.terrain_kinetic);
-  visit(instant("terrain_rotational_J", "J"), s.terrain_rotational);
-  visit(instant("terrain_potential_J", "J"), s.terrain_potential);
-  visit(instant("terrain_elastic_normal_J", "J"), s.terrain_elastic_normal);
-  visit(instant("terrain_elastic_tangential_J", "J"), s.terrain_elastic_tangential);
-  visit(instant("terrain_cohesion_J", "J"), s.terrain_cohesion);
-  visit(instant("tire_kinetic_J", "J"), s.tire_kinetic);
-  visit(instant("tire_elastic_J", "J"), s.tire_elastic);
-  visit(instant("tire_pressure_J", "J"), s.tire_pressure);
-  visit(instant("tire_potential_J", "J"), s.tire_potential);
-  visit(instant("rig_kinetic_and_potential_J", "J"), s.rig_kinetic_and_potential);
+  visit(s.terrain_kinetic, instant("terrain_kinetic_J", "J"));
+  visit(s.terrain_rotational, instant("terrain_rotational_J", "J"));
+  visit(s.terrain_potential, instant("terrain_potential_J", "J"));
+  visit(s.terrain_elastic_normal, instant("terrain_elastic_normal_J", "J"));
+  visit(s.terrain_elastic_tangential, instant("terrain_elastic_tangential_J", "J"));
+  visit(s.terrain_cohesion, instant("terrain_cohesion_J", "J"));
+  visit(s.tire_kinetic, instant("tire_kinetic_J", "J"));
+  visit(s.tire_elastic, instant("tire_elastic_J", "J"));
+  visit(s.tire_pressure, instant("tire_pressure_J", "J"));
+  visit(s.tire_potential, instant("tire_potential_J", "J"));
+  visit(s.rig_kinetic_and_potential, instant("rig_kinetic_and_potential_J", "J"));
 }
 
 /// What was lost, by mechanism, J.
@@ -107,20 +107,20 @@ struct LostAccount {
   double surface_lag = 0.0;  // at the contact surface, where forces come one step late
   double rim_lag = 0.0;      // at the rim likewise
 };
-void visit_fields(auto&& visit, FieldsOf<LostAccount> auto& s) {
+void visit_fields(FieldsOf<LostAccount> auto& s, auto&& visit) {
   using column::cumulative;
-  visit(cumulative("sliding_loss_J", "J"), s.sliding);
-  visit(cumulative("normal_damping_loss_J", "J"), s.normal_damping);
-  visit(cumulative("tangential_damping_loss_J", "J"), s.tangential_damping);
-  visit(cumulative("rolling_loss_J", "J"), s.rolling);
-  visit(cumulative("opening_loss_J", "J"), s.opening);
-  visit(cumulative("sleep_loss_J", "J"), s.sleep);
-  visit(cumulative("tire_viscous_loss_J", "J"), s.tire_viscous);
-  visit(cumulative("tire_numerical_loss_J", "J"), s.tire_numerical);
-  visit(cumulative("tire_solver_loss_J", "J"), s.tire_solver);
-  visit(cumulative("damper_loss_J", "J"), s.damper);
-  visit(cumulative("surface_lag_loss_J", "J"), s.surface_lag);
-  visit(cumulative("rim_lag_loss_J", "J"), s.rim_lag);
+  visit(s.sliding, cumulative("sliding_loss_J", "J"));
+  visit(s.normal_damping, cumulative("normal_damping_loss_J", "J"));
+  visit(s.tangential_damping, cumulative("tangential_damping_loss_J", "J"));
+  visit(s.rolling, cumulative("rolling_loss_J", "J"));
+  visit(s.opening, cumulative("opening_loss_J", "J"));
+  visit(s.sleep, cumulative("sleep_loss_J", "J"));
+  visit(s.tire_viscous, cumulative("tire_viscous_loss_J", "J"));
+  visit(s.tire_numerical, cumulative("tire_numerical_loss_J", "J"));
+  visit(s.tire_solver, cumulative("tire_solver_loss_J", "J"));
+  visit(s.damper, cumulative("damper_loss_J", "J"));
+  visit(s.surface_lag, cumulative("surface_lag_loss_J", "J"));
+  visit(s.rim_lag, cumulative("rim_lag_loss_J", "J"));
 }
 
 /// Energy since the start of the run; a line of the table of accounts holds it with the residual of momentum.

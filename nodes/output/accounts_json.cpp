@@ -1,6 +1,5 @@
 #include "nodes/output/accounts_json.hpp"
 
-#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -27,7 +26,7 @@ std::string key_of(const Column& column) {
 template <HasFields S>
 Json entries_json(const S& entries) {
   Json json;
-  visit_fields([&](const Column& column, const double& value) { json[key_of(column)] = json_number(value); }, entries);
+  visit_fields(entries, [&](const double& value, const Column& column) { json[key_of(column)] = json_number(value); });
   return json;
 }
 

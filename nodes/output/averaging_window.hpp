@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -27,17 +28,17 @@ struct Window {
   template <class Get>
   double mean(Get get) const {
     double sum = 0.0;
-    for (const WheelRow& row : rows) sum += get(row);
+    for (const WheelRow& row : rows) sum += std::invoke(get, row);
     return rows.empty() ? NAN : sum / static_cast<double>(rows.size());
   }
   template <class Get>
   double rate(Get get) const {
-    return rows.empty() ? NAN : (get(rows.back()) - get(before)) / duration();
+    return rows.empty() ? NAN : (std::invoke(get, rows.back()) - std::invoke(get, before)) / duration();
   }
   template <class Get>
   std::vector<double> samples_by(Get get) const {
     std::vector<double> values;
-    for (const WheelRow& row : rows) values.push_back(get(row));
+    for (const WheelRow& row : rows) values.push_back(std::invoke(get, row));
     return values;
   }
   /// None when the rig has no such column.

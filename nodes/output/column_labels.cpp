@@ -33,19 +33,8 @@ std::string long_name(const Column& column) {
 }
 
 std::string cell_methods(const Column& column) {
-  switch (column.kind) {
-    case ColumnKind::instant:
-      return "time_s: point";
-    case ColumnKind::mean:
-      return "time_s: mean";
-    case ColumnKind::cumulative:
-      return "time_s: sum";
-    case ColumnKind::largest:
-      return "time_s: maximum";
-    case ColumnKind::derived:
-      break;
-  }
-  return "";
+  constexpr const char* kMethods[] = {"time_s: point", "time_s: mean", "time_s: sum", "time_s: maximum", ""};
+  return kMethods[static_cast<std::size_t>(column.kind)];
 }
 
 }  // namespace furrow::output

@@ -1,7 +1,9 @@
 // Why a run that is complete ended where it did.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 namespace furrow::output {
 
@@ -14,16 +16,9 @@ enum class EndReason : std::int32_t {
 
 /// As results say it: "run_end", "end_wall", "side_wall", "overturned".
 inline const char* to_string(EndReason reason) {
-  switch (reason) {
-    case EndReason::end_wall:
-      return "end_wall";
-    case EndReason::side_wall:
-      return "side_wall";
-    case EndReason::overturned:
-      return "overturned";
-    default:
-      return "run_end";
-  }
+  constexpr const char* kNames[] = {"run_end", "end_wall", "side_wall", "overturned"};
+  const auto place = static_cast<std::size_t>(reason);
+  return kNames[place < std::size(kNames) ? place : 0];
 }
 
 }  // namespace furrow::output

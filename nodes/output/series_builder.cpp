@@ -21,11 +21,9 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 /// Clears what each interval measures, so that a column that is forgotten shows.
 void forget_interval(WheelRow& row) {
-  visit_fields(
-      [](const Column& column, double& value) {
-        if (column.kind == ColumnKind::mean || column.kind == ColumnKind::instant) value = kNotMeasured;
-      },
-      row);
+  visit_fields(row, [](double& value, const Column& column) {
+    if (column.kind == ColumnKind::mean || column.kind == ColumnKind::instant) value = kNotMeasured;
+  });
 }
 
 }  // namespace

@@ -74,20 +74,20 @@ class SeriesBuilder {
   Memory memory_;
 };
 
-void visit_fields(auto&& visit, FieldsOf<SeriesBuilder::Memory> auto& m) {
-  visit(Field{"started"}, m.started);
-  visit(Field{"rolled", "m/s"}, m.rolled);
-  visit(Field{"last_terrain_work", "J"}, m.last_terrain_work);
-  visit(Field{"last_tire_work", "J"}, m.last_tire_work);
-  visit(Field{"last_rim_work", "J"}, m.last_rim_work);
-  visit(Field{"sent", "N s"}, m.sent);
-  visit(Field{"sent_arrived", "N s"}, m.sent_arrived);
-  visit(Field{"sent_abs", "N s"}, m.sent_abs);
-  visit(Field{"sent_abs_arrived", "N s"}, m.sent_abs_arrived);
-  visit(Field{"last_spindle_force", "N"}, m.last_spindle.force);
-  visit(Field{"last_spindle_moment", "N m"}, m.last_spindle.moment);
-  visit(Field{"last_rim_position", "m"}, m.last_rim_position);
-  visit(Field{"last_angular_velocity", "rad/s"}, m.last_angular_velocity);
+void visit_fields(FieldsOf<SeriesBuilder::Memory> auto& m, auto&& visit) {
+  visit(m.started, Field{"started"});
+  visit(m.rolled, Field{"rolled", "m/s"});
+  visit(m.last_terrain_work, Field{"last_terrain_work", "J"});
+  visit(m.last_tire_work, Field{"last_tire_work", "J"});
+  visit(m.last_rim_work, Field{"last_rim_work", "J"});
+  visit(m.sent, Field{"sent", "N s"});
+  visit(m.sent_arrived, Field{"sent_arrived", "N s"});
+  visit(m.sent_abs, Field{"sent_abs", "N s"});
+  visit(m.sent_abs_arrived, Field{"sent_abs_arrived", "N s"});
+  visit(m.last_spindle.force, Field{"last_spindle_force", "N"});
+  visit(m.last_spindle.moment, Field{"last_spindle_moment", "N m"});
+  visit(m.last_rim_position, Field{"last_rim_position", "m"});
+  visit(m.last_angular_velocity, Field{"last_angular_velocity", "rad/s"});
 }
 
 }  // namespace furrow::output

@@ -67,7 +67,7 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
   auto reasons = unsteady_because(
       s, sinkage, {load, given, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
   if (in.run.failure) reasons.emplace_back("the run failed before its end");
-  const double late = w.rate([](const WheelRow& r) { return r.energy_error_abs; });
+  const double late = w.rate(&WheelRow::energy_error_abs);
   const double rolled = std::max(travel, turned), rolling = load * rolled / w.duration();
   if (rolled < kLeastRolled * radius && !w.rows.empty())
     reasons.push_back(
@@ -76,8 +76,8 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
                     1e3 * rolled, 100.0 * kLeastRolled));
   else if (late > kMaxLate * rolling)
     reasons.push_back(
-        fmt::format("contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of "
-                    "load × speed; take a smaller run.step{}",
+        fmt::format("contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of load "
+                    "× speed; take a smaller run.step{}",
                     late, 100.0 * late / rolling,
                     in.run.scenario.tires[in.wheel]->options().contact_tangent ? "" : " or tire.contact_tangent"));
   return {{"mean", json_number(s.mean)},
@@ -101,18 +101,17 @@ Json tire_axes_means(const Window& w) {
        {std::pair{"force_N", &WheelRow::iso_force}, std::pair{"moment_Nm", &WheelRow::iso_moment}}) {
     Json means = Json::array(), errors = Json::array();
     for (int i = 0; i < 3; ++i) {
-      std::vector<double> samples;
-      for (const WheelRow& row : w.rows) samples.push_back((row.*vector)[i]);
-      const SeriesStatistics s = statistics(samples);
+      const SeriesStatistics s =
+          statistics(w.samples_by([i, of = vector](const WheelRow& row) { return (row.*of)[i]; }));
       means.push_back(json_number(s.mean));
       errors.push_back(json_number(s.sem));
     }
     json[name] = means;
     json[std::string(name).insert(std::string(name).find('_'), "_sem")] = errors;
   }
-  json["slip_angle_rad"] = json_number(w.mean([](const WheelRow& r) { return r.slip_angle; }));
-  json["camber_angle_rad"] = json_number(w.mean([](const WheelRow& r) { return r.camber_angle; }));
-  json["loaded_radius_m"] = json_number(w.mean([](const WheelRow& r) { return r.loaded_radius; }));
+  json["slip_angle_rad"] = json_number(w.mean(&WheelRow::slip_angle));
+  json["camber_angle_rad"] = json_number(w.mean(&WheelRow::camber_angle));
+  json["loaded_radius_m"] = json_number(w.mean(&WheelRow::loaded_radius));
   return json;
 }
 
@@ -140,23 +139,23 @@ void add_rut(const WheelInput& in, Json& json) {
 
 void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   const double load = in.end.load, radius = in.card().tire_radius;
-  const SeriesStatistics sinkage = statistics(w.samples_by([](const WheelRow& r) { return r.sinkage; }));
+  const SeriesStatistics sinkage = statistics(w.samples_by(&WheelRow::sinkage));
   if (in.table.find(kPull)) json[kPull] = pull_statistics(in, w, sinkage);
   const auto mean = [&](auto get) { return w.mean(get); };
   const double pull = w.mean_of(kPull);
-  const double speed = mean([](const WheelRow& r) { return r.speed; });
-  const double spin = mean([](const WheelRow& r) { return r.spin; });
-  const double torque = mean([](const WheelRow& r) { return r.drive_torque; });
+  const double speed = mean(&WheelRow::speed);
+  const double spin = mean(&WheelRow::spin);
+  const double torque = mean(&WheelRow::drive_torque);
   const double force_z = mean([](const WheelRow& r) { return r.force.z(); });
-  const double lowest = mean([](const WheelRow& r) { return r.lowest_point; });
-  const double axle = mean([](const WheelRow& r) { return r.axle_height; });
+  const double lowest = mean(&WheelRow::lowest_point);
+  const double axle = mean(&WheelRow::axle_height);
   json["drawbar_coefficient"] = json_number(pull / load);
-  json["sinkage_m"] = json_number(mean([](const WheelRow& r) { return r.sinkage; }));
+  json["sinkage_m"] = json_number(mean(&WheelRow::sinkage));
   json["sinkage_sem_m"] = json_number(sinkage.sem);
   json["sinkage_n_eff"] = json_number(sinkage.n_eff);
   json["sinkage_drift_m_per_s"] = json_number(sinkage.slope * static_cast<double>(w.rows.size()) / w.duration());
   json["sinkage_drift_t"] = json_number(sinkage.drift.t);
-  json["sinkage_kinematic_m"] = json_number(mean([](const WheelRow& r) { return r.sinkage_kinematic; }));
+  json["sinkage_kinematic_m"] = json_number(mean(&WheelRow::sinkage_kinematic));
   add_rut(in, json);
   json["tire_deflection_m"] = json_number(radius - (axle - lowest));
   json["effective_rolling_radius_m"] = json_number(
@@ -166,13 +165,13 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   json["net_terrain_force_N"] = {json_number(mean([](const WheelRow& r) { return r.force.x(); })),
                                  json_number(mean([](const WheelRow& r) { return r.force.y(); })),
                                  json_number(force_z)};
-  const double momentum_rate = w.rate([](const WheelRow& r) { return r.vertical_momentum; });
+  const double momentum_rate = w.rate(&WheelRow::vertical_momentum);
   json["vertical_balance_residual"] = json_number((force_z - load - momentum_rate) / load);
-  json["terrain_resistance_N"] = json_number(-mean([](const WheelRow& r) { return r.normal_force_travel; }));
-  json["tractive_effort_N"] = json_number(mean([](const WheelRow& r) { return r.tractive_effort; }));
+  json["terrain_resistance_N"] = json_number(-mean(&WheelRow::normal_force_travel));
+  json["tractive_effort_N"] = json_number(mean(&WheelRow::tractive_effort));
   json["drive_torque_Nm"] = json_number(torque);
-  json["lateral_force_N"] = json_number(mean([](const WheelRow& r) { return r.lateral_force; }));
-  json["aligning_moment_Nm"] = json_number(mean([](const WheelRow& r) { return r.aligning_moment; }));
+  json["lateral_force_N"] = json_number(mean(&WheelRow::lateral_force));
+  json["aligning_moment_Nm"] = json_number(mean(&WheelRow::aligning_moment));
   json["tractive_efficiency"] = json_number(pull * speed / (torque * spin));
   json["motion_resistance_coefficient"] = json_number((torque / radius - pull) / load);
   json["iso_w"] = tire_axes_means(w);

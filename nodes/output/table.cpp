@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -64,8 +63,8 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
     : file_(file), subject_(table.subject), width_(table.columns.size()), stream_(std::fopen(file.c_str(), "rb+")) {
   if (!stream_ && errno == ENOENT)
     throw io_error(file_.string(),
-                   "is missing, and a run cannot be continued without the lines that the checkpoint knows: "
-                   "bring it back, or begin again with furrow run --overwrite");
+                   "is missing, and a run cannot be continued without the lines that the checkpoint knows: bring it "
+                   "back, or begin again with furrow run --overwrite");
   if (!stream_) throw io_error(file_.string(), std::string("cannot be opened to continue it: ") + std::strerror(errno));
   std::error_code error;
   const std::uintmax_t there = std::filesystem::file_size(file, error);

@@ -1,6 +1,5 @@
 #include "nodes/ranks/checkpoint_writer.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>

@@ -10,11 +10,11 @@ namespace furrow::ranks {
 struct NodeCost {
   double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<NodeCost> auto& s) {
-  visit(Field{"cpu_s", "s"}, s.cpu_s);
-  visit(Field{"compute_s", "s"}, s.compute_s);
-  visit(Field{"communicate_s", "s"}, s.communicate_s);
-  visit(Field{"wait_s", "s"}, s.wait_s);
+void visit_fields(FieldsOf<NodeCost> auto& s, auto&& visit) {
+  visit(s.cpu_s, Field{"cpu_s", "s"});
+  visit(s.compute_s, Field{"compute_s", "s"});
+  visit(s.communicate_s, Field{"communicate_s", "s"});
+  visit(s.wait_s, Field{"wait_s", "s"});
 }
 
 class CheckpointWriter {

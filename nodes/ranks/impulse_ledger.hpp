@@ -36,9 +36,9 @@ class ImpulseLedger {
   void restore(const Archive& archive);
 
  private:
-  friend void visit_fields(auto&& visit, FieldsOf<ImpulseLedger> auto& s) {
-    visit(Field{"settled", "N s"}, s.settled_);
-    visit(Field{"largest", "N s"}, s.largest_);
+  friend void visit_fields(FieldsOf<ImpulseLedger> auto& s, auto&& visit) {
+    visit(s.settled_, Field{"settled", "N s"});
+    visit(s.largest_, Field{"largest", "N s"});
   }
 
   std::vector<Vec3> owed_;  // L of each vertex, N s

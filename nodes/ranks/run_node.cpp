@@ -18,12 +18,8 @@
 namespace furrow::ranks {
 namespace {
 
-/// CPU time of all threads of this process, s; in-process tests share it.
-double cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+/// Of all threads of this process, s; in-process tests share it.
+double cpu_s() { return processor_time(CLOCK_PROCESS_CPUTIME_ID); }
 
 }  // namespace
 

@@ -22,16 +22,16 @@ inline constexpr char kGrainsBegin[] = "setup/grains_begin";
 struct MeasureOrder {
   std::vector<Vec3> rims;  // where they will stand, m
 };
-void visit_fields(auto&& visit, FieldsOf<MeasureOrder> auto& s) { visit(Field{"rims", "m"}, s.rims); }
+void visit_fields(FieldsOf<MeasureOrder> auto& s, auto&& visit) { visit(s.rims, Field{"rims", "m"}); }
 
 /// Now attach the tires' surfaces.
 struct AttachOrder {
   std::vector<SurfaceSetup> surfaces;
   std::vector<SurfaceState> start;
 };
-void visit_fields(auto&& visit, FieldsOf<AttachOrder> auto& s) {
-  visit(Field{"surfaces", ""}, s.surfaces);
-  visit(Field{"start", ""}, s.start);
+void visit_fields(FieldsOf<AttachOrder> auto& s, auto&& visit) {
+  visit(s.surfaces, Field{"surfaces", ""});
+  visit(s.start, Field{"start", ""});
 }
 
 /// Now advance from this step.
@@ -41,11 +41,11 @@ struct AdvanceOrder {
   std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end
   std::vector<SurfaceState> targets;
 };
-void visit_fields(auto&& visit, FieldsOf<AdvanceOrder> auto& s) {
-  visit(Field{"header", ""}, s.header);
-  visit(Field{"order", ""}, s.order);
-  visit(Field{"ends_at", ""}, s.ends_at);
-  visit(Field{"targets", ""}, s.targets);
+void visit_fields(FieldsOf<AdvanceOrder> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.order, Field{"order", ""});
+  visit(s.ends_at, Field{"ends_at", ""});
+  visit(s.targets, Field{"targets", ""});
 }
 
 /// The leader gives an order, the others receive it. A terrain of one rank (no group) sends none.

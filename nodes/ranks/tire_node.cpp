@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/carried_wrench.hpp"
 #include "nodes/ranks/early_end.hpp"
@@ -175,8 +173,8 @@ class TireNode : public Node {
   void describe_state() {
     report_.diagnostics = tire_->diagnostics();
     if (const char* missing = first_missing(report_.diagnostics))
-      throw physics_error(fmt::format("{}: its {} is not finite, or its model {} does not say it",
-                                      to_string(Address{Role::tire, index_}), missing, kind_));
+      throw physics_error("{}: its {} is not finite, or its model {} does not say it",
+                          to_string(Address{Role::tire, index_}), missing, kind_);
     const tire::NamedValues figures = tire_->figures();
     report_.newton_iterations = static_cast<std::int64_t>(figures.of("newton_iterations"));
     report_.factorizations = static_cast<std::int64_t>(figures.of("factorizations"));

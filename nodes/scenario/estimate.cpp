@@ -1,7 +1,6 @@
 #include "nodes/scenario/estimate.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>

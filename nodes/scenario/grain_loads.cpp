@@ -102,8 +102,8 @@ GrainLoads grain_loads(const Scenario& s) {
 std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
   if (!(loads.overlap > dem::kDeepestShare)) return std::nullopt;
   const std::string what = fmt::format(
-      "the deepest contact between {} is expected to overlap by {:.0f} % of a grain's diameter, and a run "
-      "ends above {:.0f} %: ",
+      "the deepest contact between {} is expected to overlap by {:.0f} % of a grain's diameter, and a run ends above "
+      "{:.0f} %: ",
       loads.on_tire ? "a grain and a tire" : "two grains", 100.0 * loads.overlap, 100.0 * dem::kDeepestShare);
   std::vector<std::string> wheels;
   if (const std::string label = wheel_label(describe_rig(s), loads.wheel); !label.empty()) wheels.push_back(label);

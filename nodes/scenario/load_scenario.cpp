@@ -1,8 +1,5 @@
 #include "nodes/scenario/load_scenario.hpp"
 
-#include <cmath>
-#include <cstdlib>
-
 #include <algorithm>
 #include <array>
 
@@ -31,7 +28,6 @@ namespace furrow::scenario {
 namespace {
 
 using nlohmann::json;
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kMaxKey = 256;  // bytes
@@ -66,14 +62,13 @@ void set_value(json& document, const std::string& key, const std::string& text, 
       const bool index =
           part.size() < 4 && std::all_of(part.begin(), part.end(), [](unsigned char c) { return std::isdigit(c); });
       if (!index || std::stoul(part) >= at->size())
-        throw input_error(
-            file, key, fmt::format("there is no entry '{}', expected 0 to {}", part, static_cast<int>(at->size()) - 1));
+        throw input_error(file, key, "there is no entry '{}', expected 0 to {}", part,
+                          static_cast<int>(at->size()) - 1);
       at = &(*at)[std::stoul(part)];
     } else if (at->is_object()) {
       at = &(*at)[part];
     } else {
-      throw input_error(
-          file, key, fmt::format("there is nothing below {}, expected a section before '.{}'", value_text(*at), part));
+      throw input_error(file, key, "there is nothing below {}, expected a section before '.{}'", value_text(*at), part);
     }
   }
   *at = value;
@@ -90,9 +85,9 @@ void refuse_vehicle_key(const json& document, const std::string& key, const std:
   const json name = rig.is_object() ? rig.value("vehicle", json()) : json();
   const std::string of = name.is_string() ? "'" + name.get<std::string>() + "'" : "the vehicle's file";
   throw input_error(file, key,
-                    fmt::format("is a key of {}, which --set does not reach, expected a copy of that file with "
-                                "another '{}', and --set rig.vehicle=COPY",
-                                of, within));
+                    "is a key of {}, which --set does not reach, expected a copy of that file with another '{}', and "
+                    "--set rig.vehicle=COPY",
+                    of, within);
 }
 
 Error all_problems(const std::string& file, const std::vector<Problem>& problems) {
@@ -127,9 +122,8 @@ json read_document(const std::string& file, const Settings& settings) {
   }
   if (document.contains("format_version") && document["format_version"].is_number_integer() &&
       document["format_version"] > kFormatVersion)
-    throw input_error(file, "format_version",
-                      fmt::format("is {}: the file is newer than this program, expected at most {}",
-                                  value_text(document["format_version"]), kFormatVersion));
+    throw input_error(file, "format_version", "is {}: the file is newer than this program, expected at most {}",
+                      value_text(document["format_version"]), kFormatVersion);
   if (document.contains("vehicle"))
     throw input_error(file, "vehicle", "is not a section, expected rig.vehicle beside rig.type 'vehicle'");
   return document;
@@ -180,7 +174,7 @@ void take_tires(const json& document, Scenario& s) {
     const tire::TireOptions& tire = s.tires[k]->options();
     if (tire.substeps != s.tire_substeps)
       throw input_error(s.file.string(), fmt::format("tires.{}.substeps", k),
-                        fmt::format("is {}, expected {} as for the first tire", tire.substeps, s.tire_substeps));
+                        "is {}, expected {} as for the first tire", tire.substeps, s.tire_substeps);
   }
 }
 

@@ -3,10 +3,7 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "nodes/scenario/scenario.hpp"
 
@@ -14,8 +11,7 @@ namespace furrow::scenario {
 
 /// Reads, applies `--set key=value` pairs, validates and completes a scenario.
 /// @throws Error(bad_input) naming file, key, what is wrong and what is expected; one line per mistake.
-Scenario load_scenario(const std::filesystem::path& file,
-                       const std::vector<std::pair<std::string, std::string>>& settings);
+Scenario load_scenario(const std::filesystem::path& file, const Settings& settings);
 
 /// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
 /// the physics alone.

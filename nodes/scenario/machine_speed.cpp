@@ -1,10 +1,8 @@
 #include "nodes/scenario/machine_speed.hpp"
 
-#include <ctime>
-
 #include <nlohmann/json.hpp>
 
-#include "protocol/core/error.hpp"
+#include "protocol/core/clock.hpp"
 #include "protocol/core/hash.hpp"
 #include "protocol/files/cache_folder.hpp"
 #include "protocol/files/data_files.hpp"
@@ -26,23 +24,18 @@ constexpr double kTireTime = 0.8;           // s
 constexpr double kTireWarm = 0.8;           // processor time before, s
 constexpr int kColumns = 60, kAcross = 12;  // mesh of the reference tire
 
-/// Processor time of this thread, s.
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
+double own_time() { return processor_time(CLOCK_THREAD_CPUTIME_ID); }
 
 /// Runs `step` for so much processor time and returns that of one.
 template <class Step>
 double time_of(double seconds, const Step& step) {
-  const double begin = processor_time();
+  const double begin = own_time();
   int count = 0;
   do {
     step();
     ++count;
-  } while (processor_time() - begin < seconds);
-  return (processor_time() - begin) / count;
+  } while (own_time() - begin < seconds);
+  return (own_time() - begin) / count;
 }
 
 double measured_grain_step() {

@@ -40,10 +40,9 @@ std::string belongs_to_others(const json& document, const ModelSection& of, cons
                               const std::filesystem::path& file) {
   std::string text;
   for (const std::string& key : keys) {
-    const Error one =
-        input_error(file.string(), fmt::format("{}.{}", of.name, key),
-                    fmt::format("is a key of {0} {1}, but {2}.{0} is '{3}', expected keys of that {0} alone",
-                                of.chooser, one_of(of.owners(key)), of.name, chosen_model(document, of)));
+    const Error one = input_error(file.string(), fmt::format("{}.{}", of.name, key),
+                                  "is a key of {0} {1}, but {2}.{0} is '{3}', expected keys of that {0} alone",
+                                  of.chooser, one_of(of.owners(key)), of.name, chosen_model(document, of));
     text += (text.empty() ? "" : "\n") + std::string(one.what());
   }
   return text;
@@ -66,8 +65,7 @@ bool chooses_model(const std::string& key) {
 }
 
 std::vector<std::string> set_aside_keys(json& document, const Schema& schema, const std::filesystem::path& file,
-                                        const std::vector<std::pair<std::string, std::string>>& settings,
-                                        std::span<const ModelSection> sections) {
+                                        const Settings& settings, std::span<const ModelSection> sections) {
   const bool completed = document.contains("completed_by");
   std::vector<std::string> warnings;
   for (const ModelSection& of : sections) {
@@ -84,9 +82,8 @@ std::vector<std::string> set_aside_keys(json& document, const Schema& schema, co
       throw Error(ExitCode::bad_input, belongs_to_others(document, of, stated, file));
     remove_foreign_keys(document, of);
     if (!stated.empty())
-      warnings.emplace_back(input_error(file.string(), chooser,
-                                        fmt::format("is '{}'; keys of other {}s are ignored: {}",
-                                                    chosen_model(document, of), of.chooser, fmt::join(stated, ", ")))
+      warnings.emplace_back(input_error(file.string(), chooser, "is '{}'; keys of other {}s are ignored: {}",
+                                        chosen_model(document, of), of.chooser, fmt::join(stated, ", "))
                                 .what());
   }
   return warnings;

@@ -6,11 +6,11 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "nodes/scenario/scenario.hpp"
 #include "nodes/scenario/schema.hpp"
 
 namespace furrow::scenario {
@@ -37,8 +37,7 @@ bool chooses_model(const std::string& key);
 /// @param settings of the command line. Returns a warning for each section of which something was set aside
 /// @throws Error(bad_input) naming each key that is another model's, and whose
 std::vector<std::string> set_aside_keys(nlohmann::json& document, const Schema& schema,
-                                        const std::filesystem::path& file,
-                                        const std::vector<std::pair<std::string, std::string>>& settings,
+                                        const std::filesystem::path& file, const Settings& settings,
                                         std::span<const ModelSection> sections = model_sections());
 
 /// Removes them from a completed scenario, whatever their values.

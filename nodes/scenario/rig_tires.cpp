@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
@@ -37,9 +36,8 @@ void fill_rig_tires(json& document, const std::string& file) {
     if (!given.is_array()) return;
     const std::size_t axles = static_cast<std::size_t>(own.back().axle) + 1;
     if (given.size() != own.size() && given.size() != axles)
-      throw input_error(file, "tires",
-                        fmt::format("has {} entries, expected {}, one per wheel, or {}, one per axle", given.size(),
-                                    own.size(), axles));
+      throw input_error(file, "tires", "has {} entries, expected {}, one per wheel, or {}, one per axle", given.size(),
+                        own.size(), axles);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const json& entry = given[given.size() == own.size() ? k : static_cast<std::size_t>(own[k].axle)];
       if (!is_entry(entry)) return;

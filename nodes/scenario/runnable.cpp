@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <fmt/format.h>
-
 #include "protocol/core/error.hpp"
 
 namespace furrow::scenario {
@@ -12,8 +10,8 @@ void require_runnable(const Scenario& scenario) {
   for (std::size_t k = 0; k < scenario.tires.size(); ++k) {
     const tire::TireDescription tire = scenario.tires[k]->describe();
     if (!tire.static_only.empty())
-      throw input_error(scenario.file.string(), scenario.tire_key(k, "file"),
-                        fmt::format("is a {}, {}", tire.name, tire.static_only));
+      throw input_error(scenario.file.string(), scenario.tire_key(k, "file"), "is a {}, {}", tire.name,
+                        tire.static_only);
   }
   if (const std::string lacking = scenario.terrain->lacking(); !lacking.empty())
     throw input_error(scenario.file.string(), "terrain.engine", lacking);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/fields.hpp"
@@ -16,6 +17,9 @@
 #include "tire/tire_spec.hpp"
 
 namespace furrow::scenario {
+
+/// Keys by their dotted paths with the values that they get in addition to the file, as `--set key=value` says them.
+using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// `run.*`
 struct RunOptions {
@@ -30,25 +34,22 @@ struct RunOptions {
   std::int64_t steps_in(double interval) const;
 };
 
-void visit_fields(auto&& visit, FieldsOf<RunOptions> auto& s) {
+void visit_fields(FieldsOf<RunOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("step", "s", above(0).to(0.1).usual(1e-7, 1e-3),
-            "Communication step: the interval at which all nodes exchange motions and forces."),
-        s.step);
-  visit(key("end", "s", above(0).to(1e5),
-            "Simulated time at which the run ends. It is rounded to a whole number of run.step."),
-        s.end);
-  visit(key("average_from", "s", from(0, 1e5),
-            "Start of the window over which the summary averages; the window ends with the run."),
-        s.average_from);
-  visit(key("threads", "", role::harmless,
+  visit(s.step, key("step", "s", above(0).to(0.1).usual(1e-7, 1e-3),
+                    "Communication step: the interval at which all nodes exchange motions and forces."));
+  visit(s.end, key("end", "s", above(0).to(1e5),
+                   "Simulated time at which the run ends. It is rounded to a whole number of run.step."));
+  visit(s.average_from, key("average_from", "s", from(0, 1e5),
+                            "Start of the window over which the summary averages; the window ends with the run."));
+  visit(s.threads,
+        key("threads", "", role::harmless,
             from(1, 1024).shaped(R"({"type": ["integer", "string"], "pattern": "^auto$", "default": "auto"})"),
-            "Number of threads of the terrain. auto: as many as the other ranks leave. Results do not depend on it."),
-        s.threads);
-  visit(key("seed", "", from(0, 9007199254740991), "Seed of the bed's random grain positions."), s.seed);
-  visit(key("peer_timeout", "s", role::harmless, from(1, 1e6),
-            "Time after which a rank counts as lost that gives no sign of life while another waits for it."),
-        s.peer_timeout);
+            "Number of threads of the terrain. auto: as many as the other ranks leave. Results do not depend on it."));
+  visit(s.seed, key("seed", "", from(0, 9007199254740991), "Seed of the bed's random grain positions."));
+  visit(s.peer_timeout,
+        key("peer_timeout", "s", role::harmless, from(1, 1e6),
+            "Time after which a rank counts as lost that gives no sign of life while another waits for it."));
 }
 
 /// `output.*`
@@ -57,17 +58,15 @@ struct OutputOptions {
   double frame_interval = 0.02;   // s; 0: none
 };
 
-void visit_fields(auto&& visit, FieldsOf<OutputOptions> auto& s) {
+void visit_fields(FieldsOf<OutputOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("series_interval", "s", above(0).to(1e5),
-            "Time between lines of timeseries.csv. In a line forces are means over the interval, positions, energies "
-            "and counts are instants, impulses and works are sums since the start. It is rounded to a whole number of "
-            "run.step, at least one."),
-        s.series_interval);
-  visit(key("frame_interval", "s", from(0, 1e5),
-            "Time between frames of grains and tire surface. It is rounded to a whole number of run.step, at least "
-            "one. 0: no frames."),
-        s.frame_interval);
+  visit(s.series_interval, key("series_interval", "s", above(0).to(1e5),
+                               "Time between lines of timeseries.csv. In a line forces are means over the interval, "
+                               "positions, energies and counts are instants, impulses and works are sums since the "
+                               "start. It is rounded to a whole number of run.step, at least one."));
+  visit(s.frame_interval, key("frame_interval", "s", from(0, 1e5),
+                              "Time between frames of grains and tire surface. It is rounded to a whole number of "
+                              "run.step, at least one. 0: no frames."));
 }
 
 /// `checkpoint.*`
@@ -78,21 +77,18 @@ struct CheckpointOptions {
   bool at_end = true;
 };
 
-void visit_fields(auto&& visit, FieldsOf<CheckpointOptions> auto& s) {
+void visit_fields(FieldsOf<CheckpointOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(
-      key("wall_interval", "s", role::harmless, from(0, 1e7),
-          "Wall time between checkpoints. The first ones come after 30, 60, 120, … s. 0: no checkpoints by wall time."),
-      s.wall_interval);
-  visit(key("interval", "s", role::harmless, from(0, 1e5),
-            "Simulated time between checkpoints. It is rounded to a whole number of run.step, at least one. 0: no "
-            "checkpoints by simulated time."),
-        s.interval);
-  visit(key("keep", "", role::harmless, from(1, 1000), "How many checkpoints are kept: the newest."), s.keep);
-  visit(key("at_end", "", role::harmless,
-            "Write a checkpoint at the end of the run too. It lets the run continue with a later run.end, and the next "
-            "pass of a study start from its terrain."),
-        s.at_end);
+  visit(s.wall_interval, key("wall_interval", "s", role::harmless, from(0, 1e7),
+                             "Wall time between checkpoints. The first ones come after 30, 60, 120, … s. 0: no "
+                             "checkpoints by wall time."));
+  visit(s.interval, key("interval", "s", role::harmless, from(0, 1e5),
+                        "Simulated time between checkpoints. It is rounded to a whole number of run.step, at least "
+                        "one. 0: no checkpoints by simulated time."));
+  visit(s.keep, key("keep", "", role::harmless, from(1, 1000), "How many checkpoints are kept: the newest."));
+  visit(s.at_end, key("at_end", "", role::harmless,
+                      "Write a checkpoint at the end of the run too. It lets the run continue with a later run.end, "
+                      "and the next pass of a study start from its terrain."));
 }
 
 /// `press.*`, optional: what `furrow press` takes where its options do not say it.
@@ -106,28 +102,25 @@ struct PressKeys {
   double cleat_position = 0.0;                       // of its middle, forward of the axle, m
 };
 
-void visit_fields(auto&& visit, FieldsOf<PressKeys> auto& s) {
+void visit_fields(FieldsOf<PressKeys> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("on", "", role::harmless, words("plate cleat"),
-            "Obstacle. plate: flat. cleat: a flat-topped bar across the direction of travel. A profile is given on the "
-            "command line: furrow press --on profile --profile FILE."),
-        s.on);
-  visit(key("deflection", "m", role::harmless, above(0).to(0.2), "Largest deflection of the load–deflection curve."),
-        s.deflection);
-  visit(key("points", "", role::harmless, from(1, 1000), "Number of points of the curve."), s.points);
-  visit(key("load", "N", role::harmless, above(0).to(1e7).usual(1, 200000).or_null(),
-            "Load at which the footprint is computed. null: the load that the scenario's first wheel carries."),
-        s.load);
-  visit(key("camber", "rad", role::harmless, from(-0.7, 0.7).usual(-0.3, 0.3),
-            "Inclination of the wheel about its forward axis. A positive one leans the top to the right of travel. "
-            "Flexible ring and planar tires are alike across their width and take 0 alone."),
-        s.camber);
-  visit(key("cleat_height", "m", role::harmless, above(0).to(0.2), "Height of the cleat."), s.cleat_height);
-  visit(key("cleat_width", "m", role::harmless, above(0).to(1),
-            "Width of the cleat's top along the direction of travel."),
-        s.cleat_width);
-  visit(key("cleat_position", "m", role::harmless, from(-1, 1), "Position of the cleat's middle, forward of the axle."),
-        s.cleat_position);
+  visit(s.on, key("on", "", role::harmless, words("plate cleat"),
+                  "Obstacle. plate: flat. cleat: a flat-topped bar across the direction of travel. A profile is given "
+                  "on the command line: furrow press --on profile --profile FILE."));
+  visit(s.deflection,
+        key("deflection", "m", role::harmless, above(0).to(0.2), "Largest deflection of the load–deflection curve."));
+  visit(s.points, key("points", "", role::harmless, from(1, 1000), "Number of points of the curve."));
+  visit(s.load,
+        key("load", "N", role::harmless, above(0).to(1e7).usual(1, 200000).or_null(),
+            "Load at which the footprint is computed. null: the load that the scenario's first wheel carries."));
+  visit(s.camber, key("camber", "rad", role::harmless, from(-0.7, 0.7).usual(-0.3, 0.3),
+                      "Inclination of the wheel about its forward axis. A positive one leans the top to the right of "
+                      "travel. Flexible ring and planar tires are alike across their width and take 0 alone."));
+  visit(s.cleat_height, key("cleat_height", "m", role::harmless, above(0).to(0.2), "Height of the cleat."));
+  visit(s.cleat_width, key("cleat_width", "m", role::harmless, above(0).to(1),
+                           "Width of the cleat's top along the direction of travel."));
+  visit(s.cleat_position, key("cleat_position", "m", role::harmless, from(-1, 1),
+                              "Position of the cleat's middle, forward of the axle."));
 }
 
 /// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the
@@ -142,21 +135,18 @@ struct ExpectedResult {
   double rut_depth_spread = 0.0;     // ± m
 };
 
-void visit_fields(auto&& visit, FieldsOf<ExpectedResult> auto& s) {
+void visit_fields(FieldsOf<ExpectedResult> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("drawbar_pull", "N", role::harmless, from(-1e9, 1e9).required(), "Mean drawbar pull."), s.drawbar_pull);
-  visit(key("drawbar_pull_spread", "N", role::harmless, from(0, 1e9).required(),
-            "Spread ± of the drawbar pull on one bed: between seeds, machines and small changes. Means over n beds are "
-            "expected within it over √n."),
-        s.drawbar_pull_spread);
-  visit(key("sinkage", "m", role::harmless, from(-1e3, 1e3).optional(), "Mean sinkage."), s.sinkage);
-  visit(key("sinkage_spread", "m", role::harmless, from(0, 1e3).optional(),
-            "Spread ± of the sinkage on one bed, as of the pull. 0: not stated."),
-        s.sinkage_spread);
-  visit(key("rut_depth", "m", role::harmless, from(-1e3, 1e3).optional(), "Depth of the rut."), s.rut_depth);
-  visit(key("rut_depth_spread", "m", role::harmless, from(0, 1e3).optional(),
-            "Spread ± of the rut depth on one bed, as of the pull. 0: not stated."),
-        s.rut_depth_spread);
+  visit(s.drawbar_pull, key("drawbar_pull", "N", role::harmless, from(-1e9, 1e9).required(), "Mean drawbar pull."));
+  visit(s.drawbar_pull_spread, key("drawbar_pull_spread", "N", role::harmless, from(0, 1e9).required(),
+                                   "Spread ± of the drawbar pull on one bed: between seeds, machines and small "
+                                   "changes. Means over n beds are expected within it over √n."));
+  visit(s.sinkage, key("sinkage", "m", role::harmless, from(-1e3, 1e3).optional(), "Mean sinkage."));
+  visit(s.sinkage_spread, key("sinkage_spread", "m", role::harmless, from(0, 1e3).optional(),
+                              "Spread ± of the sinkage on one bed, as of the pull. 0: not stated."));
+  visit(s.rut_depth, key("rut_depth", "m", role::harmless, from(-1e3, 1e3).optional(), "Depth of the rut."));
+  visit(s.rut_depth_spread, key("rut_depth_spread", "m", role::harmless, from(0, 1e3).optional(),
+                                "Spread ± of the rut depth on one bed, as of the pull. 0: not stated."));
 }
 
 /// What a run will take, about, bytes.

@@ -28,34 +28,274 @@ constexpr double kRounding = 1e-9;                           // relative, of tim
 /// Without what binary rounding added: 0.30000000000000004 as 0.3.
 double short_decimal(double value) { return std::stod(fmt::format("{:.9g}", value)); }
 
+/// "flexible ring tire"
+std::string in_words(const tire::TireDescription& tire) {
+  return tire.name.ends_with("tire") ? tire.name : tire.name + " tire";
+}
+
 class Checks {
  public:
   Checks(Scenario& scenario, rigs::RigSpec& rig)
       : s_(scenario), rig_(rig), file_(scenario.file.string()), terrain_(scenario.terrain->describe()) {}
 
-  Error wrong(const std::string& key, const std::string& what) const { return input_error(file_, key, what); }
-  void warn(const std::string& key, const std::string& what) { warn(file_, key, what); }
+  template <class... Args>
+  Error wrong(const std::string& key, fmt::format_string<Args...> what, Args&&... args) const {
+    return input_error(file_, key, fmt::format(what, std::forward<Args>(args)...));
+  }
+  template <class... Args>
+  void warn(const std::string& key, fmt::format_string<Args...> what, Args&&... args) {
+    warn_of(wrong(key, what, std::forward<Args>(args)...));
+  }
   /// Once: of several wheels on the same tire each has the same to say.
-  void warn(const std::string& file, const std::string& key, const std::string& what) {
-    const std::string text = input_error(file, key, what).what();
+  void warn_of(const Error& error) {
+    const std::string text = error.what();
     if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end()) s_.warnings.push_back(text);
   }
 
-  void times();
-  void whole_steps(const char* key, double given, std::int64_t steps);
-  void rig();
-  void tires();
-  void tire_options(std::size_t wheel);
-  void require_level_ground(std::size_t wheel);
-  void room();
-  void ranks();
-  void thin_parts();
-  void bin();
-  void start();
-  Error in_a_wall(const rigs::WheelDescription& wheel) const;
-  void overlaps();
-  void step();
-  void machine();
+  void times() {
+    const RunOptions& run = s_.run;
+    if (run.end < run.step)
+      throw wrong("run.end", "is {} s, expected at least one run.step of {} s", number_text(run.end),
+                  number_text(run.step));
+    if (run.end / run.step > kMaxSteps)
+      throw wrong("run.end", "{} s are {:.2g} steps of {} s, expected at most {:g} steps", number_text(run.end),
+                  run.end / run.step, number_text(run.step), kMaxSteps);
+    if (run.average_from >= run.end)
+      throw wrong("run.average_from", "is {} s, expected a window that begins before the run ends at {} s",
+                  number_text(run.average_from), number_text(run.end));
+    const double first_line = s_.output.series_interval;
+    if (run.end - run.average_from < first_line * (1.0 - kRounding))
+      throw wrong("output.series_interval", "is {} s, expected at most the averaging window of {} s",
+                  number_text(first_line), number_text(run.end - run.average_from));
+    whole_steps("run.end", run.end, run.steps());
+    // The defaults mean about as often as that.
+    for (const auto& [key, interval, usual] :
+         {std::tuple{"output.series_interval", s_.output.series_interval, OutputOptions().series_interval},
+          {"output.frame_interval", s_.output.frame_interval, OutputOptions().frame_interval},
+          {"checkpoint.interval", s_.checkpoint.interval, CheckpointOptions().interval}})
+      if (interval != usual) whole_steps(key, interval, run.steps_in(interval));
+  }
+
+  /// Says so where a time is not what it will be, beyond the rounding of numbers.
+  void whole_steps(const char* key, double given, std::int64_t steps) {
+    const double taken = static_cast<double>(steps) * s_.run.step;
+    if (std::abs(taken - given) > kRounding * given)
+      warn(key, "is {} s, not a whole number of steps of {} s: {} s is used", number_text(given),
+           number_text(s_.run.step), number_text(short_decimal(taken)));
+  }
+
+  void rig() {
+    if (s_.tires.size() != rig_.wheel_count())
+      throw wrong("tires", "has {} entries, expected {}: one per wheel of the rig", s_.tires.size(),
+                  rig_.wheel_count());
+  }
+
+  void tires() {
+    for (std::size_t k = 0; k < s_.tires.size(); ++k) {
+      const auto same = [&](const auto& tire) { return tire == s_.tires[k]; };
+      if (std::any_of(s_.tires.begin(), s_.tires.begin() + static_cast<std::ptrdiff_t>(k), same)) continue;
+      for (const auto& [key, what] : s_.tires[k]->unlikely_values())
+        warn_of(input_error(s_.tires[k]->options().file.string(), key, what));
+    }
+    tires_ = describe_tires(s_);
+    for (std::size_t k = 0; k < tires_.size(); ++k)
+      if (k == 0 || s_.tires[k] != s_.tires[k - 1]) tire_options(k);
+    rig_.mount(mounted_tires(s_, tires_));
+    for (std::size_t k = 0; k < tires_.size(); ++k) {
+      const double share = tires_[k].step_share, tau = tires_[k].damping_time;
+      if (share > 0.0 && tau == 0.0)
+        warn(s_.tire_key(k, "structural_damping"),
+             "is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
+             "least {} s for a run.step of {} s",
+             number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step));
+      else if (share > 0.0 && s_.run.step > share * tau)
+        warn("run.step",
+
+             "{} s is more than {:g} of the tire's damping time of {} s: contact forces come one step late and can "
+             "feed the tire; expected at most {} s{}",
+             number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
+             tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent ? ", or tire.contact_tangent" : "");
+    }
+    const rigs::RigDescription rig = describe();
+    if (rig.speeds_up_until > s_.run.average_from + 1e-12)
+      warn("run.average_from", "the window begins at {} s, while the wheel still speeds up until {} = {} s",
+           number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until));
+  }
+
+  /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.
+  void tire_options(std::size_t wheel) {
+    const tire::TireSpec& tire = *s_.tires[wheel];
+    if (tire.options().contact_tangent && !terrain_.gives_tangents)
+      throw wrong(s_.tire_key(wheel, "contact_tangent"),
+                  "is true, expected false: {} (terrain.engine '{}') gives no contact tangents", terrain_.name,
+                  terrain_.engine);
+    if (!tires_[wheel].own_contact.empty()) require_level_ground(wheel);
+    for (const std::string& key : tire::idle_keys(tire))
+      warn(s_.tire_key(wheel, key), "is ignored: a {} does not use it", in_words(tires_[wheel]));
+  }
+
+  /// A tire that states its contact needs a terrain that lets it.
+  void require_level_ground(std::size_t wheel) {
+    std::string key = terrain_.uneven_key, what = "is given, expected level ground";
+    if (!terrain_.takes_stated_contacts)
+      key = "engine",
+      what = fmt::format("is '{}', expected {}", terrain_.engine, terrain::engines_with_stated_contacts());
+    if (!key.empty())
+      throw wrong("terrain." + key, "{}: {} is a {}, {}", what, s_.tire_key(wheel, "file"), in_words(tires_[wheel]),
+                  tires_[wheel].own_contact);
+  }
+
+  void room() {
+    for (const tire::TireDescription& tire : tires_) s_.terrain->check_tire_width(tire.width);
+    if (!terrain_.bounds) return;
+    const rigs::RigDescription rig = describe();
+    for (std::size_t k = 0; k < tires_.size(); ++k) {
+      const tire::TireDescription& tire = tires_[k];
+      const rigs::WheelDescription& wheel = rig.wheels[k];
+      const double off = std::abs(wheel.lateral), margin = wall_margin(tire.radius);
+      const double width = 2.0 * (wheel.across + off + margin), length = 2.0 * (wheel.along + margin);
+      if (width > terrain_.bounds->width)
+        throw wrong("terrain.width", "is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
+                    number_text(terrain_.bounds->width), width, tire.width,
+                    off > 0.0 ? fmt::format(", {:.3f} m off the middle", off) : "");
+      if (length > terrain_.bounds->length)
+        throw wrong("terrain.length", "is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
+                    number_text(terrain_.bounds->length), length, 2.0 * tire.radius);
+      if (terrain_.grain_radius > kCoarseGrain * tire.radius)
+        warn("terrain.radius", "grains of {} m are coarse under a tire of radius {} m",
+             number_text(terrain_.grain_radius), number_text(tire.radius));
+    }
+  }
+
+  void ranks() {
+    if (terrain_.core_per_rank || !s_.terrain->grains()) {
+      if (s_.run.threads > 1)
+        warn("run.threads", "is {}: engine '{}' {}", s_.run.threads, terrain_.engine,
+             terrain_.core_per_rank ? "uses them to make the bed, then one core on each of its ranks (terrain.ranks)"
+                                    : "takes one thread");
+      s_.run.threads = 1;
+    }
+    if (terrain_.core_per_rank)
+      if (const auto cores = static_cast<int>(allowed_cores().size()); s_.terrain_ranks > cores)
+        warn("terrain.ranks",
+             "is {}, this machine has {} core{}: each rank needs one of its own, here or on "
+             "other nodes; more ranks than cores are slower",
+             s_.terrain_ranks, cores, cores > 1 ? "s" : "");
+    if (s_.terrain_ranks <= terrain_.most_ranks) return thin_parts();
+    throw wrong("terrain.ranks", "is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
+                terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1", terrain_.engine,
+                terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores");
+  }
+
+  /// A rank exchanges grains with its next neighbours.
+  void thin_parts() {
+    if (!terrain_.core_per_rank || !terrain_.bounds) return;
+    const double length = terrain_.bounds->length, least = kLeastPart * terrain_.grain_radius;
+    if (length < s_.terrain_ranks * least && s_.terrain_ranks > 1)
+      throw wrong(
+          "terrain.ranks",
+
+          "is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three grains",
+          s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length), number_text(least));
+  }
+
+  void bin() {
+    if (!terrain_.bounds) return;
+    const double least = kMinGrains * terrain_.grain_radius;
+    for (const auto& [key, size] :
+         {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})
+      if (size < least)
+        throw wrong(key, "is {} m, expected at least {} m, two grains", number_text(size), number_text(least));
+  }
+
+  void start() {
+    std::vector<double> margins;
+    for (const tire::TireDescription& tire : tires_) margins.push_back(wall_margin(tire.radius));
+    rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
+                     terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, margins);
+    for (const auto& [key, what] : rig_.unlikely_values()) warn(key, "{}", what);
+    if (!terrain_.bounds) return;
+    const double length = terrain_.bounds->length;
+    for (const rigs::WheelDescription& wheel : describe().wheels) {
+      const double radius = wheel.along;
+      if (wheel.stops_before_wall)
+        warn("run.end", "the run will end before {} s, where a tire is {} m from the end wall (rig.stop_before_wall)",
+             number_text(s_.run.end), number_text(rig_.stop_before_wall()));
+      if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
+      if (wheel.to - radius < 0.0 || wheel.to + radius > length) {
+        const double behind =
+            wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
+        const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
+        throw wrong("terrain.length",
+                    "is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius is "
+                    "{:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
+                    number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0);
+      }
+    }
+  }
+
+  /// What is wrong with the start of a wheel that stands in a wall of the bin.
+  Error in_a_wall(const rigs::WheelDescription& wheel) const {
+    const double length = terrain_.bounds->length;
+    double ahead = 0.0, behind = 0.0;  // of the ends of the tires from what the key places, m
+    for (const rigs::WheelDescription& other : describe().wheels) {
+      if (other.start_key != wheel.start_key) continue;
+      ahead = std::max(ahead, other.start_offset + other.along);
+      behind = std::max(behind, other.along - other.start_offset);
+    }
+    const double low = behind, high = length - ahead;
+    if (low > high)
+      return wrong("terrain.length",
+                   "is {} m, expected at least {:.2f} m: from the first to the last tire the rig is {:.2f} m long",
+                   number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind);
+    return wrong(wheel.start_key,
+
+                 "is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall of the bin",
+                 number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
+                 wheel.name.empty() ? "" : wheel.name + " with ", wheel.along);
+  }
+
+  /// Wheels do not feel each other: one that is in another would push the same grains twice.
+  void overlaps() {
+    const std::vector<rigs::WheelDescription> wheels = describe().wheels;
+    for (std::size_t k = 1; k < tires_.size(); ++k)
+      for (std::size_t i = 0; i < k; ++i) {
+        const double along = tires_[i].radius + tires_[k].radius, across = 0.5 * (tires_[i].width + tires_[k].width);
+        if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
+        const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
+        if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
+        if (wheels[k].start_key == wheels[i].start_key && !rig_.files().empty())  // which places both of them
+          throw wrong("rig." + rig_.files().front().key,
+                      "has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
+                      "between their mid-planes",
+                      wheels[k].name, wheels[i].name, along, across);
+        throw wrong(wheels[k].start_key,
+                    "puts this wheel in the way of wheel {}, expected {:.2f} m between "
+                    "their axles or {:.2f} m between their mid-planes (lateral)",
+                    i, along, across);
+      }
+  }
+
+  void step() {
+    const terrain::TerrainEstimate estimate = s_.terrain->estimate(s_.terrain_context());
+    if (s_.terrain_step() <= estimate.stable_step) return;
+    const std::string what = fmt::format("{} s is above the stable step of {:.3g} s ({})",
+                                         number_text(s_.terrain_step()), estimate.stable_step, estimate.stable_reason);
+    if (terrain_.unstable_step_allowed) return warn("run.step", "{}, allowed by terrain.allow_unstable_step", what);
+    throw wrong("run.step", "{}, expected a smaller step, more terrain.substeps or softer grains", what);
+  }
+
+  void machine() {
+    const Estimate estimate = scenario::estimate(s_);
+    const MachineState here = machine_state();
+    s_.memory = {estimate.memory, estimate.terrain.memory_bytes / s_.terrain_ranks};
+    if (here.memory_free > 0.0 && estimate.memory > here.memory_free)
+      warn("", "needs about {:.1f} GB of memory, this machine has {:.1f} GB free", estimate.memory / kGigabyte,
+           here.memory_free / kGigabyte);
+    if (here.disk_free > 0.0 && estimate.disk > here.disk_free)
+      warn("output.frame_interval", "results need about {:.1f} GB of disk, there are {:.1f} GB free here",
+           estimate.disk / kGigabyte, here.disk_free / kGigabyte);
+  }
 
  private:
   rigs::RigDescription describe() const { return describe_rig(s_, tires_); }
@@ -66,265 +306,6 @@ class Checks {
   terrain::TerrainDescription terrain_;
   std::vector<tire::TireDescription> tires_;
 };
-
-void Checks::times() {
-  const RunOptions& run = s_.run;
-  if (run.end < run.step)
-    throw wrong("run.end", fmt::format("is {} s, expected at least one run.step of {} s", number_text(run.end),
-                                       number_text(run.step)));
-  if (run.end / run.step > kMaxSteps)
-    throw wrong("run.end", fmt::format("{} s are {:.2g} steps of {} s, expected at most {:g} steps",
-                                       number_text(run.end), run.end / run.step, number_text(run.step), kMaxSteps));
-  if (run.average_from >= run.end)
-    throw wrong("run.average_from", fmt::format("is {} s, expected a window that begins before the run ends at {} s",
-                                                number_text(run.average_from), number_text(run.end)));
-  const double first_line = s_.output.series_interval;
-  if (run.end - run.average_from < first_line * (1.0 - kRounding))
-    throw wrong("output.series_interval",
-                fmt::format("is {} s, expected at most the averaging window of {} s", number_text(first_line),
-                            number_text(run.end - run.average_from)));
-  whole_steps("run.end", run.end, run.steps());
-  // The defaults mean about as often as that.
-  for (const auto& [key, interval, usual] :
-       {std::tuple{"output.series_interval", s_.output.series_interval, OutputOptions().series_interval},
-        {"output.frame_interval", s_.output.frame_interval, OutputOptions().frame_interval},
-        {"checkpoint.interval", s_.checkpoint.interval, CheckpointOptions().interval}})
-    if (interval != usual) whole_steps(key, interval, run.steps_in(interval));
-}
-
-/// Says so where a time is not what it will be, beyond the rounding of numbers.
-void Checks::whole_steps(const char* key, double given, std::int64_t steps) {
-  const double taken = static_cast<double>(steps) * s_.run.step;
-  if (std::abs(taken - given) > kRounding * given)
-    warn(key, fmt::format("is {} s, not a whole number of steps of {} s: {} s is used", number_text(given),
-                          number_text(s_.run.step), number_text(short_decimal(taken))));
-}
-
-void Checks::rig() {
-  if (s_.tires.size() != rig_.wheel_count())
-    throw wrong("tires", fmt::format("has {} entries, expected {}: one per wheel of the rig", s_.tires.size(),
-                                     rig_.wheel_count()));
-}
-
-void Checks::tires() {
-  for (std::size_t k = 0; k < s_.tires.size(); ++k) {
-    const auto same = [&](const auto& tire) { return tire == s_.tires[k]; };
-    if (std::any_of(s_.tires.begin(), s_.tires.begin() + static_cast<std::ptrdiff_t>(k), same)) continue;
-    for (const auto& [key, what] : s_.tires[k]->unlikely_values())
-      warn(s_.tires[k]->options().file.string(), key, what);
-  }
-  tires_ = describe_tires(s_);
-  for (std::size_t k = 0; k < tires_.size(); ++k)
-    if (k == 0 || s_.tires[k] != s_.tires[k - 1]) tire_options(k);
-  rig_.mount(mounted_tires(s_, tires_));
-  for (std::size_t k = 0; k < tires_.size(); ++k) {
-    const double share = tires_[k].step_share, tau = tires_[k].damping_time;
-    if (share > 0.0 && tau == 0.0)
-      warn(s_.tire_key(k, "structural_damping"),
-           fmt::format("is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
-                       "least {} s for a run.step of {} s",
-                       number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step)));
-    else if (share > 0.0 && s_.run.step > share * tau)
-      warn("run.step",
-           fmt::format(
-               "{} s is more than {:g} of the tire's damping time of {} s: contact forces come one "
-               "step late and can feed the tire; expected at most {} s{}",
-               number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
-               tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent ? ", or tire.contact_tangent" : ""));
-  }
-  const rigs::RigDescription rig = describe();
-  if (rig.speeds_up_until > s_.run.average_from + 1e-12)
-    warn("run.average_from",
-         fmt::format("the window begins at {} s, while the wheel still speeds up until {} = {} s",
-                     number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until)));
-}
-
-/// "flexible ring tire"
-std::string in_words(const tire::TireDescription& tire) {
-  return tire.name.ends_with("tire") ? tire.name : tire.name + " tire";
-}
-
-/// What the scenario says of the tire of one wheel must be something to its model and to the terrain.
-void Checks::tire_options(std::size_t wheel) {
-  const tire::TireSpec& tire = *s_.tires[wheel];
-  if (tire.options().contact_tangent && !terrain_.gives_tangents)
-    throw wrong(s_.tire_key(wheel, "contact_tangent"),
-                fmt::format("is true, expected false: {} (terrain.engine '{}') gives no contact tangents",
-                            terrain_.name, terrain_.engine));
-  if (!tires_[wheel].own_contact.empty()) require_level_ground(wheel);
-  for (const std::string& key : tire::idle_keys(tire))
-    warn(s_.tire_key(wheel, key), fmt::format("is ignored: a {} does not use it", in_words(tires_[wheel])));
-}
-
-/// A tire that states its contact needs a terrain that lets it.
-void Checks::require_level_ground(std::size_t wheel) {
-  std::string key = terrain_.uneven_key, what = "is given, expected level ground";
-  if (!terrain_.takes_stated_contacts)
-    key = "engine",
-    what = fmt::format("is '{}', expected {}", terrain_.engine, terrain::engines_with_stated_contacts());
-  if (!key.empty())
-    throw wrong("terrain." + key, fmt::format("{}: {} is a {}, {}", what, s_.tire_key(wheel, "file"),
-                                              in_words(tires_[wheel]), tires_[wheel].own_contact));
-}
-
-void Checks::room() {
-  for (const tire::TireDescription& tire : tires_) s_.terrain->check_tire_width(tire.width);
-  if (!terrain_.bounds) return;
-  const rigs::RigDescription rig = describe();
-  for (std::size_t k = 0; k < tires_.size(); ++k) {
-    const tire::TireDescription& tire = tires_[k];
-    const rigs::WheelDescription& wheel = rig.wheels[k];
-    const double off = std::abs(wheel.lateral), margin = wall_margin(tire.radius);
-    const double width = 2.0 * (wheel.across + off + margin), length = 2.0 * (wheel.along + margin);
-    if (width > terrain_.bounds->width)
-      throw wrong("terrain.width", fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m wide{}",
-                                               number_text(terrain_.bounds->width), width, tire.width,
-                                               off > 0.0 ? fmt::format(", {:.3f} m off the middle", off) : ""));
-    if (length > terrain_.bounds->length)
-      throw wrong("terrain.length", fmt::format("is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
-                                                number_text(terrain_.bounds->length), length, 2.0 * tire.radius));
-    if (terrain_.grain_radius > kCoarseGrain * tire.radius)
-      warn("terrain.radius", fmt::format("grains of {} m are coarse under a tire of radius {} m",
-                                         number_text(terrain_.grain_radius), number_text(tire.radius)));
-  }
-}
-
-void Checks::ranks() {
-  if (terrain_.core_per_rank || !s_.terrain->grains()) {
-    if (s_.run.threads > 1)
-      warn("run.threads",
-           fmt::format("is {}: engine '{}' {}", s_.run.threads, terrain_.engine,
-                       terrain_.core_per_rank
-                           ? "uses them to make the bed, then one core on each of its ranks (terrain.ranks)"
-                           : "takes one thread"));
-    s_.run.threads = 1;
-  }
-  if (terrain_.core_per_rank)
-    if (const auto cores = static_cast<int>(allowed_cores().size()); s_.terrain_ranks > cores)
-      warn("terrain.ranks",
-           fmt::format("is {}, this machine has {} core{}: each rank needs one of its own, here or on other "
-                       "nodes; more ranks than cores are slower",
-                       s_.terrain_ranks, cores, cores > 1 ? "s" : ""));
-  if (s_.terrain_ranks <= terrain_.most_ranks) return thin_parts();
-  throw wrong("terrain.ranks",
-              fmt::format("is {}, expected {}: engine '{}' runs on {}", s_.terrain_ranks,
-                          terrain_.most_ranks > 1 ? fmt::format("1 to {}", terrain_.most_ranks) : "1", terrain_.engine,
-                          terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores"));
-}
-
-/// A rank exchanges grains with its next neighbours.
-void Checks::thin_parts() {
-  if (!terrain_.core_per_rank || !terrain_.bounds) return;
-  const double length = terrain_.bounds->length, least = kLeastPart * terrain_.grain_radius;
-  if (length < s_.terrain_ranks * least && s_.terrain_ranks > 1)
-    throw wrong(
-        "terrain.ranks",
-        fmt::format("is {}, expected {} or fewer: of a bed of {} m each would have a part thinner than {} m, three "
-                    "grains",
-                    s_.terrain_ranks, std::max(1, static_cast<int>(length / least)), number_text(length),
-                    number_text(least)));
-}
-
-void Checks::bin() {
-  if (!terrain_.bounds) return;
-  const double least = kMinGrains * terrain_.grain_radius;
-  for (const auto& [key, size] :
-       {std::pair{"terrain.length", terrain_.bounds->length}, {"terrain.width", terrain_.bounds->width}})
-    if (size < least)
-      throw wrong(key,
-                  fmt::format("is {} m, expected at least {} m, two grains", number_text(size), number_text(least)));
-}
-
-/// What is wrong with the start of a wheel that stands in a wall of the bin.
-Error Checks::in_a_wall(const rigs::WheelDescription& wheel) const {
-  const double length = terrain_.bounds->length;
-  double ahead = 0.0, behind = 0.0;  // of the ends of the tires from what the key places, m
-  for (const rigs::WheelDescription& other : describe().wheels) {
-    if (other.start_key != wheel.start_key) continue;
-    ahead = std::max(ahead, other.start_offset + other.along);
-    behind = std::max(behind, other.along - other.start_offset);
-  }
-  const double low = behind, high = length - ahead;
-  if (low > high)
-    return wrong("terrain.length",
-                 fmt::format("is {} m, expected at least {:.2f} m: from the first to the last tire "
-                             "the rig is {:.2f} m long",
-                             number_text(length), ahead + behind + 2.0 * wall_margin(wheel.along), ahead + behind));
-  return wrong(wheel.start_key,
-               fmt::format("is {} m, expected {:.3f} to {:.3f} m: the tire of {}radius {:.3f} m would stand in a wall "
-                           "of the bin",
-                           number_text(short_decimal(wheel.from - wheel.start_offset)), low, high,
-                           wheel.name.empty() ? "" : wheel.name + " with ", wheel.along));
-}
-
-void Checks::start() {
-  std::vector<double> margins;
-  for (const tire::TireDescription& tire : tires_) margins.push_back(wall_margin(tire.radius));
-  rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
-                   terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, margins);
-  for (const auto& [key, what] : rig_.unlikely_values()) warn(key, what);
-  if (!terrain_.bounds) return;
-  const double length = terrain_.bounds->length;
-  for (const rigs::WheelDescription& wheel : describe().wheels) {
-    const double radius = wheel.along;
-    if (wheel.stops_before_wall)
-      warn("run.end", fmt::format("the run will end before {} s, where a tire is {} m from the end wall "
-                                  "(rig.stop_before_wall)",
-                                  number_text(s_.run.end), number_text(rig_.stop_before_wall())));
-    if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
-    if (wheel.to - radius < 0.0 || wheel.to + radius > length) {
-      const double behind =
-          wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
-      const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
-      throw wrong("terrain.length",
-                  fmt::format("is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius "
-                              "is {:.3f} m: it would hit the end wall; expected at least {:.2f} m or a shorter run",
-                              number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0));
-    }
-  }
-}
-
-/// Wheels do not feel each other: one that is in another would push the same grains twice.
-void Checks::overlaps() {
-  const std::vector<rigs::WheelDescription> wheels = describe().wheels;
-  for (std::size_t k = 1; k < tires_.size(); ++k)
-    for (std::size_t i = 0; i < k; ++i) {
-      const double along = tires_[i].radius + tires_[k].radius, across = 0.5 * (tires_[i].width + tires_[k].width);
-      if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
-      const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
-      if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
-      if (wheels[k].start_key == wheels[i].start_key && !rig_.files().empty())  // which places both of them
-        throw wrong("rig." + rig_.files().front().key,
-                    fmt::format("has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
-                                "between their mid-planes",
-                                wheels[k].name, wheels[i].name, along, across));
-      throw wrong(wheels[k].start_key,
-                  fmt::format("puts this wheel in the way of wheel {}, expected {:.2f} m between their axles or "
-                              "{:.2f} m between their mid-planes (lateral)",
-                              i, along, across));
-    }
-}
-
-void Checks::step() {
-  const terrain::TerrainEstimate estimate = s_.terrain->estimate(s_.terrain_context());
-  if (s_.terrain_step() <= estimate.stable_step) return;
-  const std::string what = fmt::format("{} s is above the stable step of {:.3g} s ({})", number_text(s_.terrain_step()),
-                                       estimate.stable_step, estimate.stable_reason);
-  if (terrain_.unstable_step_allowed) return warn("run.step", what + ", allowed by terrain.allow_unstable_step");
-  throw wrong("run.step", what + ", expected a smaller step, more terrain.substeps or softer grains");
-}
-
-void Checks::machine() {
-  const Estimate estimate = scenario::estimate(s_);
-  const MachineState here = machine_state();
-  s_.memory = {estimate.memory, estimate.terrain.memory_bytes / s_.terrain_ranks};
-  if (here.memory_free > 0.0 && estimate.memory > here.memory_free)
-    warn("", fmt::format("needs about {:.1f} GB of memory, this machine has {:.1f} GB free",
-                         estimate.memory / kGigabyte, here.memory_free / kGigabyte));
-  if (here.disk_free > 0.0 && estimate.disk > here.disk_free)
-    warn("output.frame_interval", fmt::format("results need about {:.1f} GB of disk, there are {:.1f} GB free here",
-                                              estimate.disk / kGigabyte, here.disk_free / kGigabyte));
-}
 
 }  // namespace
 

@@ -22,15 +22,14 @@ struct Head {
   std::string schema, description, completed_by;
   int format_version = 1;
 };
-void visit_fields(auto&& visit, FieldsOf<Head> auto& s) {
+void visit_fields(FieldsOf<Head> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("$schema", "", optional(), "Schema for editors. The program ignores it."), s.schema);
-  visit(key("description", "", optional(), "What the scenario is about. The program ignores it."), s.description);
-  visit(key("completed_by", "", optional(),
-            "Version that completed the scenario of a run with the defaults. Keys of other engines and types of rig "
-            "are then ignored instead of refused. It has no other effect."),
-        s.completed_by);
-  visit(key("format_version", "", from(1, 1), "Version of the scenario format."), s.format_version);
+  visit(s.schema, key("$schema", "", optional(), "Schema for editors. The program ignores it."));
+  visit(s.description, key("description", "", optional(), "What the scenario is about. The program ignores it."));
+  visit(s.completed_by, key("completed_by", "", optional(),
+                            "Version that completed the scenario of a run with the defaults. Keys of other engines and "
+                            "types of rig are then ignored instead of refused. It has no other effect."));
+  visit(s.format_version, key("format_version", "", from(1, 1), "Version of the scenario format."));
 }
 
 /// A section that a scenario may leave out: all its keys have defaults.
@@ -59,16 +58,15 @@ Json model_section(SchemaWriter& writer, const char* chooser, const Models& mode
 
 Json scenario_schema() {
   SchemaWriter writer;
-  Json root = {
-      {"$schema", "http://json-schema.org/draft-07/schema#"},
-      {"title", "Furrow scenario"},
-      {"description",
-       "What a scenario may say. SI units, angles in radians. `unit`, `usual` (outside of it: a warning) and `entries` "
-       "(what a list holds) are read by furrow; everything else is JSON Schema."},
-      {"type", "object"},
-      {"additionalProperties", false},
-      {"required", {"terrain"}},
-      {"properties", Json::object()}};
+  Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+               {"title", "Furrow scenario"},
+               {"description",
+                "What a scenario may say. SI units, angles in radians. `unit`, `usual` (outside of it: a warning) and "
+                "`entries` (what a list holds) are read by furrow; everything else is JSON Schema."},
+               {"type", "object"},
+               {"additionalProperties", false},
+               {"required", {"terrain"}},
+               {"properties", Json::object()}};
   writer.add_keys<Head>(root);
   Json& sections = root["properties"];
   writer.reference<rigs::DrawbarWheel>();

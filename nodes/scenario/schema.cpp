@@ -6,7 +6,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -138,8 +137,6 @@ std::vector<Problem> Schema::problems(const json& document) const {
   return found;
 }
 
-void Schema::normalize(json& document) const { normalize(document, root_); }
-
 void Schema::normalize(json& value, const json& node) const {
   if (value.is_structured()) {
     for (auto it = value.begin(); it != value.end(); ++it) {
@@ -182,8 +179,6 @@ void Schema::unusual(const json& value, const json& node, const std::string& pat
                    std::isfinite(meant) && low > 0.0 ? fmt::format(": did you mean {}?", number_text(meant)) : "")});
 }
 
-void Schema::fill_defaults(json& document) const { fill_defaults(document, root_); }
-
 void Schema::fill_defaults(json& value, const json& node) const {
   if (value.is_array() && node.contains("items"))
     for (json& entry : value) fill_defaults(entry, resolved(node["items"]));
@@ -194,8 +189,6 @@ void Schema::fill_defaults(json& value, const json& node) const {
     if (value.contains(name)) fill_defaults(value[name], child);
   }
 }
-
-void Schema::remove_defaults(json& document) const { remove_defaults(document, root_); }
 
 void Schema::remove_defaults(json& value, const json& node) const {
   if (value.is_array() && node.contains("items"))

@@ -22,13 +22,13 @@ class Schema {
 
   /// 15.0 becomes 15 where a whole number is wanted, and 450 becomes 450.0 where any number is: equal scenarios are
   /// equal.
-  void normalize(nlohmann::json& document) const;
+  void normalize(nlohmann::json& document) const { normalize(document, root_); }
   std::vector<Problem> problems(const nlohmann::json& document) const;
   /// Values outside the magnitudes that are usual; to warn of.
   std::vector<Problem> unusual(const nlohmann::json& document) const;
-  void fill_defaults(nlohmann::json& document) const;
+  void fill_defaults(nlohmann::json& document) const { fill_defaults(document, root_); }
   /// Takes away what fill_defaults would add; entries of lists stay, empty perhaps.
-  void remove_defaults(nlohmann::json& document) const;
+  void remove_defaults(nlohmann::json& document) const { remove_defaults(document, root_); }
 
   /// The schema of a dotted key, references resolved; null when there is none.
   const nlohmann::json* find(const std::string& key) const;

@@ -38,9 +38,8 @@ json values_for(const std::string& engine, const json& soil, const std::string& 
       others.push_back(key);
   }
   if (own.empty() && !others.empty() && takes(engine, kSoilKey))
-    throw input_error(file, "terrain",
-                      fmt::format("has keys of other engines alone ({}), expected some of engine '{}'",
-                                  fmt::join(others, ", "), engine));
+    throw input_error(file, "terrain", "has keys of other engines alone ({}), expected some of engine '{}'",
+                      fmt::join(others, ", "), engine);
   return own;
 }
 
@@ -62,8 +61,8 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   const std::vector<std::string> of_soil = terrain::terrain_keys(role::soil);
   for (const auto& [key, value] : soil["terrain"].items())
     if (std::find(of_soil.begin(), of_soil.end(), key) == of_soil.end())
-      throw input_error(name, "terrain." + key,
-                        fmt::format("is not a property of soil, expected one of {}", fmt::join(of_soil, ", ")));
+      throw input_error(name, "terrain." + key, "is not a property of soil, expected one of {}",
+                        fmt::join(of_soil, ", "));
   json alone{{"terrain", soil["terrain"]}};
   const Schema& schema = Schema::of_scenarios();
   schema.normalize(alone);
@@ -113,9 +112,9 @@ std::string other_grains_warning(const json& completed, const std::filesystem::p
   for (const auto& [key, value] : soil.values.items())
     if (terrain.contains(key) && terrain[key] != value) return {};  // a soil of the scenario's own
   return input_error(scenario.string(), "terrain.radius",
-                     fmt::format("is {} m, but the strength of '{}' was measured with grains of {} m: "
-                                 "cohesion changes with the size of grains",
-                                 number_text(radius), name.get<std::string>(), number_text(with)))
+                     "is {} m, but the strength of '{}' was measured with grains of {} m: cohesion changes with the "
+                     "size of grains",
+                     number_text(radius), name.get<std::string>(), number_text(with))
       .what();
 }
 

@@ -108,8 +108,8 @@ Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, con
   const bool hard =
       std::ranges::any_of(s.tires, [](const auto& tire) { return !tire->describe().own_contact.empty(); });
   if (hard && !o.soil.empty())
-    throw input_error("command line", "--soil",
-                      fmt::format("is given, expected none: the file of '{}' holds for hard level ground", o.tire));
+    throw input_error("command line", "--soil", "is given, expected none: the file of '{}' holds for hard level ground",
+                      o.tire);
   if (hard) return Ground::hard;
   if (o.soil.empty()) return Ground::grains;
   const nlohmann::json soil = read_soil_material(find_file(o.soil, "terrain.material", file));
@@ -267,8 +267,8 @@ std::string section_text(const Schema& schema, const std::string& name, const Js
 std::string text_of(const Json& document, const std::string& file) {
   const Schema& schema = Schema::of_scenarios();
   std::string text = comment(
-      "A scenario of Furrow. All values are in SI units, angles in radians. 'furrow explain' "
-      "lists all keys, those with their defaults that do not stand here too.",
+      "A scenario of Furrow. All values are in SI units, angles in radians. 'furrow explain' lists all keys, those "
+      "with their defaults that do not stand here too.",
       "");
   text += comment("Check it: furrow validate " + file, "") + comment("Run it:   furrow run " + file, "") + "{\n";
   std::size_t left = document.size();
@@ -342,14 +342,13 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
 void write_starter(const std::filesystem::path& file, const StarterOptions& options) {
   std::error_code error;
   if (std::filesystem::exists(std::filesystem::symlink_status(file, error)))
-    throw input_error("command line", "NAME", fmt::format("'{}' exists already, expected a new file", file.string()));
+    throw input_error("command line", "NAME", "'{}' exists already, expected a new file", file.string());
   for (const std::string& other : {options.tire, options.soil, options.vehicle})
     if (std::filesystem::path(other) == file.filename())
-      throw input_error(
-          "command line", "NAME",
-          fmt::format("is '{}': beside that scenario the name would no longer lead to the file that it is to "
-                      "use, expected another one",
-                      file.string()));
+      throw input_error("command line", "NAME",
+                        "is '{}': beside that scenario the name would no longer lead to the file that it is to use, "
+                        "expected another one",
+                        file.string());
   try {
     write(file, options);
   } catch (...) {

@@ -11,34 +11,30 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/files/digits.hpp"
+#include "protocol/files/json_number.hpp"
 
 namespace furrow::scenario {
 namespace {
 
 constexpr double kMegabyte = 1e6;
 
-/// NaN of an infinite or undefined ratio is null.
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 nlohmann::ordered_json scales_json(const WheelScales& w, const std::string& name) {
   nlohmann::ordered_json json;
   if (!name.empty()) json["name"] = name;
   json["load_N"] = w.load;
-  json["froude_number"] = number(w.froude);
+  json["froude_number"] = json_number(w.froude);
   if (!w.grains) return json;
   const WheelScales::OnGrains& g = *w.grains;
-  json["contact_pressure_Pa"] = number(g.pressure);
+  json["contact_pressure_Pa"] = json_number(g.pressure);
   json["contact_length_m"] = g.contact_length;
   json["width_in_grains"] = g.grains_wide;
   json["contact_length_in_grains"] = g.grains_long;
   json["expected_sinkage_m"] = g.sinkage;
-  json["bed_height_over_sinkage"] = number(g.depth_ratio);
+  json["bed_height_over_sinkage"] = json_number(g.depth_ratio);
   json["beside_m"] = g.beside ? nlohmann::ordered_json(*g.beside) : nlohmann::ordered_json(nullptr);
   json["ahead_at_end_m"] = g.ahead;
   json["window_near_end_wall"] = g.near_end;
-  json["inertial_number"] = number(g.inertial);
+  json["inertial_number"] = json_number(g.inertial);
   return json;
 }
 
@@ -63,17 +59,17 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
 }
 
 nlohmann::ordered_json time_json(const RunTime& t) {
-  return {{"all_s", number(t.all())},
-          {"start_s", number(t.start)},
-          {"bed_s", number(t.bed)},
+  return {{"all_s", json_number(t.all())},
+          {"start_s", json_number(t.start)},
+          {"bed_s", json_number(t.bed)},
           {"bed_is_kept", t.bed_is_kept},
-          {"run_s", number(t.run)},
-          {"writing_s", number(t.writing)},
-          {"step_s", number(t.step)},
-          {"slowest_tire_s", number(t.tire)},
-          {"terrain_s", number(t.terrain)},
-          {"awake_share", number(t.awake)},
-          {"refined_share", number(t.refined)},
+          {"run_s", json_number(t.run)},
+          {"writing_s", json_number(t.writing)},
+          {"step_s", json_number(t.step)},
+          {"slowest_tire_s", json_number(t.tire)},
+          {"terrain_s", json_number(t.terrain)},
+          {"awake_share", json_number(t.awake)},
+          {"refined_share", json_number(t.refined)},
           {"terrain_ranks", t.ranks},
           {"terrain_threads", t.threads},
           {"ghosts_per_rank", std::round(t.ghosts)},
@@ -127,8 +123,7 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   json["step_s"] = s.run.step;
   json["exact_restart"] = s.terrain->describe().exact_restart;
   json["terrain_step_s"] = s.terrain_step();
-  const bool limited = std::isfinite(e.terrain.stable_step);
-  json["stable_step_s"] = limited ? nlohmann::ordered_json(e.terrain.stable_step) : nlohmann::ordered_json(nullptr);
+  json["stable_step_s"] = json_number(e.terrain.stable_step);
   json["stable_step_limited_by"] = e.terrain.stable_reason;
   json["steps"] = e.steps;
   json["grains"] = e.terrain.grains;

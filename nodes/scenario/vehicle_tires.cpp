@@ -47,9 +47,8 @@ std::filesystem::path find_vehicle(const std::string& name) {
   const std::filesystem::path file = named_file(name, {"vehicle/data"});
   std::error_code error;
   if (!std::filesystem::exists(file, error))
-    throw input_error("command line", "VEHICLE",
-                      fmt::format("'{}' does not exist, expected a file at that place or in {}", name,
-                                  (data_folder() / "vehicle" / "data").string()));
+    throw input_error("command line", "VEHICLE", "'{}' does not exist, expected a file at that place or in {}", name,
+                      (data_folder() / "vehicle" / "data").string());
   return file;
 }
 

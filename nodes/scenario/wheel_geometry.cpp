@@ -1,7 +1,5 @@
 #include "nodes/scenario/wheel_geometry.hpp"
 
-#include <fmt/format.h>
-
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
 #include "tire/press/press_curve.hpp"
@@ -37,10 +35,10 @@ rigs::RigDescription describe_rig(const Scenario& scenario) { return describe_ri
 rigs::RigDescription describe_rig(const Scenario& scenario, const std::vector<tire::TireDescription>& tires) {
   rigs::RigDescription rig = scenario.rig->describe(wheel_sizes(tires), scenario.run.end);
   if (rig.wheels.size() != scenario.rig->wheel_count())
-    throw input_error(scenario.file.string(), "rig.type",
-                      fmt::format("the rig '{}' describes {} of its {} wheels, expected all: "
-                                  "RigSpec::describe of this type is wrong",
-                                  rig.kind, rig.wheels.size(), scenario.rig->wheel_count()));
+    throw input_error(
+        scenario.file.string(), "rig.type",
+        "the rig '{}' describes {} of its {} wheels, expected all: RigSpec::describe of this type is wrong", rig.kind,
+        rig.wheels.size(), scenario.rig->wheel_count());
   return rig;
 }
 

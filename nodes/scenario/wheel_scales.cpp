@@ -120,34 +120,32 @@ class Bounds {
 
 void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
   to.add(std::min(g.grains_wide, g.grains_long) < kGrains, "terrain.radius",
-         fmt::format("the contact is about {:.1f} grains long and {:.1f} wide, expected {:g} or more: under a "
-                     "wheel of 58 mm on dry sand grains of 5 instead of 7 mm changed the pull by 8 % of the load",
+         fmt::format("the contact is about {:.1f} grains long and {:.1f} wide, expected {:g} or more: under a wheel of "
+                     "58 mm on dry sand grains of 5 instead of 7 mm changed the pull by 8 % of the load",
                      g.grains_long, g.grains_wide, kGrains));
   to.add(g.depth_ratio < kDepth, "terrain.layers",
-         fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or "
-                     "more: the floor carries too; at 5 to 6 times a bed twice as deep gave 38 % more sinkage "
-                     "and 10 % less pull",
+         fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or more: the "
+                     "floor carries too; at 5 to 6 times a bed twice as deep gave 38 % more sinkage and 10 % less pull",
                      g.depth_ratio, digits(1e3 * g.sinkage), kDepth));
   to.add(g.beside && *g.beside < kBeside * width, "terrain.width",
-         fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or "
-                     "terrain.sides periodic: with 0.6 tread widths left, a bin half as wide again changed the "
-                     "pull by -4.5 ± 4.0 %",
+         fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or terrain.sides "
+                     "periodic: with 0.6 tread widths left, a bin half as wide again changed the pull by -4.5 ± 4.0 %",
                      digits(g.beside.value_or(0.0)), digits(kBeside * width)));
   to.add(g.near_end > kNearEnd, "terrain.length",
-         fmt::format("{} m are left ahead of the wheel at the end: in {:.0f} % of the averaging window the end "
-                     "wall lies within the soil that fails in front of it (Prandtl), expected at most {:.0f} %",
+         fmt::format("{} m are left ahead of the wheel at the end: in {:.0f} % of the averaging window the end wall "
+                     "lies within the soil that fails in front of it (Prandtl), expected at most {:.0f} %",
                      digits(g.ahead), 100.0 * g.near_end, 100.0 * kNearEnd));
 }
 
 void add_rates(const WheelScales::OnGrains& g, Bounds& to) {
   const double rate = (kFast - kStatic) / kStatic / (1.0 + kInertial0 / std::max(g.inertial, 1e-12));
   to.add(rate > kRateEffect, "rig.slip",
-         fmt::format("the inertial number is about {:.2g}: grains sheared so fast have {:.0f} % more friction "
-                     "than slow ones (Jop, Forterre & Pouliquen 2006), expected below {:.0f} %",
+         fmt::format("the inertial number is about {:.2g}: grains sheared so fast have {:.0f} % more friction than "
+                     "slow ones (Jop, Forterre & Pouliquen 2006), expected below {:.0f} %",
                      g.inertial, 100.0 * rate, 100.0 * kRateEffect));
   to.add(g.impact > kRateEffect, "rig.speed",
-         fmt::format("the wheel enters the soil so fast that its inertia adds about {:.0f} % to the pressure, "
-                     "expected below {:.0f} %: drive more slowly",
+         fmt::format("the wheel enters the soil so fast that its inertia adds about {:.0f} % to the pressure, expected "
+                     "below {:.0f} %: drive more slowly",
                      100.0 * g.impact, 100.0 * kRateEffect));
 }
 
@@ -200,8 +198,8 @@ std::vector<Bound> scale_bounds(const Scenario& s) {
     const double until = rig.wheels[k].lowering_time;
     bounds.begin(wheel_label(rig, k));
     bounds.add(w.lowering_needs > until, "rig.move_from",
-               fmt::format("the wheel moves from {} s on, but lowering it takes about {} s: expected to stand "
-                           "by then; lower it faster or move later",
+               fmt::format("the wheel moves from {} s on, but lowering it takes about {} s: expected to stand by then; "
+                           "lower it faster or move later",
                            digits(until), digits(w.lowering_needs)));
     if (!w.grains) continue;
     add_bin(*w.grains, tires[k].tread_width, bounds);

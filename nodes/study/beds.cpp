@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 
 #include "nodes/checkpoint/run_summary.hpp"
-#include "nodes/launch/folder_lock.hpp"
-#include "nodes/launch/run_list.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/student_t.hpp"
 #include "protocol/files/json_number.hpp"
@@ -101,9 +99,8 @@ void require_beds(const scenario::Scenario& scenario, int beds) {
     throw input_error(file, "terrain.bed",
                       "is '" + grains.bed + "', expected none with --seeds: every bed would be this one");
   if (scenario.run.seed > kLargestSeed - static_cast<std::uint64_t>(beds))
-    throw input_error(file, "run.seed",
-                      fmt::format("is {}, expected at most {} with --seeds {}", scenario.run.seed,
-                                  kLargestSeed - static_cast<std::uint64_t>(beds), beds));
+    throw input_error(file, "run.seed", "is {}, expected at most {} with --seeds {}", scenario.run.seed,
+                      kLargestSeed - static_cast<std::uint64_t>(beds), beds);
 }
 
 void require_no_beds(const fs::path& folder) {

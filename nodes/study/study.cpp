@@ -40,7 +40,7 @@ std::vector<Json> grid(Reader& reader, const Json& common) {
     if (common.contains(key)) reader.fail("grid." + key, "is in 'set' as well, expected it in one of them");
     if (!values.is_array() || values.empty()) reader.fail("grid." + key, "expected a list of values, one or more");
     if (runs.size() * values.size() > kMaxRuns)
-      reader.fail("grid", fmt::format("makes more than {} runs, expected fewer", kMaxRuns));
+      reader.fail("grid", "makes more than {} runs, expected fewer", kMaxRuns);
     std::vector<Json> more;
     for (const Json& run : runs)
       for (const Json& one : values) {
@@ -55,8 +55,7 @@ std::vector<Json> grid(Reader& reader, const Json& common) {
 std::vector<Json> list(Reader& reader) {
   const Json& entries = reader.array("list");
   if (entries.empty() || entries.size() > kMaxRuns)
-    reader.fail("list", fmt::format("has {} entries, expected 1 to {} objects {{ }} of keys and values", entries.size(),
-                                    kMaxRuns));
+    reader.fail("list", "has {} entries, expected 1 to {} objects {{ }} of keys and values", entries.size(), kMaxRuns);
   for (const Json& entry : entries)
     if (!entry.is_object()) reader.fail("list", "expected objects { } of keys and values in it");
   return entries.get<std::vector<Json>>();
@@ -65,8 +64,7 @@ std::vector<Json> list(Reader& reader) {
 double rest(Reader& reader) {
   if (!reader.given("rest")) return Study().rest;
   const double rest = reader.number("rest");
-  if (rest < 0.0 || rest > kMaxRest)
-    reader.fail("rest", fmt::format("is {} s, expected 0 to {} s", number_text(rest), kMaxRest));
+  if (rest < 0.0 || rest > kMaxRest) reader.fail("rest", "is {} s, expected 0 to {} s", number_text(rest), kMaxRest);
   return rest;
 }
 
@@ -91,13 +89,13 @@ Json checked_plot(Reader& reader, const Study& study) {
   for (const auto& [key, value] : plot.items()) {
     const std::string path = "plot." + key;
     if (std::find(known.begin(), known.end(), key) == known.end())
-      reader.fail(path, fmt::format("is unknown, expected one of: {}", fmt::join(known, ", ")));
+      reader.fail(path, "is unknown, expected one of: {}", fmt::join(known, ", "));
     if (!value.is_string()) reader.fail(path, "expected a text");
     const bool of_results = key == "y" || key == "error";
     std::vector<std::string> choice = of_results ? std::vector<std::string>() : varied;
     if (of_results || key == "x") choice.insert(choice.end(), study.results.begin(), study.results.end());
     if (std::find(choice.begin(), choice.end(), value.get<std::string>()) == choice.end())
-      reader.fail(path, fmt::format("is '{}', expected one of: {}", value.get<std::string>(), fmt::join(choice, ", ")));
+      reader.fail(path, "is '{}', expected one of: {}", value.get<std::string>(), fmt::join(choice, ", "));
   }
   if (plot.contains("x") != plot.contains("y"))
     reader.fail(plot.contains("x") ? "plot.y" : "plot.x", "is missing, expected both x and y");
@@ -106,8 +104,8 @@ Json checked_plot(Reader& reader, const Study& study) {
 
 }  // namespace
 
-Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
-                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed, int beds) {
+Study study_of_beds(const std::filesystem::path& scenario, const std::string& name, const scenario::Settings& settings,
+                    std::uint64_t seed, int beds) {
   Study study;
   study.file = study.scenario = scenario;
   study.name = name;
@@ -143,14 +141,13 @@ Study load_study(const std::filesystem::path& name) {
   study.runs = given("list") ? list(reader) : grid(reader, study.common);
   for (auto run = study.runs.begin(); run != study.runs.end(); ++run)
     if (std::find(study.runs.begin(), run, *run) != run)
-      reader.fail(given("list") ? "list" : "grid",
-                  fmt::format("has the run '{}' twice, expected each once", text_of(*run)));
+      reader.fail(given("list") ? "list" : "grid", "has the run '{}' twice, expected each once", text_of(*run));
   if (given("rest") && !given("passes")) reader.fail("rest", "is the time between passes, expected 'passes' as well");
   if (given("passes")) {
     study.passes = reader.count("passes", 1, 1000);
     study.rest = rest(reader);
     if (study.runs.size() * static_cast<std::size_t>(study.passes) > kMaxRuns)
-      reader.fail("passes", fmt::format("makes more than {} runs, expected fewer", kMaxRuns));
+      reader.fail("passes", "makes more than {} runs, expected fewer", kMaxRuns);
   }
   study.results = kUsualResults;
   if (given("results")) {
@@ -166,8 +163,8 @@ Study load_study(const std::filesystem::path& name) {
   return study;
 }
 
-std::vector<std::pair<std::string, std::string>> settings_of(const Json& values) {
-  std::vector<std::pair<std::string, std::string>> settings;
+scenario::Settings settings_of(const Json& values) {
+  scenario::Settings settings;
   for (const auto& [key, value] : values.items())
     settings.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
   return settings;

@@ -13,10 +13,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "nodes/scenario/scenario.hpp"
 
 namespace furrow::study {
 
@@ -41,11 +42,11 @@ Study load_study(const std::filesystem::path& name);
 /// A scenario on several beds, made with the seeds `seed`, `seed` + 1, …: runs in the folders seed1, seed2, ….
 /// @param settings of the command line, for all runs
 /// @pre beds > 0
-Study study_of_beds(const std::filesystem::path& scenario, const std::string& name,
-                    const std::vector<std::pair<std::string, std::string>>& settings, std::uint64_t seed, int beds);
+Study study_of_beds(const std::filesystem::path& scenario, const std::string& name, const scenario::Settings& settings,
+                    std::uint64_t seed, int beds);
 
 /// As `--set key=value` takes them.
-std::vector<std::pair<std::string, std::string>> settings_of(const nlohmann::ordered_json& values);
+scenario::Settings settings_of(const nlohmann::ordered_json& values);
 
 /// "rig.slip=0.3, terrain.cohesion=80000".
 std::string text_of(const nlohmann::ordered_json& values);

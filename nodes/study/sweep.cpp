@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using checkpoint::read_summary, checkpoint::read_failed_summary, checkpoint::value_at;
+using checkpoint::read_summary, checkpoint::read_failed_summary, checkpoint::number_at, checkpoint::value_at;
 
 constexpr int kPoll = 20000;      // µs
 constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
@@ -106,11 +106,10 @@ void Sweep::require_unlike_runs() const {
     const auto [of_digest, is_new] = known.try_emplace(run.digest, &run);
     if (is_new) continue;
     const auto words = [](const Run& r) { return r.keys.empty() ? std::string("no settings") : text_of(r.keys); };
-    throw input_error(
-        study_.file.string(), "",
-        fmt::format("has a run with {} and a run with {}, which have the same results: what they differ in "
-                    "is the scenario's value or decides no result, expected each once",
-                    words(*of_digest->second), words(run)));
+    throw input_error(study_.file.string(), "",
+                      "has a run with {} and a run with {}, which have the same results: what they differ in is the "
+                      "scenario's value or decides no result, expected each once",
+                      words(*of_digest->second), words(run));
   }
 }
 
@@ -169,7 +168,7 @@ bool Sweep::finished(const Run& run, const Json& summary) const {
 
 std::vector<std::string> Sweep::command(const Run& run) const {
   std::error_code error;
-  const std::string program = fs::read_symlink("/proc/self/exe", error).string();
+  const std::string program = this_program().string();
   const fs::path folder = folder_of(run);
   if (!checkpoint::list_checkpoints(folder).empty()) return {program, "resume", "--no-plots", "--", folder.string()};
   std::vector<std::string> list{program, "run", "--no-plots", "--out=" + folder.string()};
@@ -247,11 +246,8 @@ bool Sweep::prepare_bed(Run& run) try {
   if (!readable(bed)) {
     launch::add_to_run_list(options_.folder, {"beds/", "beds/" + bed.filename().string()});
     fs::create_directory(bed.parent_path(), error);
-    const auto progress = [&](const std::string& what, double share) {
-      if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal while the bed rested");
-      display_.show({.phase = what, .share = share});
-    };
-    const terrain::dem::SettleResult rest = make_pass_bed(folder_of(before), study_.rest, progress, bed);
+    const terrain::dem::SettleResult rest =
+        make_pass_bed(folder_of(before), study_.rest, launch::shown_on(display_, " while the bed rested"), bed);
     tell(run, fmt::format("begins on the bed after {:.2g} s: {}, net force {:.1e} of the contact forces, {:.2g} mm/s",
                           rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
   }
@@ -311,29 +307,25 @@ void Sweep::poll(Run& run) {
   } else if (run.exit_code == 0 && finished(run, summary)) {
     run.state = State::done;
     keep_results(run, summary);
-    const auto number = [&](const char* path) {
-      const Json value = value_at(summary, path);
-      return value.is_number() ? value.get<double>() : std::nan("");
-    };
     for (const std::string& name : study_.chosen_results)
       if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
-    const double pull = number("drawbar_pull_N.mean");  // not every rig has one
+    const double pull = number_at(summary, "drawbar_pull_N.mean");  // not every rig has one
     const bool unsteady = value_at(summary, "drawbar_pull_N.steady") == false;
-    tell(run, std::isfinite(pull) ? fmt::format("is done: pull {} N{}", with_error(pull, number("drawbar_pull_N.sem")),
-                                                unsteady ? ", NOT STEADY" : "")
-                                  : "is done");
-    if (const double deep = number("sinkage_m") / number("surface_height_m"); run.pass > 0 && deep > kDeepRut)
-      tell(run,
-           fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is needed "
-                       "for soil without a floor (more terrain.layers)",
-                       100.0 * deep));
+    tell(run, std::isfinite(pull)
+                  ? fmt::format("is done: pull {} N{}", with_error(pull, number_at(summary, "drawbar_pull_N.sem")),
+                                unsteady ? ", NOT STEADY" : "")
+                  : "is done");
+    if (const double deep = number_at(summary, "sinkage_m") / number_at(summary, "surface_height_m");
+        run.pass > 0 && deep > kDeepRut)
+      tell(run, fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is "
+                            "needed for soil without a floor (more terrain.layers)",
+                            100.0 * deep));
   } else {
     run.state = State::failed;
     keep_results(run, read_failed_summary(folder_of(run)));
-    run.problem = run.exit_code == 0
-                      ? "holds the results of another scenario: it was resumed with other keys, or files were "
-                        "changed meanwhile; remove it to run it again"
-                      : launch::last_error(log_of(run), status);
+    run.problem = run.exit_code == 0 ? "holds the results of another scenario: it was resumed with other keys, or "
+                                       "files were changed meanwhile; remove it to run it again"
+                                     : launch::last_error(log_of(run), status);
     if (run.exit_code == 0) run.exit_code = static_cast<int>(ExitCode::bad_input);
     tell_failure(run,
                  fmt::format("FAILED with exit code {}: {}; see {}", run.exit_code, run.problem, log_of(run).string()));
@@ -357,9 +349,9 @@ void Sweep::require_folder(const launch::FolderLock& lock) {
     while (waitpid(run.process, nullptr, 0) < 0 && errno == EINTR) continue;
     run.process = -1;
   }
-  throw io_error(options_.folder.string(),
-                 "was moved, removed or emptied while the study was under way; it ends here and writes nothing "
-                 "elsewhere");
+  throw io_error(
+      options_.folder.string(),
+      "was moved, removed or emptied while the study was under way; it ends here and writes nothing elsewhere");
 }
 
 /// Ctrl-Z reaches this process alone: the runs have groups of their own.

@@ -80,27 +80,23 @@ inline std::string field_path(const std::string& name, const Field& field) {
 /// Calls f(path, value) for every field of a struct and of the structs in it, in their order.
 template <HasFields S, class F>
 void each_leaf(const std::string& name, S& values, F&& f) {
-  visit_fields(
-      [&](const Field& field, auto& value) {
-        if constexpr (HasFields<std::remove_cvref_t<decltype(value)>>)
-          each_leaf(field_path(name, field), value, f);
-        else
-          f(field_path(name, field), value);
-      },
-      values);
+  visit_fields(values, [&](auto& value, const Field& field) {
+    if constexpr (HasFields<std::remove_cvref_t<decltype(value)>>)
+      each_leaf(field_path(name, field), value, f);
+    else
+      f(field_path(name, field), value);
+  });
 }
 
 /// Calls f(value) likewise.
 template <HasFields S, class F>
 void each_leaf_value(S& values, F&& f) {
-  visit_fields(
-      [&](const Field&, auto& value) {
-        if constexpr (HasFields<std::remove_cvref_t<decltype(value)>>)
-          each_leaf_value(value, f);
-        else
-          f(value);
-      },
-      values);
+  visit_fields(values, [&](auto& value, const Field&) {
+    if constexpr (HasFields<std::remove_cvref_t<decltype(value)>>)
+      each_leaf_value(value, f);
+    else
+      f(value);
+  });
 }
 
 }  // namespace detail

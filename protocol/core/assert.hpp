@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <sstream>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace furrow {

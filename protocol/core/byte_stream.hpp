@@ -43,7 +43,7 @@ class ByteWriter {
   }
   template <HasFields T>
   void operator()(const T& values) {
-    visit_fields([this](const Field&, const auto& value) { (*this)(value); }, values);
+    visit_fields(values, [this](const auto& value, const Field&) { (*this)(value); });
   }
 
   std::vector<std::byte> take() { return std::move(bytes_); }
@@ -80,7 +80,7 @@ class ByteReader {
   }
   template <HasFields T>
   void operator()(T& values) {
-    visit_fields([this](const Field&, auto& value) { (*this)(value); }, values);
+    visit_fields(values, [this](auto& value, const Field&) { (*this)(value); });
   }
   /// @throws Error(rank_lost) when bytes are left over.
   void finish() const {

@@ -1,8 +1,8 @@
 // Columns of result tables: what they are called, and how a line is made of what is measured at every synchronization.
 // A struct whose fields are all columns has one list of them:
 //
-//   void visit_fields(auto&& visit, FieldsOf<VehicleRow> auto& r) {
-//     visit(column::mean("speed_m_per_s", "m/s"), r.speed);
+//   void visit_fields(FieldsOf<VehicleRow> auto& r, auto&& visit) {
+//     visit(r.speed, column::mean("speed_m_per_s", "m/s"));
 //   }
 //
 // From it follow the table's columns, their means, the saved state and the files.
@@ -67,7 +67,7 @@ template <HasFields Row>
 std::vector<Column> columns_of() {
   std::vector<Column> columns;
   const Row row{};
-  visit_fields([&](const Column& column, const double&) { columns.push_back(column); }, row);
+  visit_fields(row, [&](const double&, const Column& column) { columns.push_back(column); });
   return columns;
 }
 
@@ -75,14 +75,14 @@ std::vector<Column> columns_of() {
 template <HasFields Row>
 void get_values(const Row& row, std::span<double> values) {
   std::size_t i = 0;
-  visit_fields([&](const Column&, const double& value) { values[i++] = value; }, row);
+  visit_fields(row, [&](const double& value, const Column&) { values[i++] = value; });
 }
 
 /// Takes what get_values gave.
 template <HasFields Row>
 void set_values(Row& row, std::span<const double> values) {
   std::size_t i = 0;
-  visit_fields([&](const Column&, double& value) { value = values[i++]; }, row);
+  visit_fields(row, [&](double& value, const Column&) { value = values[i++]; });
 }
 
 /// A line of a table by the names of its columns.

@@ -3,6 +3,9 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace furrow {
 
@@ -32,8 +35,18 @@ class Error : public std::runtime_error {
 inline Error input_error(const std::string& file, const std::string& key, const std::string& what) {
   return Error(ExitCode::bad_input, key.empty() ? file + ": " + what : file + ": key '" + key + "': " + what);
 }
+/// Here and below, `what` may be a format of {fmt} with its arguments.
+template <class First, class... More>
+Error input_error(const std::string& file, const std::string& key, fmt::format_string<First, More...> what,
+                  First&& first, More&&... more) {
+  return input_error(file, key, fmt::format(what, std::forward<First>(first), std::forward<More>(more)...));
+}
 
 inline Error physics_error(const std::string& what) { return Error(ExitCode::physics, what); }
+template <class First, class... More>
+Error physics_error(fmt::format_string<First, More...> what, First&& first, More&&... more) {
+  return physics_error(fmt::format(what, std::forward<First>(first), std::forward<More>(more)...));
+}
 inline Error limit_error(const std::string& what) { return Error(ExitCode::limit, what); }
 /// For an exception that no code expects.
 inline Error fault_error(const std::string& what) {

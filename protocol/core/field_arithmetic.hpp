@@ -11,18 +11,16 @@ namespace furrow {
 template <HasFields T, class Call>
 T combined(T a, const T& b, const Call& call) {
   std::vector<const void*> others;
-  visit_fields([&](const auto&, const auto& value) { others.push_back(&value); }, b);
+  visit_fields(b, [&](const auto& value, const auto&) { others.push_back(&value); });
   auto next = others.begin();
-  visit_fields(
-      [&](const auto&, auto& value) {
-        using Value = std::remove_reference_t<decltype(value)>;
-        const auto& other = *static_cast<const Value*>(*next++);
-        if constexpr (HasFields<Value>)
-          value = combined(value, other, call);
-        else
-          value = call(value, other);
-      },
-      a);
+  visit_fields(a, [&](auto& value, const auto&) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    const auto& other = *static_cast<const Value*>(*next++);
+    if constexpr (HasFields<Value>)
+      value = combined(value, other, call);
+    else
+      value = call(value, other);
+  });
   return a;
 }
 

@@ -18,19 +18,17 @@ void add_fields(Hash& hash, const T& values, unsigned roles) {
   FURROW_ASSERT(roles != role::none, roles);
   const T defaults{};
   std::size_t here = 0;  // place of the field in the list, by which its default is found
-  const auto add = [&](const Field& field, const auto& value) {
+  const auto add = [&](const auto& value, const Field& field) {
     const std::size_t place = here++;
     if (!field.is(roles)) return;
     using Value = std::remove_cvref_t<decltype(value)>;
     bool same = false;
     std::size_t other = 0;
-    visit_fields(
-        [&](const Field&, const auto& standard) {
-          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(standard)>, Value>)
-            if (other == place) same = standard == value;
-          ++other;
-        },
-        defaults);
+    visit_fields(defaults, [&](const auto& standard, const Field&) {
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(standard)>, Value>)
+        if (other == place) same = standard == value;
+      ++other;
+    });
     if (same) return;
     hash.add(std::string(field.name));
     if constexpr (std::is_convertible_v<Value, std::string>)
@@ -38,7 +36,7 @@ void add_fields(Hash& hash, const T& values, unsigned roles) {
     else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
       hash.add(&value, sizeof value);
   };
-  visit_fields(add, values);
+  visit_fields(values, add);
 }
 
 }  // namespace furrow

@@ -4,11 +4,11 @@
 //   struct GroundOptions {
 //     double stiffness = 4e8;  // N/m³
 //   };
-//   void visit_fields(auto&& visit, FieldsOf<GroundOptions> auto& s) {
-//     visit(Field{"stiffness", "N/m³"}, s.stiffness);
+//   void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
+//     visit(s.stiffness, Field{"stiffness", "N/m³"});
 //   }
 //
-// A visitor is called with each field's name, unit and roles and the member itself, const when the struct is. Members
+// A visitor is called with each member, const when the struct is, and with its name, unit and roles. Members
 // that are structs with a list of their own are visited as one field; the visitor decides to go into them (concept
 // HasFields).
 #pragma once
@@ -43,14 +43,14 @@ concept FieldsOf = std::same_as<std::remove_const_t<S>, T>;
 namespace detail {
 struct IgnoreField {
   template <class T>
-  void operator()(const Field&, T&) const {}
+  void operator()(T&, const Field&) const {}
 };
 }  // namespace detail
 
 /// Whether T has a list of fields.
 template <class T>
 concept HasFields = requires(T& t) {
-  visit_fields(detail::IgnoreField{}, t);
+  visit_fields(t, detail::IgnoreField{});
 };
 
 }  // namespace furrow

@@ -11,16 +11,14 @@ namespace furrow {
 template <HasFields S>
 const char* first_missing(const S& values) {
   const char* name = nullptr;
-  visit_fields(
-      [&](const Field& field, const auto& value) {
-        double sum = 0.0;
-        if constexpr (requires { value.sum(); })
-          sum = value.sum();
-        else
-          sum = value;
-        if (!name && !std::isfinite(sum)) name = field.name;
-      },
-      values);
+  visit_fields(values, [&](const auto& value, const Field& field) {
+    double sum = 0.0;
+    if constexpr (requires { value.sum(); })
+      sum = value.sum();
+    else
+      sum = value;
+    if (!name && !std::isfinite(sum)) name = field.name;
+  });
   return name;
 }
 

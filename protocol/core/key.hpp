@@ -4,8 +4,8 @@
 //   struct GroundOptions {
 //     double stiffness = 4e8;
 //   };
-//   void visit_fields(auto&& visit, FieldsOf<GroundOptions> auto& s) {
-//     visit(key("stiffness", "N/m³", allowed::above(0).to(1e15), "Pressure per depth."), s.stiffness);
+//   void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
+//     visit(s.stiffness, key("stiffness", "N/m³", allowed::above(0).to(1e15), "Pressure per depth."));
 //   }
 //
 // From it follow the schema (protocol/files/key_schema.hpp), and with that checks, defaults, `furrow explain` and

@@ -12,9 +12,9 @@ struct StatedContact {
       false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
   NodalForces forces;  // on the tire, for the terrain's next interval; without tangents
 };
-void visit_fields(auto&& visit, FieldsOf<StatedContact> auto& s) {
-  visit(Field{"given", ""}, s.given);
-  visit(Field{"forces", ""}, s.forces);
+void visit_fields(FieldsOf<StatedContact> auto& s, auto&& visit) {
+  visit(s.given, Field{"given", ""});
+  visit(s.forces, Field{"forces", ""});
 }
 
 }  // namespace furrow

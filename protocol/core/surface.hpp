@@ -16,11 +16,11 @@ struct RimState {
   Vec3 velocity = Vec3::Zero();          // of the rim centre, m/s, W
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
 };
-void visit_fields(auto&& visit, FieldsOf<RimState> auto& s) {
-  visit(Field{"position", "m"}, s.position);
-  visit(Field{"orientation"}, s.orientation);
-  visit(Field{"velocity", "m/s"}, s.velocity);
-  visit(Field{"angular_velocity", "rad/s"}, s.angular_velocity);
+void visit_fields(FieldsOf<RimState> auto& s, auto&& visit) {
+  visit(s.position, Field{"position", "m"});
+  visit(s.orientation, Field{"orientation"});
+  visit(s.velocity, Field{"velocity", "m/s"});
+  visit(s.angular_velocity, Field{"angular_velocity", "rad/s"});
 }
 
 /// Force and moment about the rim centre, W.
@@ -28,9 +28,9 @@ struct Wrench {
   Vec3 force = Vec3::Zero();   // N
   Vec3 moment = Vec3::Zero();  // N m
 };
-void visit_fields(auto&& visit, FieldsOf<Wrench> auto& s) {
-  visit(Field{"force", "N"}, s.force);
-  visit(Field{"moment", "N m"}, s.moment);
+void visit_fields(FieldsOf<Wrench> auto& s, auto&& visit) {
+  visit(s.force, Field{"force", "N"});
+  visit(s.moment, Field{"moment", "N m"});
 }
 
 /// Connectivity of a contact surface; triangles run counter-clockwise seen from outside the tire.
@@ -38,9 +38,9 @@ struct SurfaceMesh {
   int vertex_count = 0;
   std::vector<std::array<int, 3>> triangles;
 };
-void visit_fields(auto&& visit, FieldsOf<SurfaceMesh> auto& s) {
-  visit(Field{"vertex_count"}, s.vertex_count);
-  visit(Field{"triangles"}, s.triangles);
+void visit_fields(FieldsOf<SurfaceMesh> auto& s, auto&& visit) {
+  visit(s.vertex_count, Field{"vertex_count"});
+  visit(s.triangles, Field{"triangles"});
 }
 
 /// Vertex positions (m) and velocities (m/s) of a contact surface at one instant, W; length = vertex_count.
@@ -48,9 +48,9 @@ struct SurfaceState {
   std::vector<Vec3> position;
   std::vector<Vec3> velocity;
 };
-void visit_fields(auto&& visit, FieldsOf<SurfaceState> auto& s) {
-  visit(Field{"position", "m"}, s.position);
-  visit(Field{"velocity", "m/s"}, s.velocity);
+void visit_fields(FieldsOf<SurfaceState> auto& s, auto&& visit) {
+  visit(s.position, Field{"position", "m"});
+  visit(s.velocity, Field{"velocity", "m/s"});
 }
 
 /// How a nodal force answers to the motion of its vertex, means over the interval in which it acted: over an interval
@@ -61,11 +61,11 @@ struct ContactTangent {
   Vec3 position = Vec3::Zero();   // of the vertex as the terrain moved it, m
   Vec3 velocity = Vec3::Zero();   // m/s
 };
-void visit_fields(auto&& visit, FieldsOf<ContactTangent> auto& s) {
-  visit(Field{"stiffness", "N/m"}, s.stiffness);
-  visit(Field{"damping", "N s/m"}, s.damping);
-  visit(Field{"position", "m"}, s.position);
-  visit(Field{"velocity", "m/s"}, s.velocity);
+void visit_fields(FieldsOf<ContactTangent> auto& s, auto&& visit) {
+  visit(s.stiffness, Field{"stiffness", "N/m"});
+  visit(s.damping, Field{"damping", "N s/m"});
+  visit(s.position, Field{"position", "m"});
+  visit(s.velocity, Field{"velocity", "m/s"});
 }
 
 /// Sparse nodal forces on the tire's contact surface, impulse-averaged over one communication interval.
@@ -81,10 +81,10 @@ struct NodalForces {
     tangent.clear();
   }
 };
-void visit_fields(auto&& visit, FieldsOf<NodalForces> auto& s) {
-  visit(Field{"vertex"}, s.vertex);
-  visit(Field{"force", "N"}, s.force);
-  visit(Field{"tangent", ""}, s.tangent);
+void visit_fields(FieldsOf<NodalForces> auto& s, auto&& visit) {
+  visit(s.vertex, Field{"vertex"});
+  visit(s.force, Field{"force", "N"});
+  visit(s.tangent, Field{"tangent", ""});
 }
 
 /// Mass properties of the tire as a rigid body, centre of mass at the rim centre.
@@ -92,9 +92,9 @@ struct MassProperties {
   double mass = 0.0;            // kg
   Mat3 inertia = Mat3::Zero();  // about the rim centre, rim axes, kg m²
 };
-void visit_fields(auto&& visit, FieldsOf<MassProperties> auto& s) {
-  visit(Field{"mass", "kg"}, s.mass);
-  visit(Field{"inertia", "kg m²"}, s.inertia);
+void visit_fields(FieldsOf<MassProperties> auto& s, auto&& visit) {
+  visit(s.mass, Field{"mass", "kg"});
+  visit(s.inertia, Field{"inertia", "kg m²"});
 }
 
 /// Elastic and frictional properties of a surface for contact with grains or ground.
@@ -108,15 +108,15 @@ struct ContactMaterial {
   double cohesion = 0.0;          // Pa; the tire's is zero
   double area_density = 0.0;      // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
 };
-void visit_fields(auto&& visit, FieldsOf<ContactMaterial> auto& s) {
-  visit(Field{"young_modulus", "Pa"}, s.young_modulus);
-  visit(Field{"poisson_ratio"}, s.poisson_ratio);
-  visit(Field{"friction"}, s.friction);
-  visit(Field{"restitution"}, s.restitution);
-  visit(Field{"normal_stiffness", "N/m^1.5"}, s.normal_stiffness);
-  visit(Field{"normal_damping", "N s/m^1.5"}, s.normal_damping);
-  visit(Field{"cohesion", "Pa"}, s.cohesion);
-  visit(Field{"area_density", "kg/m²"}, s.area_density);
+void visit_fields(FieldsOf<ContactMaterial> auto& s, auto&& visit) {
+  visit(s.young_modulus, Field{"young_modulus", "Pa"});
+  visit(s.poisson_ratio, Field{"poisson_ratio"});
+  visit(s.friction, Field{"friction"});
+  visit(s.restitution, Field{"restitution"});
+  visit(s.normal_stiffness, Field{"normal_stiffness", "N/m^1.5"});
+  visit(s.normal_damping, Field{"normal_damping", "N s/m^1.5"});
+  visit(s.cohesion, Field{"cohesion", "Pa"});
+  visit(s.area_density, Field{"area_density", "kg/m²"});
 }
 
 }  // namespace furrow

@@ -20,15 +20,15 @@ struct ContactSums {
   double work = 0.0;                      // this interval: Σ_substeps f·Δx̃ of the vertices, J
   std::int64_t contacts = 0;              // of the last substep
 };
-void visit_fields(auto&& visit, FieldsOf<ContactSums> auto& s) {
-  visit(Field{"force", "N"}, s.force);
-  visit(Field{"normal", "N"}, s.normal);
-  visit(Field{"tangential", "N"}, s.tangential);
-  visit(Field{"moment", "N m"}, s.moment);
-  visit(Field{"transfer_force_residual"}, s.transfer_force_residual);
-  visit(Field{"transfer_moment_residual"}, s.transfer_moment_residual);
-  visit(Field{"work", "J"}, s.work);
-  visit(Field{"contacts"}, s.contacts);
+void visit_fields(FieldsOf<ContactSums> auto& s, auto&& visit) {
+  visit(s.force, Field{"force", "N"});
+  visit(s.normal, Field{"normal", "N"});
+  visit(s.tangential, Field{"tangential", "N"});
+  visit(s.moment, Field{"moment", "N m"});
+  visit(s.transfer_force_residual, Field{"transfer_force_residual"});
+  visit(s.transfer_moment_residual, Field{"transfer_moment_residual"});
+  visit(s.work, Field{"work", "J"});
+  visit(s.contacts, Field{"contacts"});
 }
 
 /// Energy of a terrain by where it is and by which mechanism it left, each integrated on its own: none is the
@@ -58,22 +58,22 @@ struct TerrainEnergies {
   /// What is stored now.
   double stored() const { return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion; }
 };
-void visit_fields(auto&& visit, FieldsOf<TerrainEnergies> auto& s) {
-  visit(Field{"kinetic", "J"}, s.kinetic);
-  visit(Field{"rotational", "J"}, s.rotational);
-  visit(Field{"potential", "J"}, s.potential);
-  visit(Field{"elastic_normal", "J"}, s.elastic_normal);
-  visit(Field{"elastic_tangential", "J"}, s.elastic_tangential);
-  visit(Field{"cohesion", "J"}, s.cohesion);
-  visit(Field{"sliding_loss", "J"}, s.sliding_loss);
-  visit(Field{"normal_damping_loss", "J"}, s.normal_damping_loss);
-  visit(Field{"tangential_damping_loss", "J"}, s.tangential_damping_loss);
-  visit(Field{"rolling_loss", "J"}, s.rolling_loss);
-  visit(Field{"opening_loss", "J"}, s.opening_loss);
-  visit(Field{"sleep_loss", "J"}, s.sleep_loss);
-  visit(Field{"surface_work", "J"}, s.surface_work);
-  visit(Field{"wall_work", "J"}, s.wall_work);
-  visit(Field{"sample_error", "J"}, s.sample_error);
+void visit_fields(FieldsOf<TerrainEnergies> auto& s, auto&& visit) {
+  visit(s.kinetic, Field{"kinetic", "J"});
+  visit(s.rotational, Field{"rotational", "J"});
+  visit(s.potential, Field{"potential", "J"});
+  visit(s.elastic_normal, Field{"elastic_normal", "J"});
+  visit(s.elastic_tangential, Field{"elastic_tangential", "J"});
+  visit(s.cohesion, Field{"cohesion", "J"});
+  visit(s.sliding_loss, Field{"sliding_loss", "J"});
+  visit(s.normal_damping_loss, Field{"normal_damping_loss", "J"});
+  visit(s.tangential_damping_loss, Field{"tangential_damping_loss", "J"});
+  visit(s.rolling_loss, Field{"rolling_loss", "J"});
+  visit(s.opening_loss, Field{"opening_loss", "J"});
+  visit(s.sleep_loss, Field{"sleep_loss", "J"});
+  visit(s.surface_work, Field{"surface_work", "J"});
+  visit(s.wall_work, Field{"wall_work", "J"});
+  visit(s.sample_error, Field{"sample_error", "J"});
 }
 
 /// Momentum of a terrain and the impulses it was given since the run began, each from its own forces. What they leave
@@ -86,12 +86,12 @@ struct TerrainMomenta {
   Vec3 surface_impulse = Vec3::Zero();  // by tires on the terrain, N s
   Vec3 sleep_impulse = Vec3::Zero();    // by what holds resting parts that are not stepped, N s
 };
-void visit_fields(auto&& visit, FieldsOf<TerrainMomenta> auto& s) {
-  visit(Field{"grains", "kg m/s"}, s.grains);
-  visit(Field{"gravity_impulse", "N s"}, s.gravity_impulse);
-  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
-  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
-  visit(Field{"sleep_impulse", "N s"}, s.sleep_impulse);
+void visit_fields(FieldsOf<TerrainMomenta> auto& s, auto&& visit) {
+  visit(s.grains, Field{"grains", "kg m/s"});
+  visit(s.gravity_impulse, Field{"gravity_impulse", "N s"});
+  visit(s.wall_impulse, Field{"wall_impulse", "N s"});
+  visit(s.surface_impulse, Field{"surface_impulse", "N s"});
+  visit(s.sleep_impulse, Field{"sleep_impulse", "N s"});
 }
 
 /// Of a terrain without momentum of its own, which the world holds: the walls give it what tires take.
@@ -117,18 +117,18 @@ struct TerrainState {
   TerrainEnergies energies{};
   TerrainMomenta momenta{};
 };
-void visit_fields(auto&& visit, FieldsOf<TerrainState> auto& s) {
-  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
-  visit(Field{"elastic_energy", "J"}, s.elastic_energy);
-  visit(Field{"floor_force", "N"}, s.floor_force);
-  visit(Field{"contacts"}, s.contacts);
-  visit(Field{"active"}, s.active);
-  visit(Field{"list_rebuilds"}, s.list_rebuilds);
-  visit(Field{"substeps_added"}, s.substeps_added);
-  visit(Field{"refined_time", "s"}, s.refined_time);
-  visit(Field{"most_parts"}, s.most_parts);
-  visit(Field{"energies", ""}, s.energies);
-  visit(Field{"momenta", ""}, s.momenta);
+void visit_fields(FieldsOf<TerrainState> auto& s, auto&& visit) {
+  visit(s.kinetic_energy, Field{"kinetic_energy", "J"});
+  visit(s.elastic_energy, Field{"elastic_energy", "J"});
+  visit(s.floor_force, Field{"floor_force", "N"});
+  visit(s.contacts, Field{"contacts"});
+  visit(s.active, Field{"active"});
+  visit(s.list_rebuilds, Field{"list_rebuilds"});
+  visit(s.substeps_added, Field{"substeps_added"});
+  visit(s.refined_time, Field{"refined_time", "s"});
+  visit(s.most_parts, Field{"most_parts"});
+  visit(s.energies, Field{"energies", ""});
+  visit(s.momenta, Field{"momenta", ""});
 }
 
 /// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where no grain is.
@@ -138,13 +138,13 @@ struct HeightField {
   std::int32_t nx = 0, ny = 0;
   std::vector<double> height;  // m, [ix * ny + iy]
 };
-void visit_fields(auto&& visit, FieldsOf<HeightField> auto& s) {
-  visit(Field{"x0", "m"}, s.x0);
-  visit(Field{"y0", "m"}, s.y0);
-  visit(Field{"cell", "m"}, s.cell);
-  visit(Field{"nx"}, s.nx);
-  visit(Field{"ny"}, s.ny);
-  visit(Field{"height", "m"}, s.height);
+void visit_fields(FieldsOf<HeightField> auto& s, auto&& visit) {
+  visit(s.x0, Field{"x0", "m"});
+  visit(s.y0, Field{"y0", "m"});
+  visit(s.cell, Field{"cell", "m"});
+  visit(s.nx, Field{"nx"});
+  visit(s.ny, Field{"ny"});
+  visit(s.height, Field{"height", "m"});
 }
 
 }  // namespace furrow

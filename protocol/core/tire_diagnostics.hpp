@@ -30,16 +30,16 @@ struct TireDiagnostics {
   double stored() const { return kinetic_energy + strain_energy() + potential_energy; }
   double losses() const { return dissipation + numerical_loss + solver_loss; }
 };
-void visit_fields(auto&& visit, FieldsOf<TireDiagnostics> auto& s) {
-  visit(Field{"kinetic_energy", "J"}, s.kinetic_energy);
-  visit(Field{"elastic_energy", "J"}, s.elastic_energy);
-  visit(Field{"pressure_energy", "J"}, s.pressure_energy);
-  visit(Field{"potential_energy", "J"}, s.potential_energy);
-  visit(Field{"dissipation", "J"}, s.dissipation);
-  visit(Field{"numerical_loss", "J"}, s.numerical_loss);
-  visit(Field{"solver_loss", "J"}, s.solver_loss);
-  visit(Field{"momentum", "kg m/s"}, s.momentum);
-  visit(Field{"solver_impulse", "N s"}, s.solver_impulse);
+void visit_fields(FieldsOf<TireDiagnostics> auto& s, auto&& visit) {
+  visit(s.kinetic_energy, Field{"kinetic_energy", "J"});
+  visit(s.elastic_energy, Field{"elastic_energy", "J"});
+  visit(s.pressure_energy, Field{"pressure_energy", "J"});
+  visit(s.potential_energy, Field{"potential_energy", "J"});
+  visit(s.dissipation, Field{"dissipation", "J"});
+  visit(s.numerical_loss, Field{"numerical_loss", "J"});
+  visit(s.solver_loss, Field{"solver_loss", "J"});
+  visit(s.momentum, Field{"momentum", "kg m/s"});
+  visit(s.solver_impulse, Field{"solver_impulse", "N s"});
 }
 
 }  // namespace furrow

@@ -48,8 +48,8 @@ nlohmann::ordered_json field_json(const std::vector<T>& values) {
 template <HasFields T>
 nlohmann::ordered_json figures_json(const T& values) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  visit_fields([&](const Field& field, const auto& value) { json[name_with_unit(field)] = detail::field_json(value); },
-               values);
+  visit_fields(values,
+               [&](const auto& value, const Field& field) { json[name_with_unit(field)] = detail::field_json(value); });
   return json;
 }
 

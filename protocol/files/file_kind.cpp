@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
@@ -64,7 +63,7 @@ void refuse_other_kinds(const Json& document, FileKind expected, const std::stri
       expected == FileKind::soil || (expected == FileKind::scenario && !document.contains("measured"));
   if (could_be && reads_as_soil(document)) return;
   const Words &is = words_of(*kind), &wanted = words_of(expected);
-  throw input_error(file, "", fmt::format("is a {}, expected a {} ({})", is.name, wanted.name, is.use));
+  throw input_error(file, "", "is a {}, expected a {} ({})", is.name, wanted.name, is.use);
 }
 
 template std::optional<FileKind> kind_of_file(const nlohmann::json&);

@@ -35,8 +35,8 @@ void Hdf5Writer::check(bool ok, const std::string& what) const {
 }
 
 template <class T>
-void Hdf5Writer::write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape,
-                       hid_t type) {
+void Hdf5Writer::write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape) {
+  const hid_t type = hdf5::native(T{});
   FURROW_ASSERT(!name.empty() && !shape.empty(), name, shape.size());
   const hsize_t count = std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
   if (count != values.size()) throw io_error(file_.string(), "dataset '" + name + "' does not fit its shape");
@@ -51,25 +51,12 @@ void Hdf5Writer::write(const std::string& name, std::span<const T> values, const
   check(set.close() && written, "cannot write dataset '" + name + "'");
 }
 
-void Hdf5Writer::put(const std::string& name, std::span<const double> values, const std::vector<hsize_t>& shape) {
-  write(name, values, shape, H5T_NATIVE_DOUBLE);
-}
-void Hdf5Writer::put(const std::string& name, std::span<const float> values, const std::vector<hsize_t>& shape) {
-  write(name, values, shape, H5T_NATIVE_FLOAT);
-}
-void Hdf5Writer::put(const std::string& name, std::span<const std::int32_t> values, const std::vector<hsize_t>& shape) {
-  write(name, values, shape, H5T_NATIVE_INT32);
-}
-void Hdf5Writer::put(const std::string& name, std::span<const std::int64_t> values, const std::vector<hsize_t>& shape) {
-  write(name, values, shape, H5T_NATIVE_INT64);
-}
-void Hdf5Writer::put(const std::string& name, std::span<const std::uint64_t> values,
-                     const std::vector<hsize_t>& shape) {
-  write(name, values, shape, H5T_NATIVE_UINT64);
-}
-void Hdf5Writer::put(const std::string& name, std::span<const std::uint8_t> values, const std::vector<hsize_t>& shape) {
-  write(name, values, shape, H5T_NATIVE_UINT8);
-}
+template void Hdf5Writer::write(const std::string&, std::span<const double>, const std::vector<hsize_t>&);
+template void Hdf5Writer::write(const std::string&, std::span<const float>, const std::vector<hsize_t>&);
+template void Hdf5Writer::write(const std::string&, std::span<const std::int32_t>, const std::vector<hsize_t>&);
+template void Hdf5Writer::write(const std::string&, std::span<const std::int64_t>, const std::vector<hsize_t>&);
+template void Hdf5Writer::write(const std::string&, std::span<const std::uint64_t>, const std::vector<hsize_t>&);
+template void Hdf5Writer::write(const std::string&, std::span<const std::uint8_t>, const std::vector<hsize_t>&);
 
 void Hdf5Writer::write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);

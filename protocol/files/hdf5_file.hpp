@@ -25,12 +25,11 @@ class Hdf5Writer {
 
   /// Writes a dataset of the given shape; groups in the name ("a/b") are made.
   /// @throws Error(io) when the shape does not fit the number of values, or the disk is full
-  void put(const std::string& name, std::span<const double> values, const std::vector<hsize_t>& shape);
-  void put(const std::string& name, std::span<const float> values, const std::vector<hsize_t>& shape);
-  void put(const std::string& name, std::span<const std::int32_t> values, const std::vector<hsize_t>& shape);
-  void put(const std::string& name, std::span<const std::int64_t> values, const std::vector<hsize_t>& shape);
-  void put(const std::string& name, std::span<const std::uint64_t> values, const std::vector<hsize_t>& shape);
-  void put(const std::string& name, std::span<const std::uint8_t> values, const std::vector<hsize_t>& shape);
+  /// @param values numbers of a type that Hdf5Reader::get reads, one after another
+  template <class Values>
+  void put(const std::string& name, const Values& values, const std::vector<hsize_t>& shape) {
+    write<typename Values::value_type>(name, values, shape);
+  }
 
   void attribute(const std::string& name, double value);
   void attribute(const std::string& name, std::int64_t value);
@@ -50,7 +49,7 @@ class Hdf5Writer {
 
  private:
   template <class T>
-  void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape, hid_t type);
+  void write(const std::string& name, std::span<const T> values, const std::vector<hsize_t>& shape);
   void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value);
   void write_text(hid_t object, const std::string& name, const std::string& text);
   void check(bool ok, const std::string& what) const;

@@ -1,11 +1,10 @@
-// HDF5 identifiers that close themselves.
+// HDF5 identifiers that close themselves, and those of numbers.
 #pragma once
 
 #include <hdf5.h>
 
+#include <cstdint>
 #include <utility>
-
-#include "protocol/core/assert.hpp"
 
 namespace furrow {
 
@@ -25,5 +24,15 @@ class Handle {
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+namespace hdf5 {
+/// The type of numbers in memory.
+inline hid_t native(double) { return H5T_NATIVE_DOUBLE; }
+inline hid_t native(float) { return H5T_NATIVE_FLOAT; }
+inline hid_t native(std::int32_t) { return H5T_NATIVE_INT32; }
+inline hid_t native(std::int64_t) { return H5T_NATIVE_INT64; }
+inline hid_t native(std::uint64_t) { return H5T_NATIVE_UINT64; }
+inline hid_t native(std::uint8_t) { return H5T_NATIVE_UINT8; }
+}  // namespace hdf5
 
 }  // namespace furrow

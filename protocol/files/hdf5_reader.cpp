@@ -16,13 +16,6 @@ namespace {
 constexpr hsize_t kMaxNumbers = hsize_t{1} << 31;  // of one dataset
 constexpr std::size_t kMaxAttribute = 4096;        // bytes of a text
 
-hid_t native(double) { return H5T_NATIVE_DOUBLE; }
-hid_t native(float) { return H5T_NATIVE_FLOAT; }
-hid_t native(std::int32_t) { return H5T_NATIVE_INT32; }
-hid_t native(std::int64_t) { return H5T_NATIVE_INT64; }
-hid_t native(std::uint64_t) { return H5T_NATIVE_UINT64; }
-hid_t native(std::uint8_t) { return H5T_NATIVE_UINT8; }
-
 std::string quoted(const std::string& name) { return "'" + excerpt(name) + "'"; }
 
 /// One of the plain numbers that every program writes, in any byte order.
@@ -85,8 +78,8 @@ class Hdf5Reader::Set {
     const hsize_t needed = product(shape_, each), chunk = chunk_bytes(each);
     if (numbers() == 0) return;
     file_.check(bytes <= file_.size_ && needed <= most && chunk <= std::max(most, kSmallChunk),
-                fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or "
-                            "the file is cut short or damaged",
+                fmt::format("the dataset {} is said to have {} bytes, but {} are stored: it was never written, or the "
+                            "file is cut short or damaged",
                             quoted(name_), needed, std::min<hsize_t>(bytes, file_.size_)));
   }
 
@@ -170,7 +163,7 @@ std::vector<T> Hdf5Reader::get(const std::string& name) const {
   set.check_stored();
   std::vector<T> values(static_cast<std::size_t>(set.numbers()));
   if (values.empty()) return values;
-  check(H5Dread(set, native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
+  check(H5Dread(set, hdf5::native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
         "cannot read the dataset " + quoted(name) + ": is the file cut short?");
   return values;
 }

@@ -18,16 +18,14 @@ namespace furrow {
 template <HasFields T>
 void read_fields(const nlohmann::json& object, T& target, unsigned roles = role::key) {
   FURROW_ASSERT(object.is_object(), object.type_name());
-  visit_fields(
-      [&](const Field& field, auto& value) {
-        using Value = std::remove_reference_t<decltype(value)>;
-        if constexpr (requires { object.begin()->template get<Value>(); }) {
-          if (!field.is(roles)) return;
-          const auto entry = object.find(field.name);
-          if (entry != object.end() && !entry->is_null()) value = entry->template get<Value>();
-        }
-      },
-      target);
+  visit_fields(target, [&](auto& value, const Field& field) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if constexpr (requires { object.begin()->template get<Value>(); }) {
+      if (!field.is(roles)) return;
+      const auto entry = object.find(field.name);
+      if (entry != object.end() && !entry->is_null()) value = entry->template get<Value>();
+    }
+  });
 }
 
 /// Names of the fields that have all `roles`, in order.
@@ -35,11 +33,9 @@ template <HasFields T>
 std::vector<std::string> field_names(unsigned roles) {
   std::vector<std::string> names;
   const T defaults{};
-  visit_fields(
-      [&](const Field& field, const auto&) {
-        if (field.is(roles)) names.emplace_back(field.name);
-      },
-      defaults);
+  visit_fields(defaults, [&](const auto&, const Field& field) {
+    if (field.is(roles)) names.emplace_back(field.name);
+  });
   return names;
 }
 
@@ -48,7 +44,7 @@ template <HasFields T>
 std::vector<Field> fields_of() {
   std::vector<Field> fields;
   const T defaults{};
-  visit_fields([&](const Field& field, const auto&) { fields.push_back(field); }, defaults);
+  visit_fields(defaults, [&](const auto&, const Field& field) { fields.push_back(field); });
   return fields;
 }
 

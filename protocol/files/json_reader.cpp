@@ -51,7 +51,7 @@ template <class Json>
 std::string BasicJsonReader<Json>::text(const std::string& key) {
   const std::string text = at(key, &Json::is_string, "a text").template get<std::string>();
   if (text.size() > kMaxName || printable(text) != text)
-    fail(key, fmt::format("is '{}', expected one line of at most {} bytes", excerpt(text), kMaxName));
+    fail(key, "is '{}', expected one line of at most {} bytes", excerpt(text), kMaxName);
   return text;
 }
 
@@ -109,8 +109,7 @@ double BasicJsonReader<Json>::not_negative_or(const std::string& key, double oth
 template <class Json>
 std::vector<double> BasicJsonReader<Json>::numbers(const std::string& key, int size) {
   const Json& list = array(key);
-  if (size >= 0 && static_cast<int>(list.size()) != size)
-    fail(key, fmt::format("has {} values, expected {}", list.size(), size));
+  if (size >= 0 && static_cast<int>(list.size()) != size) fail(key, "has {} values, expected {}", list.size(), size);
   std::vector<double> values;
   for (const Json& value : list) {
     if (!value.is_number()) fail(key, "holds " + value_text(value) + ", expected numbers");
@@ -127,8 +126,7 @@ void BasicJsonReader<Json>::check_version(int newest, bool required) {
   const std::string expected = newest == 1 ? "1" : fmt::format("1 to {}", newest);
   const Json& value = at(kKey, &Json::is_number_integer, expected);
   if (value.template get<double>() > newest)
-    fail(kKey,
-         fmt::format("is {}: the file is newer than this program, expected at most {}", value_text(value), newest));
+    fail(kKey, "is {}: the file is newer than this program, expected at most {}", value_text(value), newest);
   if (value.template get<double>() < 1.0) fail(kKey, "is " + value_text(value) + ", expected " + expected);
 }
 

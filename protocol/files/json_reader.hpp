@@ -4,8 +4,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
@@ -54,6 +56,11 @@ class BasicJsonReader {
     return input_error(file_, key.empty() ? path_ : full(key), what);
   }
   [[noreturn]] void fail(const std::string& key, const std::string& what) const { throw wrong(key, what); }
+  template <class First, class... More>
+  [[noreturn]] void fail(const std::string& key, fmt::format_string<First, More...> what, First&& first,
+                         More&&... more) const {
+    throw wrong(key, fmt::format(what, std::forward<First>(first), std::forward<More>(more)...));
+  }
   std::string full(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   const std::string& file() const { return file_; }
   const Json& object() const { return object_; }

@@ -80,12 +80,11 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool key(std::string& name) override {
     Level& level = levels_.back();
     if (name.size() > kMaxKey || printable(name) != name)
-      throw input_error(
-          name_, path_to(excerpt(name)),
-          fmt::format("has a control character or is longer than {} bytes, expected the name of a key", kMaxKey));
+      throw input_error(name_, path_to(excerpt(name)),
+                        "has a control character or is longer than {} bytes, expected the name of a key", kMaxKey);
     level.key = name;
     if (level.value->size() == kMaxKeys)
-      throw input_error(name_, path(), fmt::format("is one too many, expected at most {} keys in an object", kMaxKeys));
+      throw input_error(name_, path(), "is one too many, expected at most {} keys in an object", kMaxKeys);
     if (level.value->contains(name)) throw input_error(name_, path(), "is given twice, expected once");
     return true;
   }

@@ -42,12 +42,10 @@ class SchemaWriter {
   template <HasFields T>
   void add_keys(nlohmann::ordered_json& object) {
     const T defaults{};
-    visit_fields(
-        [&]<class F>(const F& field, const auto& value) {
-          if constexpr (std::derived_from<F, Key>)
-            if (field.is(role::key)) add_key(object, field, node_of(field, value));
-        },
-        defaults);
+    visit_fields(defaults, [&]<class F>(const auto& value, const F& field) {
+      if constexpr (std::derived_from<F, Key>)
+        if (field.is(role::key)) add_key(object, field, node_of(field, value));
+    });
   }
 
   /// The schema of an object, with the key `type` where its struct has a kType.
@@ -136,16 +134,14 @@ void check_value(const Key& key, const nlohmann::json& value, const std::string&
 /// @throws Error(bad_input) likewise
 template <HasFields T>
 void check_values(const T& values, const std::string& file, const std::string& section) {
-  visit_fields(
-      [&]<class F, class Value>(const F& field, const Value& value) {
-        if constexpr (std::derived_from<F, Key>) {
-          if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>)
-            if (!field.takes_null || !(value < Value{})) check_value(field, value, file, section);
-          if constexpr (std::is_same_v<Value, std::string>)
-            if (*field.texts && !(field.takes_null && value.empty())) check_value(field, value, file, section);
-        }
-      },
-      values);
+  visit_fields(values, [&]<class F, class Value>(const Value& value, const F& field) {
+    if constexpr (std::derived_from<F, Key>) {
+      if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>)
+        if (!field.takes_null || !(value < Value{})) check_value(field, value, file, section);
+      if constexpr (std::is_same_v<Value, std::string>)
+        if (*field.texts && !(field.takes_null && value.empty())) check_value(field, value, file, section);
+    }
+  });
 }
 
 }  // namespace furrow

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <concepts>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -70,13 +69,11 @@ void take_value(JsonReader& reader, const Key& key, std::vector<T>& value) {
 /// @throws Error(bad_input) naming file and key when one is missing, of another type or out of its range
 template <HasFields T>
 void read_keys(JsonReader& reader, T& target) {
-  visit_fields(
-      [&](const Key& key, auto& value) {
-        if (key.is(role::by_hand)) return;
-        reader.skip(key.name);
-        if (key.missing == Missing::mistake || reader.given(key.name)) detail::take_value(reader, key, value);
-      },
-      target);
+  visit_fields(target, [&](auto& value, const Key& key) {
+    if (key.is(role::by_hand)) return;
+    reader.skip(key.name);
+    if (key.missing == Missing::mistake || reader.given(key.name)) detail::take_value(reader, key, value);
+  });
 }
 
 }  // namespace furrow

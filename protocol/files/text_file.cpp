@@ -53,7 +53,7 @@ void check_text_file(const std::filesystem::path& file, const std::string& expec
     throw input_error(name, "", "is not a regular file, expected " + expected);
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (!error && size > kMaxText)
-    throw input_error(name, "", fmt::format("is {} MB large, expected {} of at most 16 MB", size >> 20, expected));
+    throw input_error(name, "", "is {} MB large, expected {} of at most 16 MB", size >> 20, expected);
 }
 
 }  // namespace
@@ -102,16 +102,13 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
                       text.append(block, count);
                       return text.size() <= kMaxText;
                     });
-  if (!good)
-    throw input_error(name, "", fmt::format("cannot be read ({}), expected {}", std::strerror(errno), expected));
-  if (text.size() > kMaxText)
-    throw input_error(name, "", fmt::format("is too large, expected {} of at most 16 MB", expected));
+  if (!good) throw input_error(name, "", "cannot be read ({}), expected {}", std::strerror(errno), expected);
+  if (text.size() > kMaxText) throw input_error(name, "", "is too large, expected {} of at most 16 MB", expected);
   if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }))
     throw input_error(name, "", "is empty, expected " + expected);
   if (const std::size_t bad = find_invalid_utf8(text); bad != std::string::npos)
-    throw input_error(name + ":" + place_in_text(text, bad), "",
-                      fmt::format("byte 0x{:02x} is not UTF-8, expected {} in UTF-8",
-                                  static_cast<unsigned char>(text[bad]), expected));
+    throw input_error(name + ":" + place_in_text(text, bad), "", "byte 0x{:02x} is not UTF-8, expected {} in UTF-8",
+                      static_cast<unsigned char>(text[bad]), expected);
   return text;
 }
 

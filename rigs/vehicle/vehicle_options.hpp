@@ -30,37 +30,36 @@ struct VehicleRigOptions {
   double stop_before_wall =
       -1.0;  // left between a tire and the end wall when the run ends before it, m; negative: open
 };
-void visit_fields(auto&& visit, FieldsOf<VehicleRigOptions> auto& s) {
+void visit_fields(FieldsOf<VehicleRigOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("vehicle", "", not_empty().or_null(),
+  visit(s.vehicle,
+        key("vehicle", "", not_empty().or_null(),
             "Vehicle file, relative to the scenario, then to the folders rigs/ and vehicle/data/. Its wheels name "
-            "their tires; `tire` changes all of them, `tires` those of each wheel or each axle."),
-        s.vehicle);
-  visit(key("driver", "", shaped(R"({"type": ["string", "object"]})").not_empty().or_null(),
+            "their tires; `tire` changes all of them, `tires` those of each wheel or each axle."));
+  visit(s.driver,
+        key("driver", "", shaped(R"({"type": ["string", "object"]})").not_empty().or_null(),
             "Driver file in JSON or CSV, found like the vehicle's file, or the content of such a file. null: nobody "
-            "drives and the brakes hold."),
-        s.driver);
-  visit(keys::kStart, s.start);
-  visit(key("lateral", "m", from(-1e6, 1e6),
-            "Place along y of the origin of the vehicle's frame at t = 0. The bin's middle is y = 0."),
-        s.lateral);
-  visit(key("heading", "rad", from(-3.15, 3.15), "Direction of the vehicle at t = 0, about +z from the x axis."),
-        s.heading);
-  visit(key("slope", "rad", from(-1.2, 1.2).usual(-0.7, 0.7),
+            "drives and the brakes hold."));
+  visit(s.start, keys::kStart);
+  visit(s.lateral, key("lateral", "m", from(-1e6, 1e6),
+                       "Place along y of the origin of the vehicle's frame at t = 0. The bin's middle is y = 0."));
+  visit(s.heading,
+        key("heading", "rad", from(-3.15, 3.15), "Direction of the vehicle at t = 0, about +z from the x axis."));
+  visit(s.slope,
+        key("slope", "rad", from(-1.2, 1.2).usual(-0.7, 0.7),
             "Slope of the ground; it rises along +x if positive. Gravity is tilted and z is normal to the ground. "
-            "Grains settle on level ground and are tilted then."),
-        s.slope);
-  visit(key("start_speed", "m/s", from(0, 100),
+            "Grains settle on level ground and are tilted then."));
+  visit(s.start_speed,
+        key("start_speed", "m/s", from(0, 100),
             "Speed of a vehicle at t = 0, along its heading. Its wheels roll and its driveline turns with them, in the "
             "gear that the driver asks for, or else in the lowest gear that the gearbox would keep. Without a driver "
-            "its brakes are locked."),
-        s.start_speed);
-  visit(keys::kLoweringSpeed, s.lowering_speed);
-  visit(keys::kTouchdownTime, s.touchdown_time);
-  visit(key("stop_before_wall", "m", from(0, 1e6).or_null(),
+            "its brakes are locked."));
+  visit(s.lowering_speed, keys::kLoweringSpeed);
+  visit(s.touchdown_time, keys::kTouchdownTime);
+  visit(s.stop_before_wall,
+        key("stop_before_wall", "m", from(0, 1e6).or_null(),
             "Distance at which a vehicle's run ends: between a tire and the end wall of the bin, or twice that between "
-            "a tire and a side wall. 0: the run does not end there. null: radius of the largest tire."),
-        s.stop_before_wall);
+            "a tire and a side wall. 0: the run does not end there. null: radius of the largest tire."));
 }
 
 /// Everything that the rig needs.

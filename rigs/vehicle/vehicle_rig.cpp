@@ -30,10 +30,10 @@ struct VehicleRecord {
   RigAccounts accounts = RigAccounts::none();
   vehicle::DriverInputs inputs;
 };
-void visit_fields(auto&& visit, FieldsOf<VehicleRecord> auto& s) {
-  visit(Field{"row", ""}, s.row);
-  visit(Field{"accounts", ""}, s.accounts);
-  visit(Field{"inputs", ""}, s.inputs);
+void visit_fields(FieldsOf<VehicleRecord> auto& s, auto&& visit) {
+  visit(s.row, Field{"row", ""});
+  visit(s.accounts, Field{"accounts", ""});
+  visit(s.inputs, Field{"inputs", ""});
 }
 
 class VehicleRig final : public Rig {

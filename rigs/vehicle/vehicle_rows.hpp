@@ -17,16 +17,16 @@ struct VehicleWheelRow {
   double shock_force = 0.0;     // N
   double brake_torque = 0.0;    // on the wheel about its axle, N m; part of spindle_torque_Nm
 };
-void visit_fields(auto&& visit, FieldsOf<VehicleWheelRow> auto& r) {
+void visit_fields(FieldsOf<VehicleWheelRow> auto& r, auto&& visit) {
   using namespace column;
-  visit(instant("sinkage_in_rut_m", "m").following("sinkage_m"), r.sinkage_in_rut);
-  visit(instant("suspension_travel_m", "m"), r.travel);
-  visit(instant("wheel_camber_rad", "rad"), r.camber);
-  visit(instant("wheel_toe_rad", "rad"), r.toe);
-  visit(instant("wheel_steer_rad", "rad"), r.steer);
-  visit(mean("spring_force_N", "N"), r.spring_force);
-  visit(mean("shock_force_N", "N"), r.shock_force);
-  visit(mean("brake_torque_Nm", "N m"), r.brake_torque);
+  visit(r.sinkage_in_rut, instant("sinkage_in_rut_m", "m").following("sinkage_m"));
+  visit(r.travel, instant("suspension_travel_m", "m"));
+  visit(r.camber, instant("wheel_camber_rad", "rad"));
+  visit(r.toe, instant("wheel_toe_rad", "rad"));
+  visit(r.steer, instant("wheel_steer_rad", "rad"));
+  visit(r.spring_force, mean("spring_force_N", "N"));
+  visit(r.shock_force, mean("shock_force_N", "N"));
+  visit(r.brake_torque, mean("brake_torque_Nm", "N m"));
 }
 
 /// Of the vehicle. Place and angles are those of its frame: x forward, y left, z up.
@@ -59,43 +59,43 @@ struct VehicleRow {
   double lowering_heat = 0.0;  // of the damper that lets the vehicle down, J
   double spring_energy = 0.0;  // J
 };
-void visit_fields(auto&& visit, FieldsOf<VehicleRow> auto& r) {
+void visit_fields(FieldsOf<VehicleRow> auto& r, auto&& visit) {
   using namespace column;
-  visit(instant("x_m", "m"), r.x);
-  visit(instant("y_m", "m"), r.y);
-  visit(instant("z_m", "m"), r.z);
-  visit(instant("roll_rad", "rad"), r.roll);
-  visit(instant("pitch_rad", "rad"), r.pitch);
-  visit(instant("yaw_rad", "rad"), r.yaw);
-  visit(cumulative("distance_m", "m"), r.distance);
-  visit(mean("speed_m_s", "m/s"), r.speed);
-  visit(mean("lateral_speed_m_per_s", "m/s"), r.lateral_speed);
-  visit(mean("acceleration_m_per_s2", "m/s²"), r.acceleration);
-  visit(mean("lateral_acceleration_m_per_s2", "m/s²"), r.lateral_acceleration);
-  visit(mean("yaw_rate_rad_per_s", "rad/s"), r.yaw_rate);
-  visit(mean("throttle"), r.throttle);
-  visit(mean("brake"), r.brake);
-  visit(mean("steering"), r.steering);
-  visit(instant("gear"), r.gear);
-  visit(mean("shifting"), r.shifting);
-  visit(mean("engine_speed_rpm", "1/min"), r.engine_speed);
-  visit(mean("turbine_speed_rpm", "1/min"), r.turbine_speed);
-  visit(mean("engine_torque_Nm", "N m"), r.engine_torque);
-  visit(mean("power_W", "W"), r.engine_power);
-  visit(mean("wheel_power_W", "W"), r.wheel_power);
-  visit(mean("soil_power_W", "W"), r.soil_power);
-  visit(mean("target_speed_m_per_s", "m/s"), r.target_speed);
-  visit(instant("path_distance_m", "m"), r.path_distance);
-  visit(instant("cross_track_error_m", "m"), r.cross_track);
-  visit(instant("heading_error_rad", "rad"), r.heading_error);
-  visit(cumulative("drive_work_J", "J"), r.drive_work);
-  visit(cumulative("converter_heat_J", "J"), r.converter_heat);
-  visit(cumulative("clutch_heat_J", "J"), r.clutch_heat);
-  visit(cumulative("shift_heat_J", "J"), r.shift_heat);
-  visit(cumulative("brake_heat_J", "J"), r.brake_heat);
-  visit(cumulative("shock_heat_J", "J"), r.shock_heat);
-  visit(cumulative("lowering_heat_J", "J"), r.lowering_heat);
-  visit(instant("spring_energy_J", "J"), r.spring_energy);
+  visit(r.x, instant("x_m", "m"));
+  visit(r.y, instant("y_m", "m"));
+  visit(r.z, instant("z_m", "m"));
+  visit(r.roll, instant("roll_rad", "rad"));
+  visit(r.pitch, instant("pitch_rad", "rad"));
+  visit(r.yaw, instant("yaw_rad", "rad"));
+  visit(r.distance, cumulative("distance_m", "m"));
+  visit(r.speed, mean("speed_m_s", "m/s"));
+  visit(r.lateral_speed, mean("lateral_speed_m_per_s", "m/s"));
+  visit(r.acceleration, mean("acceleration_m_per_s2", "m/s²"));
+  visit(r.lateral_acceleration, mean("lateral_acceleration_m_per_s2", "m/s²"));
+  visit(r.yaw_rate, mean("yaw_rate_rad_per_s", "rad/s"));
+  visit(r.throttle, mean("throttle"));
+  visit(r.brake, mean("brake"));
+  visit(r.steering, mean("steering"));
+  visit(r.gear, instant("gear"));
+  visit(r.shifting, mean("shifting"));
+  visit(r.engine_speed, mean("engine_speed_rpm", "1/min"));
+  visit(r.turbine_speed, mean("turbine_speed_rpm", "1/min"));
+  visit(r.engine_torque, mean("engine_torque_Nm", "N m"));
+  visit(r.engine_power, mean("power_W", "W"));
+  visit(r.wheel_power, mean("wheel_power_W", "W"));
+  visit(r.soil_power, mean("soil_power_W", "W"));
+  visit(r.target_speed, mean("target_speed_m_per_s", "m/s"));
+  visit(r.path_distance, instant("path_distance_m", "m"));
+  visit(r.cross_track, instant("cross_track_error_m", "m"));
+  visit(r.heading_error, instant("heading_error_rad", "rad"));
+  visit(r.drive_work, cumulative("drive_work_J", "J"));
+  visit(r.converter_heat, cumulative("converter_heat_J", "J"));
+  visit(r.clutch_heat, cumulative("clutch_heat_J", "J"));
+  visit(r.shift_heat, cumulative("shift_heat_J", "J"));
+  visit(r.brake_heat, cumulative("brake_heat_J", "J"));
+  visit(r.shock_heat, cumulative("shock_heat_J", "J"));
+  visit(r.lowering_heat, cumulative("lowering_heat_J", "J"));
+  visit(r.spring_energy, instant("spring_energy_J", "J"));
 }
 
 }  // namespace furrow::rigs

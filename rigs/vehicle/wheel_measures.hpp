@@ -17,10 +17,10 @@ struct WheelRecord {
   VehicleWheelRow row;
   double load = 0.0;  // at rest, N
 };
-void visit_fields(auto&& visit, FieldsOf<WheelRecord> auto& s) {
-  visit(Field{"report", ""}, s.report);
-  visit(Field{"row", ""}, s.row);
-  visit(Field{"load", "N"}, s.load);
+void visit_fields(FieldsOf<WheelRecord> auto& s, auto&& visit) {
+  visit(s.report, Field{"report", ""});
+  visit(s.row, Field{"row", ""});
+  visit(s.load, Field{"load", "N"});
 }
 
 /// A row in speeds that turns a wheel, with what its torque does to the wheel.

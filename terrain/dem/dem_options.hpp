@@ -52,104 +52,100 @@ struct DemOptions : TerrainContext {
 };
 
 /// The order of those with role::soil is the order in which messages list what a soil file may say.
-void visit_fields(auto&& visit, FieldsOf<DemOptions> auto& s) {
+void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
   using namespace allowed;
   constexpr unsigned kBed = role::key | role::bed, kSoil = role::key | role::soil, kBoth = kBed | kSoil;
-  visit(key("law", "", kBoth, words("mindlin hertz_tanh"),
+  visit(s.law,
+        key("law", "", kBoth, words("mindlin hertz_tanh"),
             "Contact law. mindlin: Hertz–Mindlin with history. hertz_tanh: Hertz with friction regularised by tanh, as "
-            "in Project Chrono, which has no static friction."),
-        s.law);
-  visit(keys::kMaterial, s.material);
-  visit(key("radius", "m", kBed, from(1e-6).below(1).usual(0.0005, 0.05),
-            "Grain radius; with size_spread the middle of the radii."),
-        s.radius);
-  visit(key("density", "kg/m³", kBoth, from(1, 1e5).usual(500, 12000), "Density of a grain."), s.density);
-  visit(
-      key("young_modulus", "Pa", kBoth, from(1, 1e13).usual(1e5, 1e11), "Young's modulus of the grains, law mindlin."),
-      s.young_modulus);
-  visit(key("poisson_ratio", "-", kBoth, above(-1).to(0.5), "Poisson's ratio of the grains, law mindlin."),
-        s.poisson_ratio);
-  visit(key("restitution", "-", kBoth, from(0, 1),
-            "Coefficient of restitution of two grains in a central impact, law mindlin."),
-        s.restitution);
-  visit(keys::kFriction.with(kBoth), s.friction);
-  visit(key("cohesion", "Pa", kBoth, from(0, 1e9).usual(100, 1e6),
+            "in Project Chrono, which has no static friction."));
+  visit(s.material, keys::kMaterial);
+  visit(s.radius, key("radius", "m", kBed, from(1e-6).below(1).usual(0.0005, 0.05),
+                      "Grain radius; with size_spread the middle of the radii."));
+  visit(s.density, key("density", "kg/m³", kBoth, from(1, 1e5).usual(500, 12000), "Density of a grain."));
+  visit(s.young_modulus, key("young_modulus", "Pa", kBoth, from(1, 1e13).usual(1e5, 1e11),
+                             "Young's modulus of the grains, law mindlin."));
+  visit(s.poisson_ratio,
+        key("poisson_ratio", "-", kBoth, above(-1).to(0.5), "Poisson's ratio of the grains, law mindlin."));
+  visit(s.restitution, key("restitution", "-", kBoth, from(0, 1),
+                           "Coefficient of restitution of two grains in a central impact, law mindlin."));
+  visit(s.friction, keys::kFriction.with(kBoth));
+  visit(s.cohesion,
+        key("cohesion", "Pa", kBoth, from(0, 1e9).usual(100, 1e6),
             "Cohesion c_t of contacts: grains that touch attract each other by π r² c_t. It is not the cohesion c of "
-            "soil mechanics, which `furrow soil` measures."),
-        s.cohesion);
-  visit(key("size_distribution", "", kBoth, words("uniform normal"),
+            "soil mechanics, which `furrow soil` measures."));
+  visit(s.size_distribution,
+        key("size_distribution", "", kBoth, words("uniform normal"),
             "Distribution of the radii within size_spread: uniform, or normal with a standard deviation of half the "
-            "spread, cut at its ends."),
-        s.size_distribution);
-  visit(key("size_spread", "-", kBoth, from(0, 0.6),
+            "spread, cut at its ends."));
+  visit(s.size_spread,
+        key("size_spread", "-", kBoth, from(0, 0.6),
             "Spread of the radii: they are drawn from radius × (1 − spread) to radius × (1 + spread), law mindlin. 0: "
-            "all grains are alike."),
-        s.size_spread);
-  visit(key("bed_generator", "", kBoth, words("poisson lattice"),
+            "all grains are alike."));
+  visit(s.bed_generator,
+        key("bed_generator", "", kBoth, words("poisson lattice"),
             "How the grains of a layer are placed before they fall. poisson: at random, with a least distance of 2.02 "
             "r. lattice: on squares 2.3 r wide, jittered by 0.14 r, every other layer shifted by half a spacing; 20 % "
-            "more grains per layer."),
-        s.bed_generator);
-  visit(key("rolling_friction", "-", kBoth, from(0, 10),
+            "more grains per layer."));
+  visit(s.rolling_friction,
+        key("rolling_friction", "-", kBoth, from(0, 10),
             "Coefficient of rolling friction: limit of the rolling resistance torque over normal force × effective "
-            "radius, law mindlin."),
-        s.rolling_friction);
-  visit(
-      key("settling_friction", "-", kBoth, from(0, 10).or_null(),
-          "Coulomb coefficient between grains while a new bed falls and is pressed; rolling resistance is scaled "
-          "likewise. Lower packs denser, higher looser. The bed then settles once more with friction. null: friction."),
-      s.settling_friction);
-  visit(key("compaction_pressure", "Pa", kBoth, from(0, 1e9).usual(1e3, 1e6),
+            "radius, law mindlin."));
+  visit(s.settling_friction,
+        key("settling_friction", "-", kBoth, from(0, 10).or_null(),
+            "Coulomb coefficient between grains while a new bed falls and is pressed; rolling resistance is scaled "
+            "likewise. Lower packs denser, higher looser. The bed then settles once more with friction. null: "
+            "friction."));
+  visit(s.compaction_pressure,
+        key("compaction_pressure", "Pa", kBoth, from(0, 1e9).usual(1e3, 1e6),
             "Pressure of a flat frictionless lid that presses the settled bed and is lifted again before use. 0: no "
-            "lid."),
-        s.compaction_pressure);
-  visit(key("layers", "", kBed, from(1, 9999).usual(1, 200),
-            "Poisson-disk layers of grains dropped into the bin. The bed's depth is roughly 1.3 r per layer."),
-        s.layers);
-  visit(keys::kLength.with(kBed), s.length);
-  visit(keys::kWidth.with(kBed), s.width);
-  visit(key("sides", "", kBed, words("walls periodic"),
+            "lid."));
+  visit(s.layers,
+        key("layers", "", kBed, from(1, 9999).usual(1, 200),
+            "Poisson-disk layers of grains dropped into the bin. The bed's depth is roughly 1.3 r per layer."));
+  visit(s.length, keys::kLength.with(kBed));
+  visit(s.width, keys::kWidth.with(kBed));
+  visit(s.sides,
+        key("sides", "", kBed, words("walls periodic"),
             "Sides of the bin at y = ±width/2. walls: two walls. periodic: grains that leave at one side come back at "
-            "the other, as on ground without an end; a tire must fit between the sides."),
-        s.sides);
-  visit(key("tile", "m", kBed, from(0, 1e4).usual(0.4, 20),
+            "the other, as on ground without an end; a tire must fit between the sides."));
+  visit(s.tile,
+        key("tile", "m", kBed, from(0, 1e4).usual(0.4, 20),
             "Length and width of the pieces that a large new bed is put together of, at least 40 r; beds from a file "
             "have none. One piece is settled and copied. The copies are shifted and turned so that a tire does not "
-            "soon meet the same grains again. Then the seams settle. 0: the bed settles as a whole."),
-        s.tile);
-  visit(key("normal_stiffness", "N/m^1.5", kBed, from(1, 1e13).usual(1e4, 1e10),
-            "Normal stiffness k_n of two grains, law hertz_tanh."),
-        s.normal_stiffness);
-  visit(key("normal_damping", "N s/m^1.5", kBed, from(0, 1e9), "Normal damping g_n of two grains, law hertz_tanh."),
-        s.normal_damping);
-  visit(keys::kFrictionVelocityScale.with(kBed), s.friction_velocity_scale);
-  visit(key("precision", "", kBed, words("mixed double"),
+            "soon meet the same grains again. Then the seams settle. 0: the bed settles as a whole."));
+  visit(s.normal_stiffness, key("normal_stiffness", "N/m^1.5", kBed, from(1, 1e13).usual(1e4, 1e10),
+                                "Normal stiffness k_n of two grains, law hertz_tanh."));
+  visit(s.normal_damping,
+        key("normal_damping", "N s/m^1.5", kBed, from(0, 1e9), "Normal damping g_n of two grains, law hertz_tanh."));
+  visit(s.friction_velocity_scale, keys::kFrictionVelocityScale.with(kBed));
+  visit(s.precision,
+        key("precision", "", kBed, words("mixed double"),
             "Precision of the contact law between grains, engine dem. mixed: the law in single precision; positions, "
-            "sums of forces and motion in double. double: all in double, half as fast."),
-        s.precision);
-  visit(key("friction_impulse_limit", "",
+            "sums of forces and motion in double. double: all in double, half as fast."));
+  visit(s.friction_impulse_limit,
+        key("friction_impulse_limit", "",
             "Limit friction so that one step cannot reverse a sliding grain, law hertz_tanh. false reproduces the 2016 "
-            "report."),
-        s.friction_impulse_limit);
-  visit(key("bed", "", not_empty().or_null(),
+            "report."));
+  visit(s.bed,
+        key("bed", "", not_empty().or_null(),
             "File with a bed to start from, relative to the scenario. A settled bed of furrow (.h5) is used unchanged. "
             "Positions are settled first: a CSV file with the header x_m,y_m,z_m or x_m,y_m,z_m,radius_m, in metres, x "
             "from 0 to length and y from −width/2 to width/2; or an HDF5 file with a dataset position, N × 3, and "
             "perhaps radius, as frames of grains have. No grain may be more than 100 radii above the next one below it "
-            "or the floor. null: generate a bed, or take it from the cache."),
-        s.bed);
-  visit(key("undisturbed_height", "m", from(0, 1e3).or_null(),
+            "or the floor. null: generate a bed, or take it from the cache."));
+  visit(s.undisturbed_height,
+        key("undisturbed_height", "m", from(0, 1e3).or_null(),
             "Height of the surface from which sinkage counts, for a bed that a tire has driven over. null: the mean "
-            "height of the bed at the start of the run."),
-        s.undisturbed_height);
-  visit(key("activity", "",
+            "height of the bed at the start of the run."));
+  visit(s.activity,
+        key("activity", "",
             "Let parcels of grains that rest far from the tire sleep until something moves them, engine dem. It needs "
-            "static friction, so law hertz_tanh without friction_impulse_limit ignores it."),
-        s.activity);
-  visit(key("allow_unstable_step", "",
-            "Warn instead of refusing when run.step is above the stable one. It is meant for the `_tr` scenarios."),
-        s.allow_unstable_step);
-  visit(key("cache", "", role::harmless, "Keep settled beds under ~/.cache/furrow/beds and use them again."), s.cache);
+            "static friction, so law hertz_tanh without friction_impulse_limit ignores it."));
+  visit(s.allow_unstable_step,
+        key("allow_unstable_step", "",
+            "Warn instead of refusing when run.step is above the stable one. It is meant for the `_tr` scenarios."));
+  visit(s.cache, key("cache", "", role::harmless, "Keep settled beds under ~/.cache/furrow/beds and use them again."));
 }
 
 /// The same keys in another run.

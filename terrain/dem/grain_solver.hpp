@@ -78,23 +78,23 @@ struct Accounts {
   Vec3 momentum_removed = Vec3::Zero();
   std::int64_t active = 0;  // grains awake, last step
 };
-void visit_fields(auto&& visit, FieldsOf<Accounts> auto& s) {
-  visit(Field{"contact_work", "J"}, s.contact_work);
-  visit(Field{"elastic", "J"}, s.elastic);
-  visit(Field{"elastic_start", "J"}, s.elastic_start);
-  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
-  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
-  visit(Field{"floor_force", "N"}, s.floor_force);
-  visit(Field{"kinetic", "J"}, s.kinetic);
-  visit(Field{"height", "m"}, s.height);
-  visit(Field{"velocity", "m/s"}, s.velocity);
-  visit(Field{"contacts"}, s.contacts);
-  visit(Field{"max_overlap", "m"}, s.max_overlap);
-  visit(Field{"contact_force", "N"}, s.contact_force);
-  visit(Field{"net_force", "N"}, s.net_force);
-  visit(Field{"slept", "J"}, s.slept);
-  visit(Field{"momentum_removed", "kg m/s"}, s.momentum_removed);
-  visit(Field{"active"}, s.active);
+void visit_fields(FieldsOf<Accounts> auto& s, auto&& visit) {
+  visit(s.contact_work, Field{"contact_work", "J"});
+  visit(s.elastic, Field{"elastic", "J"});
+  visit(s.elastic_start, Field{"elastic_start", "J"});
+  visit(s.wall_impulse, Field{"wall_impulse", "N s"});
+  visit(s.surface_impulse, Field{"surface_impulse", "N s"});
+  visit(s.floor_force, Field{"floor_force", "N"});
+  visit(s.kinetic, Field{"kinetic", "J"});
+  visit(s.height, Field{"height", "m"});
+  visit(s.velocity, Field{"velocity", "m/s"});
+  visit(s.contacts, Field{"contacts"});
+  visit(s.max_overlap, Field{"max_overlap", "m"});
+  visit(s.contact_force, Field{"contact_force", "N"});
+  visit(s.net_force, Field{"net_force", "N"});
+  visit(s.slept, Field{"slept", "J"});
+  visit(s.momentum_removed, Field{"momentum_removed", "kg m/s"});
+  visit(s.active, Field{"active"});
 }
 
 /// A part of a step, or all of it: x ← x + dt v after v ← v + kick (F/m + g).

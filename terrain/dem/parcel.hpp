@@ -82,22 +82,22 @@ struct Parcel {
   MotionTotals motion;
 };
 /// What a saved state keeps of a parcel where strips are cut; its part follows from the lists.
-void visit_fields(auto&& visit, FieldsOf<Parcel> auto& s) {
-  visit(Field{"asleep", ""}, s.asleep);
-  visit(Field{"stale", ""}, s.stale);
-  visit(Field{"calm"}, s.calm);
-  visit(Field{"sways", ""}, s.sways);
-  visit(Field{"window"}, s.window);
-  visit(Field{"elastic", "J"}, s.contact.elastic);
-  visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
-  visit(Field{"wall_force", "N"}, s.contact.wall_force);
-  visit(Field{"floor_force", "N"}, s.contact.floor_force);
-  visit(Field{"contacts"}, s.contact.contacts);
-  visit(Field{"measured_force", "N"}, s.measured_force);
-  visit(Field{"stored", ""}, s.stored);
-  visit(Field{"height", "m"}, s.motion.height);
-  visit(Field{"held", "N"}, s.motion.held);
-  visit(Field{"pressed", "N"}, s.motion.max_net_force);
+void visit_fields(FieldsOf<Parcel> auto& s, auto&& visit) {
+  visit(s.asleep, Field{"asleep", ""});
+  visit(s.stale, Field{"stale", ""});
+  visit(s.calm, Field{"calm"});
+  visit(s.sways, Field{"sways", ""});
+  visit(s.window, Field{"window"});
+  visit(s.contact.elastic, Field{"elastic", "J"});
+  visit(s.contact.max_overlap, Field{"max_overlap", "m"});
+  visit(s.contact.wall_force, Field{"wall_force", "N"});
+  visit(s.contact.floor_force, Field{"floor_force", "N"});
+  visit(s.contact.contacts, Field{"contacts"});
+  visit(s.measured_force, Field{"measured_force", "N"});
+  visit(s.stored, Field{"stored", ""});
+  visit(s.motion.height, Field{"height", "m"});
+  visit(s.motion.held, Field{"held", "N"});
+  visit(s.motion.max_net_force, Field{"pressed", "N"});
 }
 
 /// Parcels [from, to) as one part. @pre there is one

@@ -12,11 +12,11 @@ using namespace simd;
 struct alignas(32) Quad {
   double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<Quad> auto& s) {
-  visit(Field{"x", ""}, s.x);
-  visit(Field{"y", ""}, s.y);
-  visit(Field{"z", ""}, s.z);
-  visit(Field{"w", ""}, s.w);
+void visit_fields(FieldsOf<Quad> auto& s, auto&& visit) {
+  visit(s.x, Field{"x", ""});
+  visit(s.y, Field{"y", ""});
+  visit(s.z, Field{"z", ""});
+  visit(s.w, Field{"w", ""});
 }
 
 inline Double4 load(const Quad& q) {

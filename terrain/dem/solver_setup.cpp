@@ -74,12 +74,10 @@ StableStep stable_at(const DemOptions& options, double overlap) {
 StiffnessKey stiffness_key(DemOptions& options) {
   const std::string name = with_law(law_from(options.law), [](auto law) { return law.kStiffnessKey; });
   StiffnessKey found;
-  visit_fields(
-      [&](const Field& field, auto& value) {
-        if constexpr (std::is_same_v<decltype(value), double&>)
-          if (name == field.name) found = {field.name, field.unit, &value};
-      },
-      options);
+  visit_fields(options, [&](auto& value, const Field& field) {
+    if constexpr (std::is_same_v<decltype(value), double&>)
+      if (name == field.name) found = {field.name, field.unit, &value};
+  });
   FURROW_ASSERT(found.value != nullptr, name);
   return found;
 }

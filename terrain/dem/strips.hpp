@@ -33,11 +33,11 @@ struct WallContact {
   Quad tangential;  // history: spring force, N; w = √δ of the step before, 0 when apart
   Quad rolling;     // history: rolling spring, N m
 };
-void visit_fields(auto&& visit, FieldsOf<WallContact> auto& s) {
-  visit(Field{"grain"}, s.grain);
-  visit(Field{"wall"}, s.wall);
-  visit(Field{"tangential", "N"}, s.tangential);
-  visit(Field{"rolling", "N m"}, s.rolling);
+void visit_fields(FieldsOf<WallContact> auto& s, auto&& visit) {
+  visit(s.grain, Field{"grain"});
+  visit(s.wall, Field{"wall"});
+  visit(s.tangential, Field{"tangential", "N"});
+  visit(s.rolling, Field{"rolling", "N m"});
 }
 
 /// History of one pair: x y z of the spring on i; w = √δ of the step before (tangential only).
@@ -96,25 +96,25 @@ struct Strip {
 };
 /// What a saved state keeps of a strip besides its lists. Sums too: those of strips that sleep stay. Where strips are
 /// cut, Parcel's fields stand beside these.
-void visit_fields(auto&& visit, FieldsOf<Strip> auto& s) {
-  visit(Field{"first"}, s.first);
-  visit(Field{"last"}, s.last);
-  visit(Field{"pairs"}, s.pairs);
-  visit(Field{"travel", "m"}, s.travel);
-  visit(Field{"x_min", "m"}, s.x_min);
-  visit(Field{"x_max", "m"}, s.x_max);
-  visit(Field{"z_max", "m"}, s.z_max);
-  visit(Field{"asleep", ""}, s.asleep);
-  visit(Field{"calm"}, s.parcels.front().calm);
-  visit(Field{"sways", ""}, s.parcels.front().sways);
-  visit(Field{"window"}, s.parcels.front().window);
-  visit(Field{"elastic", "J"}, s.contact.elastic);
-  visit(Field{"max_overlap", "m"}, s.contact.max_overlap);
-  visit(Field{"wall_force", "N"}, s.contact.wall_force);
-  visit(Field{"floor_force", "N"}, s.contact.floor_force);
-  visit(Field{"contacts"}, s.contact.contacts);
-  visit(Field{"height", "m"}, s.motion.height);
-  visit(Field{"held", "N"}, s.motion.held);
+void visit_fields(FieldsOf<Strip> auto& s, auto&& visit) {
+  visit(s.first, Field{"first"});
+  visit(s.last, Field{"last"});
+  visit(s.pairs, Field{"pairs"});
+  visit(s.travel, Field{"travel", "m"});
+  visit(s.x_min, Field{"x_min", "m"});
+  visit(s.x_max, Field{"x_max", "m"});
+  visit(s.z_max, Field{"z_max", "m"});
+  visit(s.asleep, Field{"asleep", ""});
+  visit(s.parcels.front().calm, Field{"calm"});
+  visit(s.parcels.front().sways, Field{"sways", ""});
+  visit(s.parcels.front().window, Field{"window"});
+  visit(s.contact.elastic, Field{"elastic", "J"});
+  visit(s.contact.max_overlap, Field{"max_overlap", "m"});
+  visit(s.contact.wall_force, Field{"wall_force", "N"});
+  visit(s.contact.floor_force, Field{"floor_force", "N"});
+  visit(s.contact.contacts, Field{"contacts"});
+  visit(s.motion.height, Field{"height", "m"});
+  visit(s.motion.held, Field{"held", "N"});
 }
 
 /// A range of strips that was sorted again: order[k] is the old index of grain first + k.

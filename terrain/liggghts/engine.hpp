@@ -86,12 +86,12 @@ struct MotionSums {
     for (int k = 0; k < 3; ++k) speed[k] += of_volume * v[k], place[k] += of_volume * x[k];
   }
 };
-void visit_fields(auto&& visit, FieldsOf<MotionSums> auto& s) {
-  visit(Field{"volume"}, s.volume);
-  visit(Field{"speed2", "m²/s²"}, s.speed2);
-  visit(Field{"spin2", "rad²/s²"}, s.spin2);
-  visit(Field{"speed", "m/s"}, s.speed);
-  visit(Field{"place", "m"}, s.place);
+void visit_fields(FieldsOf<MotionSums> auto& s, auto&& visit) {
+  visit(s.volume, Field{"volume"});
+  visit(s.speed2, Field{"speed2", "m²/s²"});
+  visit(s.spin2, Field{"spin2", "rad²/s²"});
+  visit(s.speed, Field{"speed", "m/s"});
+  visit(s.place, Field{"place", "m"});
 }
 
 /// What is wanted of a step beside its forces.

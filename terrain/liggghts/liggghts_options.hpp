@@ -18,14 +18,12 @@ struct LiggghtsOptions : dem::DemOptions {
 /// Resting grains never sleep, and every contact is computed in double precision.
 constexpr bool is_key_of_dem_only(std::string_view name) { return name == "activity" || name == "precision"; }
 
-void visit_fields(auto&& visit, FieldsOf<LiggghtsOptions> auto& s) {
+void visit_fields(FieldsOf<LiggghtsOptions> auto& s, auto&& visit) {
   using Base =
       std::conditional_t<std::is_const_v<std::remove_reference_t<decltype(s)>>, const dem::DemOptions, dem::DemOptions>;
-  visit_fields(
-      [&](const auto& field, auto& value) {
-        if (!is_key_of_dem_only(field.name)) visit(field, value);
-      },
-      static_cast<Base&>(s));
+  visit_fields(static_cast<Base&>(s), [&](auto& value, const auto& field) {
+    if (!is_key_of_dem_only(field.name)) visit(value, field);
+  });
 }
 
 }  // namespace furrow::terrain::liggghts

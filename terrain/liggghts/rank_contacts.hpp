@@ -29,14 +29,14 @@ struct RankSums {
   double contacts = 0.0;                // last step
   MotionSums motion;                    // now
 };
-void visit_fields(auto&& visit, FieldsOf<RankSums> auto& s) {
-  visit(Field{"elastic", "J"}, s.elastic);
-  visit(Field{"wall_impulse", "N s"}, s.wall_impulse);
-  visit(Field{"surface_impulse", "N s"}, s.surface_impulse);
-  visit(Field{"gravity_time", "s"}, s.gravity_time);
-  visit(Field{"floor_force", "N"}, s.floor_force);
-  visit(Field{"contacts"}, s.contacts);
-  visit(Field{"motion", ""}, s.motion);
+void visit_fields(FieldsOf<RankSums> auto& s, auto&& visit) {
+  visit(s.elastic, Field{"elastic", "J"});
+  visit(s.wall_impulse, Field{"wall_impulse", "N s"});
+  visit(s.surface_impulse, Field{"surface_impulse", "N s"});
+  visit(s.gravity_time, Field{"gravity_time", "s"});
+  visit(s.floor_force, Field{"floor_force", "N"});
+  visit(s.contacts, Field{"contacts"});
+  visit(s.motion, Field{"motion", ""});
 }
 
 /// What decides how an interval ended. All ranks receive that of all.
@@ -47,12 +47,12 @@ struct IntervalReport {
   double share = 0.0;              // largest overlap over a diameter, -
   Vec3 hardest_at = Vec3::Zero();  // m
 };
-void visit_fields(auto&& visit, FieldsOf<IntervalReport> auto& s) {
-  visit(Field{"lost"}, s.lost);
-  visit(Field{"lost_at", "m"}, s.lost_at);
-  visit(Field{"overlap", "m"}, s.overlap);
-  visit(Field{"share", "-"}, s.share);
-  visit(Field{"hardest_at", "m"}, s.hardest_at);
+void visit_fields(FieldsOf<IntervalReport> auto& s, auto&& visit) {
+  visit(s.lost, Field{"lost"});
+  visit(s.lost_at, Field{"lost_at", "m"});
+  visit(s.overlap, Field{"overlap", "m"});
+  visit(s.share, Field{"share", "-"});
+  visit(s.hardest_at, Field{"hardest_at", "m"});
 }
 
 class RankContacts final : public StepWork {

@@ -14,13 +14,13 @@ struct StateReport {
   double error2 = 0.0;       // of the losses by sampling, J²
   double list_builds = 0.0;  // weighted by the rank's share of the grains
 };
-void visit_fields(auto&& visit, FieldsOf<StateReport> auto& s) {
-  visit(Field{"grains"}, s.grains);
-  visit(Field{"sums", ""}, s.sums);
-  visit(Field{"lost", ""}, s.lost);
-  visit(Field{"stored", ""}, s.stored);
-  visit(Field{"error2", "J²"}, s.error2);
-  visit(Field{"list_builds"}, s.list_builds);
+void visit_fields(FieldsOf<StateReport> auto& s, auto&& visit) {
+  visit(s.grains, Field{"grains"});
+  visit(s.sums, Field{"sums", ""});
+  visit(s.lost, Field{"lost", ""});
+  visit(s.stored, Field{"stored", ""});
+  visit(s.error2, Field{"error2", "J²"});
+  visit(s.list_builds, Field{"list_builds"});
 }
 
 /// @param grains of this rank  @param of_all grains  @param list_builds of this rank

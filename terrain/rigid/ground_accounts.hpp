@@ -19,11 +19,11 @@ struct GroundLosses {
   double tangential_damping = 0.0;
   double opening = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<GroundLosses> auto& s) {
-  visit(Field{"sliding", "J"}, s.sliding);
-  visit(Field{"normal_damping", "J"}, s.normal_damping);
-  visit(Field{"tangential_damping", "J"}, s.tangential_damping);
-  visit(Field{"opening", "J"}, s.opening);
+void visit_fields(FieldsOf<GroundLosses> auto& s, auto&& visit) {
+  visit(s.sliding, Field{"sliding", "J"});
+  visit(s.normal_damping, Field{"normal_damping", "J"});
+  visit(s.tangential_damping, Field{"tangential_damping", "J"});
+  visit(s.opening, Field{"opening", "J"});
 }
 
 /// The shear of the layer under one vertex, and the area that bears it.

@@ -26,45 +26,44 @@ struct GroundOptions : TerrainContext {
   double road_from = 5.0;                // x where it begins, m
   double road_length = 100.0;            // m
 };
-void visit_fields(auto&& visit, FieldsOf<GroundOptions> auto& s) {
+void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(keys::kFriction, s.friction);
-  visit(keys::kFrictionVelocityScale, s.friction_velocity_scale);
-  visit(key("ground_stiffness", "N/m³", above(0).to(1e15), "Pressure per depth, engine rigid."), s.ground_stiffness);
-  visit(key("ground_shear_stiffness", "N/m³", above(0).to(1e15),
-            "Shear traction per displacement of a tread that sticks, engine rigid."),
-        s.ground_shear_stiffness);
-  visit(key("ground_damping", "N s/m³", from(0, 1e12),
-            "Pressure per rate of depth, and shear traction per rate of shear, engine rigid."),
-        s.ground_damping);
+  visit(s.friction, keys::kFriction);
+  visit(s.friction_velocity_scale, keys::kFrictionVelocityScale);
+  visit(s.ground_stiffness, key("ground_stiffness", "N/m³", above(0).to(1e15), "Pressure per depth, engine rigid."));
+  visit(s.ground_shear_stiffness, key("ground_shear_stiffness", "N/m³", above(0).to(1e15),
+                                      "Shear traction per displacement of a tread that sticks, engine rigid."));
+  visit(s.ground_damping, key("ground_damping", "N s/m³", from(0, 1e12),
+                              "Pressure per rate of depth, and shear traction per rate of shear, engine rigid."));
   visit(
+      s.profile,
       key("profile", "m",
           shaped(R"({"type": "array", "minItems": 1, "maxItems": 100000, "entries": "[x, z] in m",
                       "items": {"type": "array", "minItems": 2, "maxItems": 2,
                                 "items": {"type": "number", "minimum": -1e6, "maximum": 1e6}}})")
               .or_null(),
           "Height z of the ground at x, alike for all y, engine rigid: straight between the entries, level before the "
-          "first and after the last. Two entries at one x are an upright face, such as a curb. null: the plane z = 0."),
-      s.profile);
-  visit(key("profile_file", "", not_empty().or_null(),
+          "first and after the last. Two entries at one x are an upright face, such as a curb. null: the plane z = "
+          "0."));
+  visit(s.profile_file,
+        key("profile_file", "", not_empty().or_null(),
             "File with the heights of the ground, in place of profile, engine rigid: CSV with the columns x_m and z_m, "
-            "or a measured road in OpenCRG, with the ending .crg, whose u is x. Relative to the scenario."),
-        s.profile_file);
+            "or a measured road in OpenCRG, with the ending .crg, whose u is x. Relative to the scenario."));
   visit(
+      s.profile_v,
       key("profile_v", "m", from(-1e3, 1e3),
-          "Where across the road profile_file in OpenCRG is cut: v, to the left of its reference line, engine rigid."),
-      s.profile_v);
-  visit(key("road_class", "", words("A B C D E F G H").or_null(),
+          "Where across the road profile_file in OpenCRG is cut: v, to the left of its reference line, engine rigid."));
+  visit(s.road_class,
+        key("road_class", "", words("A B C D E F G H").or_null(),
             "Class of a random road after ISO 8608, from A (very smooth) to H, in place of profile, engine rigid. "
-            "run.seed draws its heights; it is level before road_from and after its end. null: no such road."),
-        s.road_class);
-  visit(key("road_from", "m", from(-1e6, 1e6),
+            "run.seed draws its heights; it is level before road_from and after its end. null: no such road."));
+  visit(s.road_from,
+        key("road_from", "m", from(-1e6, 1e6),
             "x where the road of road_class begins, engine rigid. Its heights swell from 0 over 5 m, or a tenth of its "
-            "length where that is less."),
-        s.road_from);
-  visit(key("road_length", "m", from(1, 4999),
-            "Length of the road of road_class, engine rigid. The longest wave in it is 91 m, the shortest 0.35 m."),
-        s.road_length);
+            "length where that is less."));
+  visit(s.road_length,
+        key("road_length", "m", from(1, 4999),
+            "Length of the road of road_class, engine rigid. The longest wave in it is 91 m, the shortest 0.35 m."));
 }
 
 }  // namespace furrow::terrain

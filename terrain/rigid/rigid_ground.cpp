@@ -84,10 +84,10 @@ class RigidGround final : public Terrain {
   std::size_t attached() const override { return surfaces_.size(); }
   std::size_t vertices(std::size_t k) const override { return surfaces_[k].last.size(); }
 
-  friend void visit_fields(auto&& visit, FieldsOf<RigidGround> auto& s) {
-    visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
-    visit(Field{"surface_work", "J"}, s.surface_work_);
-    visit(Field{"losses", "J"}, s.losses_);
+  friend void visit_fields(FieldsOf<RigidGround> auto& s, auto&& visit) {
+    visit(s.surface_impulse_, Field{"surface_impulse", "N s"});
+    visit(s.surface_work_, Field{"surface_work", "J"});
+    visit(s.losses_, Field{"losses", "J"});
   }
 
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);

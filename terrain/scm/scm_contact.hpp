@@ -23,11 +23,11 @@ struct SoilLosses {
   double sliding = 0.0;
   double opening = 0.0;  // springs and shear given up where loads change and end
 };
-void visit_fields(auto&& visit, FieldsOf<SoilLosses> auto& s) {
-  visit(Field{"compaction", "J"}, s.compaction);
-  visit(Field{"damping", "J"}, s.damping);
-  visit(Field{"sliding", "J"}, s.sliding);
-  visit(Field{"opening", "J"}, s.opening);
+void visit_fields(FieldsOf<SoilLosses> auto& s, auto&& visit) {
+  visit(s.compaction, Field{"compaction", "J"});
+  visit(s.damping, Field{"damping", "J"});
+  visit(s.sliding, Field{"sliding", "J"});
+  visit(s.opening, Field{"opening", "J"});
 }
 
 /// A node that bears a surface.
@@ -37,11 +37,11 @@ struct ContactNode {
   double limit = 0.0;             // τ_max × A/|n_z|, N
   Vec3 mobilized = Vec3::Zero();  // m, along the surface
 };
-void visit_fields(auto&& visit, FieldsOf<ContactNode> auto& s) {
-  visit(Field{"node"}, s.node);
-  visit(Field{"sinkage", "m"}, s.sinkage);
-  visit(Field{"limit", "N"}, s.limit);
-  visit(Field{"mobilized", "-"}, s.mobilized);
+void visit_fields(FieldsOf<ContactNode> auto& s, auto&& visit) {
+  visit(s.node, Field{"node"});
+  visit(s.sinkage, Field{"sinkage", "m"});
+  visit(s.limit, Field{"limit", "N"});
+  visit(s.mobilized, Field{"mobilized", "-"});
 }
 
 /// The grid with what every surface on it shares.

@@ -70,10 +70,10 @@ class ScmGround final : public Terrain {
   std::size_t attached() const override { return surfaces_.size(); }
   std::size_t vertices(std::size_t k) const override { return surfaces_[k].last.size(); }
 
-  friend void visit_fields(auto&& visit, FieldsOf<ScmGround> auto& s) {
-    visit(Field{"surface_impulse", "N s"}, s.surface_impulse_);
-    visit(Field{"surface_work", "J"}, s.surface_work_);
-    visit(Field{"losses", "J"}, s.losses_);
+  friend void visit_fields(FieldsOf<ScmGround> auto& s, auto&& visit) {
+    visit(s.surface_impulse_, Field{"surface_impulse", "N s"});
+    visit(s.surface_work_, Field{"surface_work", "J"});
+    visit(s.losses_, Field{"losses", "J"});
   }
 
   template <class Use>

@@ -31,50 +31,48 @@ struct ScmOptions : TerrainContext {
   double unloading_stiffness_rate = 0.0;  // A_u, N/m⁴
   double rebound_damping = 1e4;           // N s/m³, below the yield pressure only
 };
-void visit_fields(auto&& visit, FieldsOf<ScmOptions> auto& s) {
+void visit_fields(FieldsOf<ScmOptions> auto& s, auto&& visit) {
   using namespace allowed;
   constexpr unsigned kSoil = role::key | role::soil;
-  visit(keys::kMaterial, s.material);
-  visit(keys::kLength, s.length);
-  visit(keys::kWidth, s.width);
-  visit(key("grid_spacing", "m", above(0).to(10).usual(0.001, 0.1),
-            "Distance between the nodes of the soil, engine scm. A contact patch should have ten nodes across."),
-        s.grid_spacing);
-  visit(key("patch_width", "m", above(0).to(1e4).usual(0.01, 2).or_null(),
+  visit(s.material, keys::kMaterial);
+  visit(s.length, keys::kLength);
+  visit(s.width, keys::kWidth);
+  visit(s.grid_spacing,
+        key("grid_spacing", "m", above(0).to(10).usual(0.001, 0.1),
+            "Distance between the nodes of the soil, engine scm. A contact patch should have ten nodes across."));
+  visit(s.patch_width,
+        key("patch_width", "m", above(0).to(1e4).usual(0.01, 2).or_null(),
             "Width b in (k_c/b + k_φ) zⁿ, engine scm. null: 2 × area/perimeter of each contact patch, which is the "
-            "smaller side of a long patch and the radius of a round one."),
-        s.patch_width);
-  visit(key("bekker_k_c", "N/m^(n+1)", kSoil, from(-1e12, 1e12).usual(-1e6, 1e6),
+            "smaller side of a long patch and the radius of a round one."));
+  visit(s.bekker_k_c,
+        key("bekker_k_c", "N/m^(n+1)", kSoil, from(-1e12, 1e12).usual(-1e6, 1e6),
             "Bekker's k_c in p = (k_c/b + k_φ) zⁿ, the pressure under a plate of width b at sinkage z, engine scm. It "
-            "may be below 0."),
-        s.bekker_k_c);
-  visit(key("bekker_k_phi", "N/m^(n+2)", kSoil, above(0).to(1e13).usual(1e4, 1e8),
-            "Bekker's k_φ in p = (k_c/b + k_φ) zⁿ, engine scm."),
-        s.bekker_k_phi);
-  visit(key("bekker_n", "-", kSoil, above(0).to(5).usual(0.1, 2),
-            "Bekker's exponent n in p = (k_c/b + k_φ) zⁿ, engine scm."),
-        s.bekker_n);
-  visit(key("mohr_cohesion", "Pa", kSoil, from(0, 1e9).usual(0, 1e5),
+            "may be below 0."));
+  visit(s.bekker_k_phi, key("bekker_k_phi", "N/m^(n+2)", kSoil, above(0).to(1e13).usual(1e4, 1e8),
+                            "Bekker's k_φ in p = (k_c/b + k_φ) zⁿ, engine scm."));
+  visit(s.bekker_n, key("bekker_n", "-", kSoil, above(0).to(5).usual(0.1, 2),
+                        "Bekker's exponent n in p = (k_c/b + k_φ) zⁿ, engine scm."));
+  visit(s.mohr_cohesion,
+        key("mohr_cohesion", "Pa", kSoil, from(0, 1e9).usual(0, 1e5),
             "Cohesion c of soil mechanics in τ_max = c + p tan φ, engine scm. It is not the contact value `cohesion` "
-            "of grains."),
-        s.mohr_cohesion);
-  visit(key("mohr_friction_angle", "deg", kSoil, from(0, 80).usual(5, 50),
-            "Friction angle φ in τ_max = c + p tan φ, engine scm. The tire's friction bounds τ_max too."),
-        s.mohr_friction_angle);
-  visit(key("janosi_k", "m", kSoil, above(0).to(10).usual(0.001, 0.1),
-            "Janosi's K in τ = τ_max (1 − exp(−j/K)), j the shear displacement, engine scm."),
-        s.janosi_k);
-  visit(key("unloading_stiffness", "N/m³", kSoil, from(0, 1e15),
-            "Stiffness k_0 in k_u = k_0 + A_u z, the pressure per rebound after unloading from sinkage z, engine scm."),
-        s.unloading_stiffness);
-  visit(key("unloading_stiffness_rate", "N/m⁴", kSoil, from(0, 1e15),
-            "Rate A_u in k_u = k_0 + A_u z, engine scm. k_u is never so small that the soil would rebound by more than "
-            "it was pressed."),
-        s.unloading_stiffness_rate);
+            "of grains."));
+  visit(s.mohr_friction_angle,
+        key("mohr_friction_angle", "deg", kSoil, from(0, 80).usual(5, 50),
+            "Friction angle φ in τ_max = c + p tan φ, engine scm. The tire's friction bounds τ_max too."));
+  visit(s.janosi_k, key("janosi_k", "m", kSoil, above(0).to(10).usual(0.001, 0.1),
+                        "Janosi's K in τ = τ_max (1 − exp(−j/K)), j the shear displacement, engine scm."));
   visit(
+      s.unloading_stiffness,
+      key("unloading_stiffness", "N/m³", kSoil, from(0, 1e15),
+          "Stiffness k_0 in k_u = k_0 + A_u z, the pressure per rebound after unloading from sinkage z, engine scm."));
+  visit(s.unloading_stiffness_rate,
+        key("unloading_stiffness_rate", "N/m⁴", kSoil, from(0, 1e15),
+            "Rate A_u in k_u = k_0 + A_u z, engine scm. k_u is never so small that the soil would rebound by more than "
+            "it was pressed."));
+  visit(
+      s.rebound_damping,
       key("rebound_damping", "N s/m³", kSoil, from(0, 1e12),
-          "Pressure per rate of sinkage while soil is unloaded and loaded again, engine scm. First loading has none."),
-      s.rebound_damping);
+          "Pressure per rate of sinkage while soil is unloaded and loaded again, engine scm. First loading has none."));
 }
 
 }  // namespace furrow::terrain::scm

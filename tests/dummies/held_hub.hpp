@@ -20,17 +20,17 @@ struct HeldHubOptions {
   double lowering = 0.1;  // speed until then, m/s
   double spin = 0.0;      // about the hub's y axis, rad/s
 };
-void visit_fields(auto&& visit, FieldsOf<HeldHubOptions> auto& s) {
-  visit(key("depth", "m", allowed::from(0), "Depth by which the hub is lowered in all."), s.depth);
-  visit(key("lowering", "m/s", allowed::above(0), "Speed at which it is lowered."), s.lowering);
-  visit(key("spin", "rad/s", "Spin about the hub's y axis."), s.spin);
+void visit_fields(FieldsOf<HeldHubOptions> auto& s, auto&& visit) {
+  visit(s.depth, key("depth", "m", allowed::from(0), "Depth by which the hub is lowered in all."));
+  visit(s.lowering, key("lowering", "m/s", allowed::above(0), "Speed at which it is lowered."));
+  visit(s.spin, key("spin", "rad/s", "Spin about the hub's y axis."));
 }
 
 /// What the rig adds to the table of its wheel.
 struct HeldHubRow {
   double hub_load = 0.0;  // with which the hub presses the wheel down, N
 };
-void visit_fields(auto&& visit, FieldsOf<HeldHubRow> auto& r) { visit(column::mean("hub_load_N", "N"), r.hub_load); }
+void visit_fields(FieldsOf<HeldHubRow> auto& r, auto&& visit) { visit(r.hub_load, column::mean("hub_load_N", "N")); }
 
 /// @pre the section was checked against the schema
 std::unique_ptr<RigSpec> read_held_hub(const nlohmann::json& section, const ReadContext& context);

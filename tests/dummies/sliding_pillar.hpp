@@ -23,13 +23,13 @@ struct SlidingPillarSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-void visit_fields(auto&& visit, FieldsOf<SlidingPillarSpec> auto& s) {
-  visit(needed("spindle"), s.spindle);
-  visit(needed("upright"), s.upright);
-  visit(needed("bottom", "m", keys::kPoint, "Lower end of the pillar, from the axle's origin."), s.bottom);
-  visit(needed("top", "m", keys::kPoint, "Upper end of the pillar, from the axle's origin."), s.top);
-  visit(key("spring"), s.spring);
-  visit(key("shock"), s.shock);
+void visit_fields(FieldsOf<SlidingPillarSpec> auto& s, auto&& visit) {
+  visit(s.spindle, needed("spindle"));
+  visit(s.upright, needed("upright"));
+  visit(s.bottom, needed("bottom", "m", keys::kPoint, "Lower end of the pillar, from the axle's origin."));
+  visit(s.top, needed("top", "m", keys::kPoint, "Upper end of the pillar, from the axle's origin."));
+  visit(s.spring, key("spring"));
+  visit(s.shock, key("shock"));
 }
 
 /// @throws Error(bad_input) naming file, key and what was expected

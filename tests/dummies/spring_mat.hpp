@@ -22,9 +22,9 @@ struct SpringMatOptions {
   double mat_stiffness = 1e7;  // κ, N/m³
   double mat_damping = 0.0;    // d, N s/m³
 };
-void visit_fields(auto&& visit, FieldsOf<SpringMatOptions> auto& s) {
-  visit(key("mat_stiffness", "N/m³", allowed::above(0), "Stiffness of the mat per area."), s.mat_stiffness);
-  visit(key("mat_damping", "N s/m³", allowed::from(0), "Damping of the mat per area."), s.mat_damping);
+void visit_fields(FieldsOf<SpringMatOptions> auto& s, auto&& visit) {
+  visit(s.mat_stiffness, key("mat_stiffness", "N/m³", allowed::above(0), "Stiffness of the mat per area."));
+  visit(s.mat_damping, key("mat_damping", "N s/m³", allowed::from(0), "Damping of the mat per area."));
 }
 
 /// @pre the section was checked against the schema

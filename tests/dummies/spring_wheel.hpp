@@ -28,14 +28,14 @@ struct SpringWheelOptions {
   double damping = 200.0;  // of one vertex, N s/m
   double mass = 30.0;      // kg, a solid cylinder's
 };
-void visit_fields(auto&& visit, FieldsOf<SpringWheelOptions> auto& s) {
+void visit_fields(FieldsOf<SpringWheelOptions> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("radius", "m", from(0.01), "Undeformed radius."), s.radius);
-  visit(needed("width", "m", from(0.01), "Width."), s.width);
-  visit(needed("spokes", "", from(3), "Pairs of vertices around the circumference."), s.spokes);
-  visit(needed("stiffness", "N/m", from(1), "Stiffness of one vertex."), s.stiffness);
-  visit(needed("damping", "N s/m", from(0), "Damping of one vertex."), s.damping);
-  visit(needed("mass", "kg", from(0.01), "Mass, a solid cylinder's."), s.mass);
+  visit(s.radius, needed("radius", "m", from(0.01), "Undeformed radius."));
+  visit(s.width, needed("width", "m", from(0.01), "Width."));
+  visit(s.spokes, needed("spokes", "", from(3), "Pairs of vertices around the circumference."));
+  visit(s.stiffness, needed("stiffness", "N/m", from(1), "Stiffness of one vertex."));
+  visit(s.damping, needed("damping", "N s/m", from(0), "Damping of one vertex."));
+  visit(s.mass, needed("mass", "kg", from(0.01), "Mass, a solid cylinder's."));
 }
 
 /// @throws Error(bad_input) naming file and key

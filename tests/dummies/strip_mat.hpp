@@ -24,11 +24,11 @@ struct StripMatOptions {
   double stiffness = 4e8;             // κ, N/m³
   double damping = 2.5e4;             // d, N s/m³
 };
-void visit_fields(auto&& visit, FieldsOf<StripMatOptions> auto& s) {
-  visit(Field{"length", "m", role::key}, s.length);
-  visit(Field{"width", "m", role::key}, s.width);
-  visit(Field{"ground_stiffness", "N/m³", role::key}, s.stiffness);
-  visit(Field{"ground_damping", "N s/m³", role::key}, s.damping);
+void visit_fields(FieldsOf<StripMatOptions> auto& s, auto&& visit) {
+  visit(s.length, Field{"length", "m", role::key});
+  visit(s.width, Field{"width", "m", role::key});
+  visit(s.stiffness, Field{"ground_stiffness", "N/m³", role::key});
+  visit(s.damping, Field{"ground_damping", "N s/m³", role::key});
 }
 
 /// @pre the section was checked against the schema

@@ -107,7 +107,7 @@ TEST(SlidingPillar, definition_in_the_schema_follows_from_the_list_of_fields) {
   std::set<std::string> keys, fields{"type"};
   for (const auto& [key, value] : properties.items()) keys.insert(key);
   const SlidingPillarSpec spec{};
-  visit_fields([&](const Field& field, const auto&) { fields.insert(field.name); }, spec);
+  visit_fields(spec, [&](const auto&, const Field& field) { fields.insert(field.name); });
   EXPECT_EQ(keys, fields);
   EXPECT_EQ(definition["required"], json::array({"type", "spindle", "upright", "bottom", "top"}));
 }

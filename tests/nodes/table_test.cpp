@@ -34,11 +34,11 @@ struct SpringRow {
   double spring_work = 0.0;   // J
   double double_heave = 0.0;  // m
 };
-void visit_fields(auto&& visit, FieldsOf<SpringRow> auto& r) {
-  visit(column::mean("spring_force_N", "N").following("slip").negative(), r.spring_force);
-  visit(column::instant("heave_m", "m"), r.heave);
-  visit(column::cumulative("spring_work_J", "J").following("slip"), r.spring_work);
-  visit(column::derived("double_heave_m", "m"), r.double_heave);
+void visit_fields(FieldsOf<SpringRow> auto& r, auto&& visit) {
+  visit(r.spring_force, column::mean("spring_force_N", "N").following("slip").negative());
+  visit(r.heave, column::instant("heave_m", "m"));
+  visit(r.spring_work, column::cumulative("spring_work_J", "J").following("slip"));
+  visit(r.double_heave, column::derived("double_heave_m", "m"));
 }
 
 namespace {
@@ -169,12 +169,10 @@ TEST(WheelRow, every_column_is_measured_in_every_interval) {
     builder.add(reports);
   }
   const output::WheelRow line = builder.take();
-  visit_fields(
-      [](const Column& column, const double& value) {
-        EXPECT_FALSE(std::isnan(value)) << column.name;
-        EXPECT_NE(value, 0.0) << column.name;
-      },
-      line);
+  visit_fields(line, [](const double& value, const Column& column) {
+    EXPECT_FALSE(std::isnan(value)) << column.name;
+    EXPECT_NE(value, 0.0) << column.name;
+  });
 }
 
 TEST(Table, a_drawbar_rigs_columns_that_users_script_against_come_first) {

@@ -18,9 +18,9 @@ enum class Mood : std::int32_t { calm = 0, wild = 7 };
 struct Point {
   double x = 0.0, y = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<Point> auto& s) {
-  visit(Field{"x", "m"}, s.x);
-  visit(Field{"y", "m"}, s.y);
+void visit_fields(FieldsOf<Point> auto& s, auto&& visit) {
+  visit(s.x, Field{"x", "m"});
+  visit(s.y, Field{"y", "m"});
 }
 
 struct Sample {
@@ -38,29 +38,29 @@ struct Sample {
   std::vector<std::array<int, 3>> triangles;
   std::vector<Point> path;
 };
-void visit_fields(auto&& visit, FieldsOf<Sample> auto& s) {
-  visit(Field{"count"}, s.count);
-  visit(Field{"hash"}, s.hash);
-  visit(Field{"on"}, s.on);
-  visit(Field{"mood"}, s.mood);
-  visit(Field{"force"}, s.force);
-  visit(Field{"inertia"}, s.inertia);
-  visit(Field{"turn"}, s.turn);
-  visit(Field{"at"}, s.at);
-  visit(Field{"text"}, s.text);
-  visit(Field{"heights"}, s.heights);
-  visit(Field{"points"}, s.points);
-  visit(Field{"triangles"}, s.triangles);
-  visit(Field{"path"}, s.path);
+void visit_fields(FieldsOf<Sample> auto& s, auto&& visit) {
+  visit(s.count, Field{"count"});
+  visit(s.hash, Field{"hash"});
+  visit(s.on, Field{"on"});
+  visit(s.mood, Field{"mood"});
+  visit(s.force, Field{"force"});
+  visit(s.inertia, Field{"inertia"});
+  visit(s.turn, Field{"turn"});
+  visit(s.at, Field{"at"});
+  visit(s.text, Field{"text"});
+  visit(s.heights, Field{"heights"});
+  visit(s.points, Field{"points"});
+  visit(s.triangles, Field{"triangles"});
+  visit(s.path, Field{"path"});
 }
 
 /// The same as Point with its fields the other way round.
 struct LaterPoint {
   double y = 0.0, x = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<LaterPoint> auto& s) {
-  visit(Field{"y", "m"}, s.y);
-  visit(Field{"x", "m"}, s.x);
+void visit_fields(FieldsOf<LaterPoint> auto& s, auto&& visit) {
+  visit(s.y, Field{"y", "m"});
+  visit(s.x, Field{"x", "m"});
 }
 
 template <class F>

@@ -37,7 +37,7 @@ template <class T>
 std::vector<std::string> names_of() {
   std::vector<std::string> names;
   const T none{};
-  visit_fields([&](const Field& field, const auto&) { names.emplace_back(field.name); }, none);
+  visit_fields(none, [&](const auto&, const Field& field) { names.emplace_back(field.name); });
   return names;
 }
 
@@ -45,7 +45,7 @@ std::vector<std::string> names_of() {
 template <class T>
 void fill(T& value, int& next) {
   if constexpr (HasFields<T>) {
-    visit_fields([&](const Field&, auto& member) { fill(member, next); }, value);
+    visit_fields(value, [&](auto& member, const Field&) { fill(member, next); });
   } else if constexpr (std::is_same_v<T, bool>) {
     value = true;
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {

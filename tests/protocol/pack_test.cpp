@@ -192,7 +192,7 @@ std::size_t bytes_of(const T& value) {
   constexpr std::size_t kLength = 8;
   if constexpr (HasFields<T>) {
     std::size_t sum = 0;
-    visit_fields([&](const Field&, const auto& member) { sum += bytes_of(member); }, value);
+    visit_fields(value, [&](const auto& member, const Field&) { sum += bytes_of(member); });
     return sum;
   } else if constexpr (std::is_same_v<T, bool>) {
     return 1;

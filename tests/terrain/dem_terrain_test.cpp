@@ -195,13 +195,11 @@ TEST_F(DemTerrain, digest_changes_with_every_key_that_decides_the_bits_of_a_bed_
     other = options_;
     std::size_t here = 0;
     Field changed{""};
-    visit_fields(
-        [&](const Field& field, auto& value) {
-          if (here++ != place || std::string(field.name) == "law" || std::string(field.name) == "bed") return;
-          changed = field;
-          change(value);
-        },
-        other);
+    visit_fields(other, [&](auto& value, const Field& field) {
+      if (here++ != place || std::string(field.name) == "law" || std::string(field.name) == "bed") return;
+      changed = field;
+      change(value);
+    });
     EXPECT_EQ(dem::bed_digest(other) != digest, changed.is(role::bed)) << changed.name;
   }
 }

@@ -79,12 +79,12 @@ class SectorFactor {
   void restore(const Archive& archive);
 
  private:
-  friend void visit_fields(auto&& visit, FieldsOf<SectorFactor> auto& s) {
-    visit(furrow::Field{"valid", ""}, s.valid_);
-    visit(furrow::Field{"step", "s"}, s.h_);
-    visit(furrow::Field{"excess"}, s.excess_);
-    visit(furrow::Field{"renewals"}, s.renewals_);
-    visit(furrow::Field{"work"}, s.work_);
+  friend void visit_fields(FieldsOf<SectorFactor> auto& s, auto&& visit) {
+    visit(s.valid_, furrow::Field{"valid", ""});
+    visit(s.h_, furrow::Field{"step", "s"});
+    visit(s.excess_, furrow::Field{"excess"});
+    visit(s.renewals_, furrow::Field{"renewals"});
+    visit(s.work_, furrow::Field{"work"});
   }
 
   void note_shape(int sector, const Step& step);

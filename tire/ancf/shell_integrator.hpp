@@ -94,16 +94,16 @@ class ShellIntegrator {
   void restore(const Archive& archive);
 
  private:
-  friend void visit_fields(auto&& visit, FieldsOf<ShellIntegrator> auto& s) {
-    visit(furrow::Field{"reference", "N"}, s.reference_);
-    visit(furrow::Field{"unit_force", "N/Pa"}, s.unit_force_);
-    visit(furrow::Field{"elastic", "J"}, s.elastic_);
-    visit(furrow::Field{"dissipation", "J"}, s.dissipation_);
-    visit(furrow::Field{"numerical_loss", "J"}, s.numerical_loss_);
-    visit(furrow::Field{"solver_loss", "J"}, s.solver_loss_);
-    visit(furrow::Field{"solver_impulse", "N s"}, s.solver_impulse_);
-    visit(furrow::Field{"residual"}, s.residual_);
-    visit(furrow::Field{"iterations"}, s.iterations_);
+  friend void visit_fields(FieldsOf<ShellIntegrator> auto& s, auto&& visit) {
+    visit(s.reference_, furrow::Field{"reference", "N"});
+    visit(s.unit_force_, furrow::Field{"unit_force", "N/Pa"});
+    visit(s.elastic_, furrow::Field{"elastic", "J"});
+    visit(s.dissipation_, furrow::Field{"dissipation", "J"});
+    visit(s.numerical_loss_, furrow::Field{"numerical_loss", "J"});
+    visit(s.solver_loss_, furrow::Field{"solver_loss", "J"});
+    visit(s.solver_impulse_, furrow::Field{"solver_impulse", "N s"});
+    visit(s.residual_, furrow::Field{"residual"});
+    visit(s.iterations_, furrow::Field{"iterations"});
   }
 
   void set_bead(const RimState& rim);

@@ -55,13 +55,13 @@ class ExtrudedTire final : public Tire {
   Outcome run(const RimTrajectory& rim, const WheelPlane& plane, int steps, PlaneSums& sums);
   void book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning, const PlaneSums& sums);
 
-  friend void visit_fields(auto&& visit, FieldsOf<ExtrudedTire> auto& s) {
-    visit(Field{"rim", ""}, s.rim_);
-    visit(Field{"spindle", ""}, s.spindle_);
-    visit(Field{"dissipation", "J"}, s.dissipation_);
-    visit(Field{"numerical_loss", "J"}, s.numerical_loss_);
-    visit(Field{"solver_loss", "J"}, s.solver_loss_);
-    visit(Field{"solver_impulse", "N s"}, s.solver_impulse_);
+  friend void visit_fields(FieldsOf<ExtrudedTire> auto& s, auto&& visit) {
+    visit(s.rim_, Field{"rim", ""});
+    visit(s.spindle_, Field{"spindle", ""});
+    visit(s.dissipation_, Field{"dissipation", "J"});
+    visit(s.numerical_loss_, Field{"numerical_loss", "J"});
+    visit(s.solver_loss_, Field{"solver_loss", "J"});
+    visit(s.solver_impulse_, Field{"solver_impulse", "N s"});
   }
 
   std::unique_ptr<PlaneModel> model_;

@@ -17,35 +17,35 @@ struct ScalingFactors {
          lxal = 1.0, lyka = 1.0, lvyka = 1.0, ls = 1.0, lsgkp = 1.0, lsgal = 1.0, lgyr = 1.0, lmx = 1.0, lvmx = 1.0,
          lmy = 1.0;
 };
-void visit_fields(auto&& visit, FieldsOf<ScalingFactors> auto& s) {
-  visit(Field{"LFZO"}, s.lfzo);
-  visit(Field{"LCX"}, s.lcx);
-  visit(Field{"LMUX"}, s.lmux);
-  visit(Field{"LEX"}, s.lex);
-  visit(Field{"LKX"}, s.lkx);
-  visit(Field{"LHX"}, s.lhx);
-  visit(Field{"LVX"}, s.lvx);
-  visit(Field{"LGAX"}, s.lgax);
-  visit(Field{"LCY"}, s.lcy);
-  visit(Field{"LMUY"}, s.lmuy);
-  visit(Field{"LEY"}, s.ley);
-  visit(Field{"LKY"}, s.lky);
-  visit(Field{"LHY"}, s.lhy);
-  visit(Field{"LVY"}, s.lvy);
-  visit(Field{"LGAY"}, s.lgay);
-  visit(Field{"LTR"}, s.ltr);
-  visit(Field{"LRES"}, s.lres);
-  visit(Field{"LGAZ"}, s.lgaz);
-  visit(Field{"LXAL"}, s.lxal);
-  visit(Field{"LYKA"}, s.lyka);
-  visit(Field{"LVYKA"}, s.lvyka);
-  visit(Field{"LS"}, s.ls);
-  visit(Field{"LSGKP"}, s.lsgkp);
-  visit(Field{"LSGAL"}, s.lsgal);
-  visit(Field{"LGYR"}, s.lgyr);
-  visit(Field{"LMX"}, s.lmx);
-  visit(Field{"LVMX"}, s.lvmx);
-  visit(Field{"LMY"}, s.lmy);
+void visit_fields(FieldsOf<ScalingFactors> auto& s, auto&& visit) {
+  visit(s.lfzo, Field{"LFZO"});
+  visit(s.lcx, Field{"LCX"});
+  visit(s.lmux, Field{"LMUX"});
+  visit(s.lex, Field{"LEX"});
+  visit(s.lkx, Field{"LKX"});
+  visit(s.lhx, Field{"LHX"});
+  visit(s.lvx, Field{"LVX"});
+  visit(s.lgax, Field{"LGAX"});
+  visit(s.lcy, Field{"LCY"});
+  visit(s.lmuy, Field{"LMUY"});
+  visit(s.ley, Field{"LEY"});
+  visit(s.lky, Field{"LKY"});
+  visit(s.lhy, Field{"LHY"});
+  visit(s.lvy, Field{"LVY"});
+  visit(s.lgay, Field{"LGAY"});
+  visit(s.ltr, Field{"LTR"});
+  visit(s.lres, Field{"LRES"});
+  visit(s.lgaz, Field{"LGAZ"});
+  visit(s.lxal, Field{"LXAL"});
+  visit(s.lyka, Field{"LYKA"});
+  visit(s.lvyka, Field{"LVYKA"});
+  visit(s.ls, Field{"LS"});
+  visit(s.lsgkp, Field{"LSGKP"});
+  visit(s.lsgal, Field{"LSGAL"});
+  visit(s.lgyr, Field{"LGYR"});
+  visit(s.lmx, Field{"LMX"});
+  visit(s.lvmx, Field{"LVMX"});
+  visit(s.lmy, Field{"LMY"});
 }
 
 /// Of F_x: p of pure slip, r of combined slip, ptx of the relaxation length.
@@ -54,41 +54,41 @@ struct LongitudinalCoefficients {
          pkx2 = 0.0, pkx3 = 0.0, phx1 = 0.0, phx2 = 0.0, pvx1 = 0.0, pvx2 = 0.0, rbx1 = 0.0, rbx2 = 0.0, rcx1 = 0.0,
          rex1 = 0.0, rex2 = 0.0, rhx1 = 0.0, ptx1 = 0.0, ptx2 = 0.0, ptx3 = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<LongitudinalCoefficients> auto& s) {
-  visit(Field{"PCX1"}, s.pcx1);
-  visit(Field{"PDX1"}, s.pdx1);
-  visit(Field{"PDX2"}, s.pdx2);
-  visit(Field{"PDX3"}, s.pdx3);
-  visit(Field{"PEX1"}, s.pex1);
-  visit(Field{"PEX2"}, s.pex2);
-  visit(Field{"PEX3"}, s.pex3);
-  visit(Field{"PEX4"}, s.pex4);
-  visit(Field{"PKX1"}, s.pkx1);
-  visit(Field{"PKX2"}, s.pkx2);
-  visit(Field{"PKX3"}, s.pkx3);
-  visit(Field{"PHX1"}, s.phx1);
-  visit(Field{"PHX2"}, s.phx2);
-  visit(Field{"PVX1"}, s.pvx1);
-  visit(Field{"PVX2"}, s.pvx2);
-  visit(Field{"RBX1"}, s.rbx1);
-  visit(Field{"RBX2"}, s.rbx2);
-  visit(Field{"RCX1"}, s.rcx1);
-  visit(Field{"REX1"}, s.rex1);
-  visit(Field{"REX2"}, s.rex2);
-  visit(Field{"RHX1"}, s.rhx1);
-  visit(Field{"PTX1"}, s.ptx1);
-  visit(Field{"PTX2"}, s.ptx2);
-  visit(Field{"PTX3"}, s.ptx3);
+void visit_fields(FieldsOf<LongitudinalCoefficients> auto& s, auto&& visit) {
+  visit(s.pcx1, Field{"PCX1"});
+  visit(s.pdx1, Field{"PDX1"});
+  visit(s.pdx2, Field{"PDX2"});
+  visit(s.pdx3, Field{"PDX3"});
+  visit(s.pex1, Field{"PEX1"});
+  visit(s.pex2, Field{"PEX2"});
+  visit(s.pex3, Field{"PEX3"});
+  visit(s.pex4, Field{"PEX4"});
+  visit(s.pkx1, Field{"PKX1"});
+  visit(s.pkx2, Field{"PKX2"});
+  visit(s.pkx3, Field{"PKX3"});
+  visit(s.phx1, Field{"PHX1"});
+  visit(s.phx2, Field{"PHX2"});
+  visit(s.pvx1, Field{"PVX1"});
+  visit(s.pvx2, Field{"PVX2"});
+  visit(s.rbx1, Field{"RBX1"});
+  visit(s.rbx2, Field{"RBX2"});
+  visit(s.rcx1, Field{"RCX1"});
+  visit(s.rex1, Field{"REX1"});
+  visit(s.rex2, Field{"REX2"});
+  visit(s.rhx1, Field{"RHX1"});
+  visit(s.ptx1, Field{"PTX1"});
+  visit(s.ptx2, Field{"PTX2"});
+  visit(s.ptx3, Field{"PTX3"});
 }
 
 /// Of M_x.
 struct OverturningCoefficients {
   double qsx1 = 0.0, qsx2 = 0.0, qsx3 = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<OverturningCoefficients> auto& s) {
-  visit(Field{"QSX1"}, s.qsx1);
-  visit(Field{"QSX2"}, s.qsx2);
-  visit(Field{"QSX3"}, s.qsx3);
+void visit_fields(FieldsOf<OverturningCoefficients> auto& s, auto&& visit) {
+  visit(s.qsx1, Field{"QSX1"});
+  visit(s.qsx2, Field{"QSX2"});
+  visit(s.qsx3, Field{"QSX3"});
 }
 
 /// Of F_y, likewise.
@@ -98,52 +98,52 @@ struct LateralCoefficients {
          rby1 = 0.0, rby2 = 0.0, rby3 = 0.0, rcy1 = 0.0, rey1 = 0.0, rey2 = 0.0, rhy1 = 0.0, rhy2 = 0.0, rvy1 = 0.0,
          rvy2 = 0.0, rvy3 = 0.0, rvy4 = 0.0, rvy5 = 0.0, rvy6 = 0.0, pty1 = 0.0, pty2 = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<LateralCoefficients> auto& s) {
-  visit(Field{"PCY1"}, s.pcy1);
-  visit(Field{"PDY1"}, s.pdy1);
-  visit(Field{"PDY2"}, s.pdy2);
-  visit(Field{"PDY3"}, s.pdy3);
-  visit(Field{"PEY1"}, s.pey1);
-  visit(Field{"PEY2"}, s.pey2);
-  visit(Field{"PEY3"}, s.pey3);
-  visit(Field{"PEY4"}, s.pey4);
-  visit(Field{"PKY1"}, s.pky1);
-  visit(Field{"PKY2"}, s.pky2);
-  visit(Field{"PKY3"}, s.pky3);
-  visit(Field{"PHY1"}, s.phy1);
-  visit(Field{"PHY2"}, s.phy2);
-  visit(Field{"PHY3"}, s.phy3);
-  visit(Field{"PVY1"}, s.pvy1);
-  visit(Field{"PVY2"}, s.pvy2);
-  visit(Field{"PVY3"}, s.pvy3);
-  visit(Field{"PVY4"}, s.pvy4);
-  visit(Field{"RBY1"}, s.rby1);
-  visit(Field{"RBY2"}, s.rby2);
-  visit(Field{"RBY3"}, s.rby3);
-  visit(Field{"RCY1"}, s.rcy1);
-  visit(Field{"REY1"}, s.rey1);
-  visit(Field{"REY2"}, s.rey2);
-  visit(Field{"RHY1"}, s.rhy1);
-  visit(Field{"RHY2"}, s.rhy2);
-  visit(Field{"RVY1"}, s.rvy1);
-  visit(Field{"RVY2"}, s.rvy2);
-  visit(Field{"RVY3"}, s.rvy3);
-  visit(Field{"RVY4"}, s.rvy4);
-  visit(Field{"RVY5"}, s.rvy5);
-  visit(Field{"RVY6"}, s.rvy6);
-  visit(Field{"PTY1"}, s.pty1);
-  visit(Field{"PTY2"}, s.pty2);
+void visit_fields(FieldsOf<LateralCoefficients> auto& s, auto&& visit) {
+  visit(s.pcy1, Field{"PCY1"});
+  visit(s.pdy1, Field{"PDY1"});
+  visit(s.pdy2, Field{"PDY2"});
+  visit(s.pdy3, Field{"PDY3"});
+  visit(s.pey1, Field{"PEY1"});
+  visit(s.pey2, Field{"PEY2"});
+  visit(s.pey3, Field{"PEY3"});
+  visit(s.pey4, Field{"PEY4"});
+  visit(s.pky1, Field{"PKY1"});
+  visit(s.pky2, Field{"PKY2"});
+  visit(s.pky3, Field{"PKY3"});
+  visit(s.phy1, Field{"PHY1"});
+  visit(s.phy2, Field{"PHY2"});
+  visit(s.phy3, Field{"PHY3"});
+  visit(s.pvy1, Field{"PVY1"});
+  visit(s.pvy2, Field{"PVY2"});
+  visit(s.pvy3, Field{"PVY3"});
+  visit(s.pvy4, Field{"PVY4"});
+  visit(s.rby1, Field{"RBY1"});
+  visit(s.rby2, Field{"RBY2"});
+  visit(s.rby3, Field{"RBY3"});
+  visit(s.rcy1, Field{"RCY1"});
+  visit(s.rey1, Field{"REY1"});
+  visit(s.rey2, Field{"REY2"});
+  visit(s.rhy1, Field{"RHY1"});
+  visit(s.rhy2, Field{"RHY2"});
+  visit(s.rvy1, Field{"RVY1"});
+  visit(s.rvy2, Field{"RVY2"});
+  visit(s.rvy3, Field{"RVY3"});
+  visit(s.rvy4, Field{"RVY4"});
+  visit(s.rvy5, Field{"RVY5"});
+  visit(s.rvy6, Field{"RVY6"});
+  visit(s.pty1, Field{"PTY1"});
+  visit(s.pty2, Field{"PTY2"});
 }
 
 /// Of M_y.
 struct RollingCoefficients {
   double qsy1 = 0.0, qsy2 = 0.0, qsy3 = 0.0, qsy4 = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<RollingCoefficients> auto& s) {
-  visit(Field{"QSY1"}, s.qsy1);
-  visit(Field{"QSY2"}, s.qsy2);
-  visit(Field{"QSY3"}, s.qsy3);
-  visit(Field{"QSY4"}, s.qsy4);
+void visit_fields(FieldsOf<RollingCoefficients> auto& s, auto&& visit) {
+  visit(s.qsy1, Field{"QSY1"});
+  visit(s.qsy2, Field{"QSY2"});
+  visit(s.qsy3, Field{"QSY3"});
+  visit(s.qsy4, Field{"QSY4"});
 }
 
 /// Of M_z: q of trail and residual moment, s of the arm of F_x. QTZ1 and MBELT, of the gyroscopic moment, are kept
@@ -154,38 +154,38 @@ struct AligningCoefficients {
          qez3 = 0.0, qez4 = 0.0, qez5 = 0.0, qhz1 = 0.0, qhz2 = 0.0, qhz3 = 0.0, qhz4 = 0.0, ssz1 = 0.0, ssz2 = 0.0,
          ssz3 = 0.0, ssz4 = 0.0, qtz1 = 0.0, mbelt = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<AligningCoefficients> auto& s) {
-  visit(Field{"QBZ1"}, s.qbz1);
-  visit(Field{"QBZ2"}, s.qbz2);
-  visit(Field{"QBZ3"}, s.qbz3);
-  visit(Field{"QBZ4"}, s.qbz4);
-  visit(Field{"QBZ5"}, s.qbz5);
-  visit(Field{"QBZ9"}, s.qbz9);
-  visit(Field{"QBZ10"}, s.qbz10);
-  visit(Field{"QCZ1"}, s.qcz1);
-  visit(Field{"QDZ1"}, s.qdz1);
-  visit(Field{"QDZ2"}, s.qdz2);
-  visit(Field{"QDZ3"}, s.qdz3);
-  visit(Field{"QDZ4"}, s.qdz4);
-  visit(Field{"QDZ6"}, s.qdz6);
-  visit(Field{"QDZ7"}, s.qdz7);
-  visit(Field{"QDZ8"}, s.qdz8);
-  visit(Field{"QDZ9"}, s.qdz9);
-  visit(Field{"QEZ1"}, s.qez1);
-  visit(Field{"QEZ2"}, s.qez2);
-  visit(Field{"QEZ3"}, s.qez3);
-  visit(Field{"QEZ4"}, s.qez4);
-  visit(Field{"QEZ5"}, s.qez5);
-  visit(Field{"QHZ1"}, s.qhz1);
-  visit(Field{"QHZ2"}, s.qhz2);
-  visit(Field{"QHZ3"}, s.qhz3);
-  visit(Field{"QHZ4"}, s.qhz4);
-  visit(Field{"SSZ1"}, s.ssz1);
-  visit(Field{"SSZ2"}, s.ssz2);
-  visit(Field{"SSZ3"}, s.ssz3);
-  visit(Field{"SSZ4"}, s.ssz4);
-  visit(Field{"QTZ1"}, s.qtz1);
-  visit(Field{"MBELT", "kg"}, s.mbelt);
+void visit_fields(FieldsOf<AligningCoefficients> auto& s, auto&& visit) {
+  visit(s.qbz1, Field{"QBZ1"});
+  visit(s.qbz2, Field{"QBZ2"});
+  visit(s.qbz3, Field{"QBZ3"});
+  visit(s.qbz4, Field{"QBZ4"});
+  visit(s.qbz5, Field{"QBZ5"});
+  visit(s.qbz9, Field{"QBZ9"});
+  visit(s.qbz10, Field{"QBZ10"});
+  visit(s.qcz1, Field{"QCZ1"});
+  visit(s.qdz1, Field{"QDZ1"});
+  visit(s.qdz2, Field{"QDZ2"});
+  visit(s.qdz3, Field{"QDZ3"});
+  visit(s.qdz4, Field{"QDZ4"});
+  visit(s.qdz6, Field{"QDZ6"});
+  visit(s.qdz7, Field{"QDZ7"});
+  visit(s.qdz8, Field{"QDZ8"});
+  visit(s.qdz9, Field{"QDZ9"});
+  visit(s.qez1, Field{"QEZ1"});
+  visit(s.qez2, Field{"QEZ2"});
+  visit(s.qez3, Field{"QEZ3"});
+  visit(s.qez4, Field{"QEZ4"});
+  visit(s.qez5, Field{"QEZ5"});
+  visit(s.qhz1, Field{"QHZ1"});
+  visit(s.qhz2, Field{"QHZ2"});
+  visit(s.qhz3, Field{"QHZ3"});
+  visit(s.qhz4, Field{"QHZ4"});
+  visit(s.ssz1, Field{"SSZ1"});
+  visit(s.ssz2, Field{"SSZ2"});
+  visit(s.ssz3, Field{"SSZ3"});
+  visit(s.ssz4, Field{"SSZ4"});
+  visit(s.qtz1, Field{"QTZ1"});
+  visit(s.mbelt, Field{"MBELT", "kg"});
 }
 
 /// [VERTICAL]
@@ -195,13 +195,13 @@ struct VerticalCoefficients {
   double breff = 0.0, dreff = 0.0, freff = 0.0;  // of the effective rolling radius
   double fnomin = 0.0;                           // F_z0, N
 };
-void visit_fields(auto&& visit, FieldsOf<VerticalCoefficients> auto& s) {
-  visit(Field{"VERTICAL_STIFFNESS", "N/m"}, s.vertical_stiffness);
-  visit(Field{"VERTICAL_DAMPING", "N s/m"}, s.vertical_damping);
-  visit(Field{"BREFF"}, s.breff);
-  visit(Field{"DREFF"}, s.dreff);
-  visit(Field{"FREFF"}, s.freff);
-  visit(Field{"FNOMIN", "N"}, s.fnomin);
+void visit_fields(FieldsOf<VerticalCoefficients> auto& s, auto&& visit) {
+  visit(s.vertical_stiffness, Field{"VERTICAL_STIFFNESS", "N/m"});
+  visit(s.vertical_damping, Field{"VERTICAL_DAMPING", "N s/m"});
+  visit(s.breff, Field{"BREFF"});
+  visit(s.dreff, Field{"DREFF"});
+  visit(s.freff, Field{"FREFF"});
+  visit(s.fnomin, Field{"FNOMIN", "N"});
 }
 
 /// [DIMENSION]
@@ -212,12 +212,12 @@ struct Dimensions {
   double rim_radius = 0.0;       // m
   double rim_width = 0.0;        // m
 };
-void visit_fields(auto&& visit, FieldsOf<Dimensions> auto& s) {
-  visit(Field{"UNLOADED_RADIUS", "m"}, s.unloaded_radius);
-  visit(Field{"WIDTH", "m"}, s.width);
-  visit(Field{"ASPECT_RATIO"}, s.aspect_ratio);
-  visit(Field{"RIM_RADIUS", "m"}, s.rim_radius);
-  visit(Field{"RIM_WIDTH", "m"}, s.rim_width);
+void visit_fields(FieldsOf<Dimensions> auto& s, auto&& visit) {
+  visit(s.unloaded_radius, Field{"UNLOADED_RADIUS", "m"});
+  visit(s.width, Field{"WIDTH", "m"});
+  visit(s.aspect_ratio, Field{"ASPECT_RATIO"});
+  visit(s.rim_radius, Field{"RIM_RADIUS", "m"});
+  visit(s.rim_width, Field{"RIM_WIDTH", "m"});
 }
 
 /// [INERTIA], which files of version 5.2 need not have.
@@ -226,10 +226,10 @@ struct TireInertia {
   double ixx = 0.0;   // about a diameter, kg m²
   double iyy = 0.0;   // about the axle, kg m²
 };
-void visit_fields(auto&& visit, FieldsOf<TireInertia> auto& s) {
-  visit(Field{"MASS", "kg"}, s.mass);
-  visit(Field{"IXX", "kg m²"}, s.ixx);
-  visit(Field{"IYY", "kg m²"}, s.iyy);
+void visit_fields(FieldsOf<TireInertia> auto& s, auto&& visit) {
+  visit(s.mass, Field{"MASS", "kg"});
+  visit(s.ixx, Field{"IXX", "kg m²"});
+  visit(s.iyy, Field{"IYY", "kg m²"});
 }
 
 /// What the coefficients were fitted for; the formula is held at the ends of it.
@@ -255,18 +255,18 @@ struct MagicFormula {
   AligningCoefficients aligning;
 };
 
-/// Calls visit(field, value) for every coefficient of the formula and for what else a fit may change, by their names in
+/// Calls visit(value, field) for every coefficient of the formula and for what else a fit may change, by their names in
 /// the file. @param tire MagicFormula, const or not
-template <class Visit, class Tire>
-void visit_coefficients(Visit&& visit, Tire& tire) {
-  visit_fields(visit, tire.dimension);
-  visit_fields(visit, tire.vertical);
-  visit_fields(visit, tire.scaling);
-  visit_fields(visit, tire.longitudinal);
-  visit_fields(visit, tire.overturning);
-  visit_fields(visit, tire.lateral);
-  visit_fields(visit, tire.rolling);
-  visit_fields(visit, tire.aligning);
+template <class Tire, class Visit>
+void visit_coefficients(Tire& tire, Visit&& visit) {
+  visit_fields(tire.dimension, visit);
+  visit_fields(tire.vertical, visit);
+  visit_fields(tire.scaling, visit);
+  visit_fields(tire.longitudinal, visit);
+  visit_fields(tire.overturning, visit);
+  visit_fields(tire.lateral, visit);
+  visit_fields(tire.rolling, visit);
+  visit_fields(tire.aligning, visit);
 }
 
 }  // namespace furrow::tire::handling

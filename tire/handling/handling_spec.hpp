@@ -27,16 +27,14 @@ struct HandlingFile {
   double spin_inertia = 0.0;       // about the axle, kg m²
   double diametral_inertia = 0.0;  // kg m²
 };
-void visit_fields(auto&& visit, FieldsOf<HandlingFile> auto& s) {
+void visit_fields(FieldsOf<HandlingFile> auto& s, auto&& visit) {
   constexpr Allowed kPositive = allowed::above(0).optional();
-  visit(needed("tir", "", "Tire property file, relative to this file."), s.tir);
-  visit(key("mass", "kg", kPositive, "Mass of the tire; without it MASS of [INERTIA]."), s.mass);
-  visit(key("spin_inertia", "kg m²", kPositive,
-            "Moment of inertia of the tire about its axle; without it IYY of [INERTIA]."),
-        s.spin_inertia);
-  visit(key("diametral_inertia", "kg m²", kPositive,
-            "Moment of inertia of the tire about a diameter; without it IXX of [INERTIA]."),
-        s.diametral_inertia);
+  visit(s.tir, needed("tir", "", "Tire property file, relative to this file."));
+  visit(s.mass, key("mass", "kg", kPositive, "Mass of the tire; without it MASS of [INERTIA]."));
+  visit(s.spin_inertia, key("spin_inertia", "kg m²", kPositive,
+                            "Moment of inertia of the tire about its axle; without it IYY of [INERTIA]."));
+  visit(s.diametral_inertia, key("diametral_inertia", "kg m²", kPositive,
+                                 "Moment of inertia of the tire about a diameter; without it IXX of [INERTIA]."));
 }
 
 /// Mass and inertia are those of [INERTIA] where the tire file does not say them. @throws Error(bad_input)

@@ -43,12 +43,12 @@ class HandlingTire final : public Tire {
   void do_place(const RimState& rim) override;
   Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   void do_restore(const Archive& archive) override;
-  friend void visit_fields(auto&& visit, FieldsOf<HandlingTire> auto& s) {
-    visit(Field{"rim", ""}, s.rim_);
-    visit(Field{"spindle", ""}, s.spindle_);
-    visit(Field{"patch", ""}, s.patch_);
-    visit(Field{"dissipation", "J"}, s.dissipation_);
-    visit(Field{"placed", ""}, s.standing_);
+  friend void visit_fields(FieldsOf<HandlingTire> auto& s, auto&& visit) {
+    visit(s.rim_, Field{"rim", ""});
+    visit(s.spindle_, Field{"spindle", ""});
+    visit(s.patch_, Field{"patch", ""});
+    visit(s.dissipation_, Field{"dissipation", "J"});
+    visit(s.standing_, Field{"placed", ""});
   }
 
   /// Vertices of the wheel at a pose, flattened by the ground. @param velocity may be null

@@ -30,9 +30,9 @@ namespace furrow::tire::handling {
 struct PatchState {
   double along = 0.0, across = 0.0;
 };
-void visit_fields(auto&& visit, FieldsOf<PatchState> auto& s) {
-  visit(Field{"along", "m"}, s.along);
-  visit(Field{"across", "m"}, s.across);
+void visit_fields(FieldsOf<PatchState> auto& s, auto&& visit) {
+  visit(s.along, Field{"along", "m"});
+  visit(s.across, Field{"across", "m"});
 }
 
 /// What the rim's motion is to the contact.

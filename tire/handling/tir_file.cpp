@@ -213,7 +213,7 @@ void read_section(const Sections& sections, const std::string& name, bool requir
   SectionReader reader(sections, name);
   for (const std::string& key : must)
     if (reader.number(key) == 0.0) throw reader.wrong(key, "is 0, expected another number");
-  visit_fields([&](const Field& field, double& value) { value = reader.number_or(field.name, value); }, into);
+  visit_fields(into, [&](double& value, const Field& field) { value = reader.number_or(field.name, value); });
   reader.finish();
 }
 
@@ -257,12 +257,12 @@ MagicFormula parse_tir(const std::string& text, const std::string& name) {
   {  // what MF-Swift and others add is passed over
     SectionReader vertical(sections, "VERTICAL");
     for (const char* key : {"VERTICAL_STIFFNESS", "FNOMIN"}) vertical.number(key);
-    visit_fields([&](const Field& field, double& value) { value = vertical.number_or(field.name, value); }, t.vertical);
+    visit_fields(t.vertical, [&](double& value, const Field& field) { value = vertical.number_or(field.name, value); });
   }
   if (sections.has("INERTIA")) {
     SectionReader inertia(sections, "INERTIA");
-    visit_fields([&](const Field& field, double& value) { value = inertia.not_negative_or(field.name, value); },
-                 t.inertia);
+    visit_fields(t.inertia,
+                 [&](double& value, const Field& field) { value = inertia.not_negative_or(field.name, value); });
   }
   t.slip = read_range(sections, "LONG_SLIP_RANGE", "KPU", 0.0);
   t.slip_angle = read_range(sections, "SLIP_ANGLE_RANGE", "ALP", kMostAngle);
@@ -291,9 +291,9 @@ std::string tir_text(const MagicFormula& t, const std::vector<std::string>& comm
   };
   const auto all = [&](const char* name, const auto& coefficients) {
     section(name);
-    visit_fields([&](const Field& field,
-                     double value) { line(field.name, value, std::string_view(field.unit) == "-" ? "" : field.unit); },
-                 coefficients);
+    visit_fields(coefficients, [&](double value, const Field& field) {
+      line(field.name, value, std::string_view(field.unit) == "-" ? "" : field.unit);
+    });
   };
   const auto range = [&](const char* name, const std::string& prefix, const Range& r, const char* unit) {
     section(name);

@@ -67,12 +67,12 @@ class PlanarCarcass final : public PlaneModel {
   void hold(double h, double angle);
   void renew();
 
-  friend void visit_fields(auto&& visit, FieldsOf<PlanarCarcass> auto& s) {
-    visit(Field{"centre_velocity_x", "m/s"}, s.centre_.x);
-    visit(Field{"centre_velocity_z", "m/s"}, s.centre_.z);
-    visit(Field{"step_limit", "s"}, s.limit_);
-    visit(Field{"steps", ""}, s.steps_);
-    visit(Field{"steps_since_check", ""}, s.since_check_);
+  friend void visit_fields(FieldsOf<PlanarCarcass> auto& s, auto&& visit) {
+    visit(s.centre_.x, Field{"centre_velocity_x", "m/s"});
+    visit(s.centre_.z, Field{"centre_velocity_z", "m/s"});
+    visit(s.limit_, Field{"step_limit", "s"});
+    visit(s.steps_, Field{"steps", ""});
+    visit(s.since_check_, Field{"steps_since_check", ""});
   }
 
   PlanarMesh mesh_;

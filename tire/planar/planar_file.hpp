@@ -26,43 +26,41 @@ struct PlanarFile {
   PlanarVolume volume = PlanarVolume::element;  // options.averaged of the parameters
   ContactBlock contact;
 };
-void visit_fields(auto&& visit, FieldsOf<PlanarFile> auto& s) {
+void visit_fields(FieldsOf<PlanarFile> auto& s, auto&& visit) {
   using namespace allowed;
   auto& p = s.params;
-  visit(needed("radius", "m", keys::kSize, "Radius of the undeformed tire."), p.size.radius);
-  visit(needed("rim_radius", "m", keys::kSize, "Radius of the disc, where the tire begins."), p.size.rim_radius);
-  visit(needed("width", "m", keys::kSize, "Width; all forces and masses are in proportion to it."), p.options.width);
+  visit(p.size.radius, needed("radius", "m", keys::kSize, "Radius of the undeformed tire."));
+  visit(p.size.rim_radius, needed("rim_radius", "m", keys::kSize, "Radius of the disc, where the tire begins."));
+  visit(p.options.width, needed("width", "m", keys::kSize, "Width; all forces and masses are in proportion to it."));
   visit(
+      p.size.around,
       needed("elements_circumference", "", from(kLeastAround, kMostAround),
              "Nodes of every ring of the tire; tire.elements_circumference overrides it and changes elements_radial in "
-             "proportion."),
-      p.size.around);
-  visit(needed("elements_radial", "", from(1, kMostRings),
-               "Rings of triangles from the disc to the tread, each of twice elements_circumference."),
-        p.size.rings);
-  visit(needed("disc"), p.disc);
-  visit(needed("tire"), p.tire);
+             "proportion."));
+  visit(p.size.rings, needed("elements_radial", "", from(1, kMostRings),
+                             "Rings of triangles from the disc to the tread, each of twice elements_circumference."));
+  visit(p.disc, needed("disc"));
+  visit(p.tire, needed("tire"));
   visit(
+      p.options.law,
       key("law", "", words("printed consistent"),
           "Volumetric stress lambda / 2 (J - 1/J), which is Hooke's law for small strains, or lambda (J - 1/J), as the "
-          "source prints it."),
-      p.options.law);
+          "source prints it."));
   visit(
+      s.volume,
       key("volume", "", words("averaged element"),
           "Whether the volumetric stress is that of each triangle, which locks near incompressibility, or follows from "
-          "volumes averaged around nodes."),
-      s.volume);
-  visit(key("integrator", "", words("semi_implicit_euler runge_kutta_4"),
-            "Integrator of its motion; pressing does not need it, and runs take semi_implicit_euler alone."),
-        p.integrator);
-  visit(needed("step_share", "-", above(0).to(1),
-               "Step of its motion / largest stable one; in a run that of the mesh as it is pressed."),
-        p.step_share);
-  visit(needed("contact_stiffness", "N/m", above(0),
+          "volumes averaged around nodes."));
+  visit(p.integrator,
+        key("integrator", "", words("semi_implicit_euler runge_kutta_4"),
+            "Integrator of its motion; pressing does not need it, and runs take semi_implicit_euler alone."));
+  visit(p.step_share, needed("step_share", "-", above(0).to(1),
+                             "Step of its motion / largest stable one; in a run that of the mesh as it is pressed."));
+  visit(p.contact_stiffness,
+        needed("contact_stiffness", "N/m", above(0),
                "c, force of a node on rigid ground / its depth, per metre of width, when it is pressed; in a run the "
-               "terrain has its own contact."),
-        p.contact_stiffness);
-  visit(keys::kContact, s.contact);
+               "terrain has its own contact."));
+  visit(s.contact, keys::kContact);
 }
 
 }  // namespace furrow::tire

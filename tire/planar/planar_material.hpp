@@ -26,13 +26,13 @@ struct PlanarMaterial {
   double poisson_ratio = 0.0;
   double viscosity = 0.0;  // ξ, Pa s
 };
-void visit_fields(auto&& visit, FieldsOf<PlanarMaterial> auto& s) {
+void visit_fields(FieldsOf<PlanarMaterial> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("density", "kg/m³", above(0), "Density."), s.density);
-  visit(needed("young_modulus", "Pa", above(0), "Young's modulus."), s.young_modulus);
+  visit(s.density, needed("density", "kg/m³", above(0), "Density."));
+  visit(s.young_modulus, needed("young_modulus", "Pa", above(0), "Young's modulus."));
   // Beyond, the step limit vanishes.
-  visit(needed("poisson_ratio", "-", from(0, 0.499), "Poisson's ratio."), s.poisson_ratio);
-  visit(needed("viscosity", "Pa s", from(0), "Viscosity xi: stress / rate of deformation."), s.viscosity);
+  visit(s.poisson_ratio, needed("poisson_ratio", "-", from(0, 0.499), "Poisson's ratio."));
+  visit(s.viscosity, needed("viscosity", "Pa s", from(0), "Viscosity xi: stress / rate of deformation."));
 }
 
 struct PlanarModuli {

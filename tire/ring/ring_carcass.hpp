@@ -89,14 +89,14 @@ class RingCarcass final : public PlaneModel {
             PlaneSums& sums);
   void lay_out();
 
-  friend void visit_fields(auto&& visit, FieldsOf<RingCarcass> auto& s) {
-    visit(Field{"angle", "rad"}, s.angle_);
-    visit(Field{"spin", "rad/s"}, s.spin_);
-    visit(Field{"centre_velocity_x", "m/s"}, s.centre_.x);
-    visit(Field{"centre_velocity_z", "m/s"}, s.centre_.z);
-    visit(Field{"pumped", "J"}, s.pumped_);
-    visit(Field{"iterations", ""}, s.iterations_);
-    visit(Field{"residual", ""}, s.residual_);
+  friend void visit_fields(FieldsOf<RingCarcass> auto& s, auto&& visit) {
+    visit(s.angle_, Field{"angle", "rad"});
+    visit(s.spin_, Field{"spin", "rad/s"});
+    visit(s.centre_.x, Field{"centre_velocity_x", "m/s"});
+    visit(s.centre_.z, Field{"centre_velocity_z", "m/s"});
+    visit(s.pumped_, Field{"pumped", "J"});
+    visit(s.iterations_, Field{"iterations", ""});
+    visit(s.residual_, Field{"residual", ""});
   }
 
   RingMechanics ring_;

@@ -27,61 +27,60 @@ struct RingFile {
   double diametral_inertia = 0.0;    // kg m²
   ContactBlock contact;
 };
-void visit_fields(auto&& visit, FieldsOf<RingFile> auto& s) {
+void visit_fields(FieldsOf<RingFile> auto& s, auto&& visit) {
   using namespace allowed;
   auto& p = s.params;
   auto& m = s.motion;
   visit(
+      p.segments,
       needed("segments", "", from(kMinSegments, kMaxSegments),
              "Segments of the belt; tire.elements_circumference overrides it. The other numbers mean the same for any "
-             "number of them."),
-      p.segments);
-  visit(needed("radius", "m", keys::kSize, "Radius R of the inflated belt; the same at every pressure."), p.radius);
-  visit(needed("width", "m", keys::kSize, "Width T of the belt."), p.width);
-  visit(needed("rim_radius", "m", keys::kSize, "Radius of the rim, which the belt must not reach."), m.rim_radius);
-  visit(keys::kPressure, p.pressure);
-  visit(needed("air_share", "-", above(0).to(1), "Volume of air / (pi R² T)."), p.air_share);
-  visit(needed("bending", "N/m", above(0), "Bending stiffness A of the belt per radian: E I / R³."), p.bending);
-  visit(needed("shear", "N/m", above(0), "Stiffness B of the belt against gradients of its hoop strain, per radian."),
-        p.shear);
+             "number of them."));
+  visit(p.radius, needed("radius", "m", keys::kSize, "Radius R of the inflated belt; the same at every pressure."));
+  visit(p.width, needed("width", "m", keys::kSize, "Width T of the belt."));
+  visit(m.rim_radius, needed("rim_radius", "m", keys::kSize, "Radius of the rim, which the belt must not reach."));
+  visit(p.pressure, keys::kPressure);
+  visit(p.air_share, needed("air_share", "-", above(0).to(1), "Volume of air / (pi R² T)."));
+  visit(p.bending, needed("bending", "N/m", above(0), "Bending stiffness A of the belt per radian: E I / R³."));
+  visit(p.shear,
+        needed("shear", "N/m", above(0), "Stiffness B of the belt against gradients of its hoop strain, per radian."));
   visit(
+      s.sidewall,
       needed(
           "sidewall", "",
           shaped(R"({"type": "array", "minItems": 3, "maxItems": 3, "items": {"type": "number", "minimum": 0}})"),
           "Stiffnesses k1 (N/m), k2 (N/m²), k3 (N/m³) of the sidewall per radian: it pulls with k1 w + k2 w² + k3 w³, "
-          "w its extension; k1 above 0, k2² at most 3 k1 k3."),
-      s.sidewall);
+          "w its extension; k1 above 0, k2² at most 3 k1 k3."));
   visit(
+      p.tangential,
       needed("tangential", "N/m", above(0),
              "Stiffness k_t of the sidewall against tangential displacement, per radian; the torsional stiffness is 2 "
-             "pi R² k_t."),
-      p.tangential);
-  visit(key("tension_share", "-", from(0, 1),
+             "pi R² k_t."));
+  visit(p.tension_share,
+        key("tension_share", "-", from(0, 1),
             "Share of the pressure that the belt holds as a membrane, by a hoop tension of tension_share × pressure × "
-            "radius × width; the sidewall holds the rest. 0: no hoop tension."),
-        p.tension_share);
-  visit(key("structural_damping", "s", from(0),
+            "radius × width; the sidewall holds the rest. 0: no hoop tension."));
+  visit(m.damping,
+        key("structural_damping", "s", from(0),
             "Kelvin-Voigt time tau of belt and sidewall: tau × tangent × rate is added to their forces in motion; "
-            "tire.structural_damping overrides it."),
-        m.damping);
-  visit(key("gas", "", words("linearised exact"),
-            "Law of the air: pressure times volume is constant, or the tangent of that law."),
-        p.gas);
-  visit(key("kinematics", "", words("radial exact"),
+            "tire.structural_damping overrides it."));
+  visit(p.gas, key("gas", "", words("linearised exact"),
+                   "Law of the air: pressure times volume is constant, or the tangent of that law."));
+  visit(p.kinematics,
+        key("kinematics", "", words("radial exact"),
             "exact: segments touch the ground at their displaced positions. radial: each touches it at its undeformed "
-            "angle."),
-        p.kinematics);
+            "angle."));
   visit(
+      m.mass,
       needed("mass", "kg", above(0),
              "Mass of the tire; in motion a belt at its radius and a rest at rim_radius share it so that spin_inertia "
-             "comes out."),
-      m.mass);
-  visit(needed("spin_inertia", "kg m²", above(0),
-               "Moment of inertia of the tire about its axle; between mass × rim_radius² and mass × radius²."),
-        m.spin_inertia);
-  visit(needed("diametral_inertia", "kg m²", above(0), "Moment of inertia of the tire about a diameter."),
-        s.diametral_inertia);
-  visit(keys::kContact, s.contact);
+             "comes out."));
+  visit(m.spin_inertia,
+        needed("spin_inertia", "kg m²", above(0),
+               "Moment of inertia of the tire about its axle; between mass × rim_radius² and mass × radius²."));
+  visit(s.diametral_inertia,
+        needed("diametral_inertia", "kg m²", above(0), "Moment of inertia of the tire about a diameter."));
+  visit(s.contact, keys::kContact);
 }
 
 /// @throws Error(bad_input) naming file and key

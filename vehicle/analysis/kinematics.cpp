@@ -332,25 +332,21 @@ void check_locks(const VehicleSpec& spec, std::span<const double> radii, const P
 std::string kinematics_csv(std::span<const KinematicsRow> rows) {
   std::string text, separator;
   const KinematicsRow head;
-  visit_fields(
-      [&](const Field& field, const auto&) {
-        text += separator + name_with_unit(field);
-        separator = ",";
-      },
-      head);
+  visit_fields(head, [&](const auto&, const Field& field) {
+    text += separator + name_with_unit(field);
+    separator = ",";
+  });
   text += '\n';
   for (const KinematicsRow& row : rows) {
     separator.clear();
-    visit_fields(
-        [&](const Field&, const auto& value) {
-          text += separator;
-          separator = ",";
-          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>)
-            text += value;
-          else if (std::isfinite(value))
-            text += fmt::format("{}", value);
-        },
-        row);
+    visit_fields(row, [&](const auto& value, const Field&) {
+      text += separator;
+      separator = ",";
+      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>)
+        text += value;
+      else if (std::isfinite(value))
+        text += fmt::format("{}", value);
+    });
     text += '\n';
   }
   return text;

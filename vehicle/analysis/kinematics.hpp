@@ -43,29 +43,29 @@ struct KinematicsRow {
   double wheel_rate = kNone;  // N/m
   double ackermann = kNone;
 };
-void visit_fields(auto&& visit, FieldsOf<KinematicsRow> auto& s) {
-  visit(Field{"motion", ""}, s.motion);
-  visit(Field{"wheel", ""}, s.wheel);
-  visit(Field{"steering"}, s.steering);
-  visit(Field{"travel", "m"}, s.travel);
-  visit(Field{"camber", "rad"}, s.camber);
-  visit(Field{"toe", "rad"}, s.toe);
-  visit(Field{"steer", "rad"}, s.steer);
-  visit(Field{"caster", "rad"}, s.caster);
-  visit(Field{"kingpin", "rad"}, s.kingpin);
-  visit(Field{"scrub", "m"}, s.scrub);
-  visit(Field{"trail", "m"}, s.trail);
-  visit(Field{"half_track", "m"}, s.half_track);
-  visit(Field{"wheel_x", "m"}, s.wheel_x);
-  visit(Field{"roll_center", "m"}, s.roll_center);
-  visit(Field{"brake_slope"}, s.brake_slope);
-  visit(Field{"anti_dive"}, s.anti_dive);
-  visit(Field{"spring_length", "m"}, s.spring_length);
-  visit(Field{"shock_length", "m"}, s.shock_length);
-  visit(Field{"spring_ratio"}, s.spring_ratio);
-  visit(Field{"shock_ratio"}, s.shock_ratio);
-  visit(Field{"wheel_rate", "N/m"}, s.wheel_rate);
-  visit(Field{"ackermann"}, s.ackermann);
+void visit_fields(FieldsOf<KinematicsRow> auto& s, auto&& visit) {
+  visit(s.motion, Field{"motion", ""});
+  visit(s.wheel, Field{"wheel", ""});
+  visit(s.steering, Field{"steering"});
+  visit(s.travel, Field{"travel", "m"});
+  visit(s.camber, Field{"camber", "rad"});
+  visit(s.toe, Field{"toe", "rad"});
+  visit(s.steer, Field{"steer", "rad"});
+  visit(s.caster, Field{"caster", "rad"});
+  visit(s.kingpin, Field{"kingpin", "rad"});
+  visit(s.scrub, Field{"scrub", "m"});
+  visit(s.trail, Field{"trail", "m"});
+  visit(s.half_track, Field{"half_track", "m"});
+  visit(s.wheel_x, Field{"wheel_x", "m"});
+  visit(s.roll_center, Field{"roll_center", "m"});
+  visit(s.brake_slope, Field{"brake_slope"});
+  visit(s.anti_dive, Field{"anti_dive"});
+  visit(s.spring_length, Field{"spring_length", "m"});
+  visit(s.shock_length, Field{"shock_length", "m"});
+  visit(s.spring_ratio, Field{"spring_ratio"});
+  visit(s.shock_ratio, Field{"shock_ratio"});
+  visit(s.wheel_rate, Field{"wheel_rate", "N/m"});
+  visit(s.ackermann, Field{"ackermann"});
 }
 
 struct KinematicsOptions {

@@ -30,11 +30,11 @@ struct StrutTrim {
   double to_shortest = 0.0,
          to_longest = 0.0;  // m to its stops or marks, negative beyond; infinite where it has none
 };
-void visit_fields(auto&& visit, FieldsOf<StrutTrim> auto& s) {
-  visit(Field{"length", "m"}, s.length);
-  visit(Field{"force", "N"}, s.force);
-  visit(Field{"to_shortest", "m"}, s.to_shortest);
-  visit(Field{"to_longest", "m"}, s.to_longest);
+void visit_fields(FieldsOf<StrutTrim> auto& s, auto&& visit) {
+  visit(s.length, Field{"length", "m"});
+  visit(s.force, Field{"force", "N"});
+  visit(s.to_shortest, Field{"to_shortest", "m"});
+  visit(s.to_longest, Field{"to_longest", "m"});
 }
 
 struct WheelTrim {
@@ -47,17 +47,17 @@ struct WheelTrim {
   double camber = 0.0, toe = 0.0;  // rad
   std::optional<StrutTrim> spring, shock;
 };
-void visit_fields(auto&& visit, FieldsOf<WheelTrim> auto& s) {
-  visit(Field{"name", ""}, s.name);
-  visit(Field{"load", "N"}, s.load);
-  visit(Field{"deflection", "m"}, s.deflection);
-  visit(Field{"height", "m"}, s.height);
-  visit(Field{"center", "m"}, s.center);
-  visit(Field{"travel", "m"}, s.travel);
-  visit(Field{"camber", "rad"}, s.camber);
-  visit(Field{"toe", "rad"}, s.toe);
-  visit(Field{"spring", ""}, s.spring);
-  visit(Field{"shock", ""}, s.shock);
+void visit_fields(FieldsOf<WheelTrim> auto& s, auto&& visit) {
+  visit(s.name, Field{"name", ""});
+  visit(s.load, Field{"load", "N"});
+  visit(s.deflection, Field{"deflection", "m"});
+  visit(s.height, Field{"height", "m"});
+  visit(s.center, Field{"center", "m"});
+  visit(s.travel, Field{"travel", "m"});
+  visit(s.camber, Field{"camber", "rad"});
+  visit(s.toe, Field{"toe", "rad"});
+  visit(s.spring, Field{"spring", ""});
+  visit(s.shock, Field{"shock", ""});
 }
 
 /// One vibration. The body's are heave, pitch and roll by what moves most, a wheels' "hop front" (both up) or
@@ -67,10 +67,10 @@ struct TrimMode {
   double frequency = 0.0;  // undamped, Hz
   double damping = 0.0;    // share of critical, with the mean of the shocks' coefficients for small speeds
 };
-void visit_fields(auto&& visit, FieldsOf<TrimMode> auto& s) {
-  visit(Field{"name", ""}, s.name);
-  visit(Field{"frequency", "Hz"}, s.frequency);
-  visit(Field{"damping"}, s.damping);
+void visit_fields(FieldsOf<TrimMode> auto& s, auto&& visit) {
+  visit(s.name, Field{"name", ""});
+  visit(s.frequency, Field{"frequency", "Hz"});
+  visit(s.damping, Field{"damping"});
 }
 
 struct Trim {
@@ -80,13 +80,13 @@ struct Trim {
   double pitch = 0.0, roll = 0.0;  // of the chassis, rad; positive: nose down, right side down
   std::vector<TrimMode> modes;     // lowest frequency first
 };
-void visit_fields(auto&& visit, FieldsOf<Trim> auto& s) {
-  visit(Field{"wheels", ""}, s.wheels);
-  visit(Field{"axle_loads", "N"}, s.axle_loads);
-  visit(Field{"height", "m"}, s.height);
-  visit(Field{"pitch", "rad"}, s.pitch);
-  visit(Field{"roll", "rad"}, s.roll);
-  visit(Field{"modes", ""}, s.modes);
+void visit_fields(FieldsOf<Trim> auto& s, auto&& visit) {
+  visit(s.wheels, Field{"wheels", ""});
+  visit(s.axle_loads, Field{"axle_loads", "N"});
+  visit(s.height, Field{"height", "m"});
+  visit(s.pitch, Field{"pitch", "rad"});
+  visit(s.roll, Field{"roll", "rad"});
+  visit(s.modes, Field{"modes", ""});
 }
 
 /// Puts the vehicle at rest on the plane z = `ground` and returns its posture.

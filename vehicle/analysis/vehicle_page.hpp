@@ -29,20 +29,20 @@ struct VehiclePage {
   std::vector<double> tire_masses, loaded_radii;  // of each wheel, kg; under its load, m
   Trim trim;
 };
-void visit_fields(auto&& visit, FieldsOf<VehiclePage> auto& s) {
-  visit(Field{"name", ""}, s.name);
-  visit(Field{"file", ""}, s.file);
-  visit(Field{"mass", "kg"}, s.mass);
-  visit(Field{"bodies", ""}, s.bodies);
-  visit(Field{"rows", ""}, s.rows);
-  visit(Field{"freedoms", ""}, s.freedoms);
-  visit(Field{"shafts", ""}, s.shafts);
-  visit(Field{"shaft_freedoms", ""}, s.shaft_freedoms);
-  visit(Field{"axles", ""}, s.axles);
-  visit(Field{"tires", ""}, s.tires);
-  visit(Field{"tire_masses", "kg"}, s.tire_masses);
-  visit(Field{"loaded_radii", "m"}, s.loaded_radii);
-  visit(Field{"trim", ""}, s.trim);
+void visit_fields(FieldsOf<VehiclePage> auto& s, auto&& visit) {
+  visit(s.name, Field{"name", ""});
+  visit(s.file, Field{"file", ""});
+  visit(s.mass, Field{"mass", "kg"});
+  visit(s.bodies, Field{"bodies", ""});
+  visit(s.rows, Field{"rows", ""});
+  visit(s.freedoms, Field{"freedoms", ""});
+  visit(s.shafts, Field{"shafts", ""});
+  visit(s.shaft_freedoms, Field{"shaft_freedoms", ""});
+  visit(s.axles, Field{"axles", ""});
+  visit(s.tires, Field{"tires", ""});
+  visit(s.tire_masses, Field{"tire_masses", "kg"});
+  visit(s.loaded_radii, Field{"loaded_radii", "m"});
+  visit(s.trim, Field{"trim", ""});
 }
 
 /// Of all its bodies, kg. @throws Error(bad_input) naming the vehicle's file when it cannot be built

@@ -34,16 +34,16 @@ struct GearboxState {
   double hand_over = 0.0;                     // torque of the new gear at the end of the torque phase, N m
   int redundant = 0;                          // redundant constraints before the shift
 };
-void visit_fields(auto&& visit, FieldsOf<GearboxState> auto& s) {
-  visit(Field{"gear"}, s.gear);
-  visit(Field{"old_gear"}, s.old_gear);
-  visit(Field{"phase", ""}, s.phase);
-  visit(Field{"row"}, s.row);
-  visit(Field{"phase_start", "s"}, s.phase_start);
-  visit(Field{"phase_end", "s"}, s.phase_end);
-  visit(Field{"slip", "rad/s"}, s.slip);
-  visit(Field{"hand_over", "N m"}, s.hand_over);
-  visit(Field{"redundant"}, s.redundant);
+void visit_fields(FieldsOf<GearboxState> auto& s, auto&& visit) {
+  visit(s.gear, Field{"gear"});
+  visit(s.old_gear, Field{"old_gear"});
+  visit(s.phase, Field{"phase", ""});
+  visit(s.row, Field{"row"});
+  visit(s.phase_start, Field{"phase_start", "s"});
+  visit(s.phase_end, Field{"phase_end", "s"});
+  visit(s.slip, Field{"slip", "rad/s"});
+  visit(s.hand_over, Field{"hand_over", "N m"});
+  visit(s.redundant, Field{"redundant"});
 }
 
 class Gearbox {

@@ -24,6 +24,6 @@ struct ShiftLogic {
     return next;
   }
 };
-void visit_fields(auto&& visit, FieldsOf<ShiftLogic> auto& s) { visit(Field{"last_shift", "s"}, s.last_shift); }
+void visit_fields(FieldsOf<ShiftLogic> auto& s, auto&& visit) { visit(s.last_shift, Field{"last_shift", "s"}); }
 
 }  // namespace furrow::vehicle

@@ -34,11 +34,11 @@ struct DriverInputs {
   double steering = 0.0;               // −1 to 1, positive to the left
   int gear = gear_request::automatic;  // or reverse, neutral, 1, 2, …
 };
-void visit_fields(auto&& visit, FieldsOf<DriverInputs> auto& s) {
-  visit(Field{"throttle", "-", role::column}, s.throttle);
-  visit(Field{"brake", "-", role::column}, s.brake);
-  visit(Field{"steering", "-", role::column}, s.steering);
-  visit(Field{"gear_request", "-", role::column}, s.gear);
+void visit_fields(FieldsOf<DriverInputs> auto& s, auto&& visit) {
+  visit(s.throttle, Field{"throttle", "-", role::column});
+  visit(s.brake, Field{"brake", "-", role::column});
+  visit(s.steering, Field{"steering", "-", role::column});
+  visit(s.gear, Field{"gear_request", "-", role::column});
 }
 
 /// What a driver knows of its vehicle.
@@ -51,13 +51,13 @@ struct DriverCar {
   double drive_force = 0.0;    // largest at the wheels: the smaller of engine's and grip's, N
   double brake_force = 0.0;    // largest at the wheels, N
 };
-void visit_fields(auto&& visit, FieldsOf<DriverCar> auto& s) {
-  visit(Field{"wheelbase", "m"}, s.wheelbase);
-  visit(Field{"steering_lock", "rad"}, s.steering_lock);
-  visit(Field{"width", "m"}, s.width);
-  visit(Field{"mass", "kg"}, s.mass);
-  visit(Field{"drive_force", "N"}, s.drive_force);
-  visit(Field{"brake_force", "N"}, s.brake_force);
+void visit_fields(FieldsOf<DriverCar> auto& s, auto&& visit) {
+  visit(s.wheelbase, Field{"wheelbase", "m"});
+  visit(s.steering_lock, Field{"steering_lock", "rad"});
+  visit(s.width, Field{"width", "m"});
+  visit(s.mass, Field{"mass", "kg"});
+  visit(s.drive_force, Field{"drive_force", "N"});
+  visit(s.brake_force, Field{"brake_force", "N"});
 }
 
 /// For the table of results. What a driver has no loop for is zero.
@@ -70,14 +70,14 @@ struct DriverRecord {
   bool path_ended = false;     // its last point was passed
   double path_end_time = 0.0;  // when that was first seen, s
 };
-void visit_fields(auto&& visit, FieldsOf<DriverRecord> auto& s) {
-  visit(Field{"inputs", ""}, s.inputs);
-  visit(Field{"target_speed", "m/s", role::column}, s.target_speed);
-  visit(Field{"path_distance", "m", role::column}, s.path_distance);
-  visit(Field{"cross_track", "m", role::column}, s.cross_track);
-  visit(Field{"heading_error", "rad", role::column}, s.heading_error);
-  visit(Field{"path_ended", ""}, s.path_ended);
-  visit(Field{"path_end_time", "s"}, s.path_end_time);
+void visit_fields(FieldsOf<DriverRecord> auto& s, auto&& visit) {
+  visit(s.inputs, Field{"inputs", ""});
+  visit(s.target_speed, Field{"target_speed", "m/s", role::column});
+  visit(s.path_distance, Field{"path_distance", "m", role::column});
+  visit(s.cross_track, Field{"cross_track", "m", role::column});
+  visit(s.heading_error, Field{"heading_error", "rad", role::column});
+  visit(s.path_ended, Field{"path_ended", ""});
+  visit(s.path_end_time, Field{"path_end_time", "s"});
 }
 
 class Driver {

@@ -28,12 +28,12 @@ struct InputSpec {
   DriverPoints steering;         // −1 to 1, positive to the left
   DriverPoints gear;             // gear_request, or 1, 2, …
 };
-void visit_fields(auto&& visit, FieldsOf<InputSpec> auto& s) {
+void visit_fields(FieldsOf<InputSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("throttle", "-", role::by_hand, keys::kSeries, "0 to 1"), s.throttle);
-  visit(key("brake", "-", role::by_hand, keys::kSeries, "0 to 1"), s.brake);
-  visit(key("steering", "-", role::by_hand, keys::kSeries, "-1 to 1, positive to the left"), s.steering);
-  visit(key("gear", "-", role::by_hand, shaped(R"({"$ref": "#/definitions/gear"})"), ""), s.gear);
+  visit(s.throttle, key("throttle", "-", role::by_hand, keys::kSeries, "0 to 1"));
+  visit(s.brake, key("brake", "-", role::by_hand, keys::kSeries, "0 to 1"));
+  visit(s.steering, key("steering", "-", role::by_hand, keys::kSeries, "-1 to 1, positive to the left"));
+  visit(s.gear, key("gear", "-", role::by_hand, shaped(R"({"$ref": "#/definitions/gear"})"), ""));
 }
 
 /// speed_control.hpp
@@ -44,23 +44,18 @@ struct SpeedSpec {
   double hysteresis = 0.05;    // of throttle, between the pedals
   double stop_speed = 0.1;     // below which it stops and holds, when the target is 0, m/s; 0 for never
 };
-void visit_fields(auto&& visit, FieldsOf<SpeedSpec> auto& s) {
+void visit_fields(FieldsOf<SpeedSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("target", "m/s", role::by_hand, keys::kSeries.required(),
-            "0 to 100; a CSV file has the columns time_s and speed_m_s"),
-        s.target);
-  visit(key("proportional", "s/m", from(0).optional(),
-            "Throttle per m/s of error. Without it mass / largest drive force * 1 rad/s."),
-        s.proportional);
-  visit(key("integral", "1/m", from(0).optional(),
-            "Throttle per m of integrated error. Without it mass / largest drive force * 0.25 (rad/s)^2."),
-        s.integral);
-  visit(key("hysteresis", "-", from(0, 1),
-            "Of throttle, by which the demand must change its sign before the foot changes the pedal."),
-        s.hysteresis);
-  visit(key("stop_speed", "m/s", from(0, 10),
-            "Below this speed and with target 0 the brakes hold the vehicle. 0: never."),
-        s.stop_speed);
+  visit(s.target, key("target", "m/s", role::by_hand, keys::kSeries.required(),
+                      "0 to 100; a CSV file has the columns time_s and speed_m_s"));
+  visit(s.proportional, key("proportional", "s/m", from(0).optional(),
+                            "Throttle per m/s of error. Without it mass / largest drive force * 1 rad/s."));
+  visit(s.integral, key("integral", "1/m", from(0).optional(),
+                        "Throttle per m of integrated error. Without it mass / largest drive force * 0.25 (rad/s)^2."));
+  visit(s.hysteresis, key("hysteresis", "-", from(0, 1),
+                          "Of throttle, by which the demand must change its sign before the foot changes the pedal."));
+  visit(s.stop_speed, key("stop_speed", "m/s", from(0, 10),
+                          "Below this speed and with target 0 the brakes hold the vehicle. 0: never."));
 }
 
 // Shapes of paths (path_shapes.hpp), each from its own origin along its own x axis.
@@ -69,9 +64,9 @@ struct StraightPath {
   static constexpr const char* kName = "straight";
   double length = 0.0;  // m
 };
-void visit_fields(auto&& visit, FieldsOf<StraightPath> auto& s) {
+void visit_fields(FieldsOf<StraightPath> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("length", "m", above(0).to(keys::kMostLength), "Length of the path."), s.length);
+  visit(s.length, needed("length", "m", above(0).to(keys::kMostLength), "Length of the path."));
 }
 
 struct CirclePath {
@@ -81,12 +76,12 @@ struct CirclePath {
   double angle_deg = 360.0;
   std::string turn = "left";  // or "right"
 };
-void visit_fields(auto&& visit, FieldsOf<CirclePath> auto& s) {
+void visit_fields(FieldsOf<CirclePath> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("lead_in", "m", from(0, keys::kMostLength), "Straight before the circle."), s.lead_in);
-  visit(needed("radius", "m", above(0).to(keys::kMostLength), "Radius of the circle."), s.radius);
-  visit(key("angle_deg", "deg", above(0).to(36000), "Of the whole turn; more than 360 for several laps."), s.angle_deg);
-  visit(key("turn", "", words("left right"), "Side to which the path turns."), s.turn);
+  visit(s.lead_in, key("lead_in", "m", from(0, keys::kMostLength), "Straight before the circle."));
+  visit(s.radius, needed("radius", "m", above(0).to(keys::kMostLength), "Radius of the circle."));
+  visit(s.angle_deg, key("angle_deg", "deg", above(0).to(36000), "Of the whole turn; more than 360 for several laps."));
+  visit(s.turn, key("turn", "", words("left right"), "Side to which the path turns."));
 }
 
 struct LaneChangePath {
@@ -94,30 +89,29 @@ struct LaneChangePath {
   std::string track = "iso_3888_1";      // a name in kLaneChangeTracks (lane_change.hpp)
   double lead_in = 0.0, lead_out = 0.0;  // straight before and after the track, m
 };
-void visit_fields(auto&& visit, FieldsOf<LaneChangePath> auto& s) {
+void visit_fields(FieldsOf<LaneChangePath> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("track", "", words("iso_3888_1 iso_3888_2"),
-            "ISO 3888-1 (125 m) or ISO 3888-2 (61 m), centre lines of the lanes for the vehicle's width."),
-        s.track);
-  visit(key("lead_in", "m", from(0, keys::kMostLength), "Straight before the track."), s.lead_in);
-  visit(key("lead_out", "m", from(0, keys::kMostLength), "Straight after the track."), s.lead_out);
+  visit(s.track, key("track", "", words("iso_3888_1 iso_3888_2"),
+                     "ISO 3888-1 (125 m) or ISO 3888-2 (61 m), centre lines of the lanes for the vehicle's width."));
+  visit(s.lead_in, key("lead_in", "m", from(0, keys::kMostLength), "Straight before the track."));
+  visit(s.lead_out, key("lead_out", "m", from(0, keys::kMostLength), "Straight after the track."));
 }
 
 struct WaypointPath {
   static constexpr const char* kName = "waypoints";
   DriverPoints points;  // (x, y), m
 };
-void visit_fields(auto&& visit, FieldsOf<WaypointPath> auto& s) {
+void visit_fields(FieldsOf<WaypointPath> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("points", "m", role::by_hand,
+  visit(s.points,
+        key("points", "m", role::by_hand,
             shaped(R"({"anyOf": [{"type": "string"},
                                  {"type": "array", "minItems": 2,
                                   "items": {"type": "array", "items": {"type": "number"},
                                             "minItems": 2, "maxItems": 2}}]})")
                 .required(),
             "[x, y], or the name of a CSV file with the columns x_m and y_m. The curve goes through all of them and "
-            "turns by at most 120 degrees at each."),
-        s.points);
+            "turns by at most 120 degrees at each."));
 }
 
 // Laws that steer (path_follower.hpp).
@@ -127,13 +121,12 @@ struct PurePursuit {
   double lookahead_time = 0.6;       // s
   double lookahead_distance = -1.0;  // at least, m; below zero: one and a half wheelbases
 };
-void visit_fields(auto&& visit, FieldsOf<PurePursuit> auto& s) {
+void visit_fields(FieldsOf<PurePursuit> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("lookahead_time", "s", from(0, 100), "Times the speed it is the distance to look ahead."),
-        s.lookahead_time);
-  visit(key("lookahead_distance", "m", above(0).to(keys::kMostLength).optional(),
-            "At least. Without it one and a half wheelbases."),
-        s.lookahead_distance);
+  visit(s.lookahead_time,
+        key("lookahead_time", "s", from(0, 100), "Times the speed it is the distance to look ahead."));
+  visit(s.lookahead_distance, key("lookahead_distance", "m", above(0).to(keys::kMostLength).optional(),
+                                  "At least. Without it one and a half wheelbases."));
 }
 
 struct Stanley {
@@ -141,10 +134,10 @@ struct Stanley {
   double gain = 2.5;        // 1/s
   double soft_speed = 1.0;  // m/s
 };
-void visit_fields(auto&& visit, FieldsOf<Stanley> auto& s) {
+void visit_fields(FieldsOf<Stanley> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("gain", "1/s", above(0).to(1e3), "Gain of the cross-track error."), s.gain);
-  visit(key("soft_speed", "m/s", above(0).to(100), "Added to the speed."), s.soft_speed);
+  visit(s.gain, key("gain", "1/s", above(0).to(1e3), "Gain of the cross-track error."));
+  visit(s.soft_speed, key("soft_speed", "m/s", above(0).to(100), "Added to the speed."));
 }
 
 struct Preview {
@@ -156,26 +149,23 @@ struct Preview {
   double side_slip = 0.015;         // gradient S of the rear axle, rad s²/m
   double yaw_damping = 0.1;         // s
 };
-void visit_fields(auto&& visit, FieldsOf<Preview> auto& s) {
+void visit_fields(FieldsOf<Preview> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(
-      key("preview_time", "s", from(0, 100), "Times the speed it is how far ahead the path's curvature is looked at."),
-      s.preview_time);
-  visit(
-      key("response_time", "s", from(0, 100), "Times the speed it is the distance in which errors of the path decay."),
-      s.response_time);
-  visit(key("response_distance", "m", above(0).to(keys::kMostLength).optional(),
-            "That distance at least. Without it one and a half wheelbases."),
-        s.response_distance);
-  visit(key("understeer", "rad s²/m", from(-1, 1),
-            "Understeer gradient: how much more the wheels must turn per m/s^2 of lateral acceleration."),
-        s.understeer);
-  visit(key("side_slip", "rad s²/m", from(0, 1),
+  visit(s.preview_time, key("preview_time", "s", from(0, 100),
+                            "Times the speed it is how far ahead the path's curvature is looked at."));
+  visit(s.response_time, key("response_time", "s", from(0, 100),
+                             "Times the speed it is the distance in which errors of the path decay."));
+  visit(s.response_distance, key("response_distance", "m", above(0).to(keys::kMostLength).optional(),
+                                 "That distance at least. Without it one and a half wheelbases."));
+  visit(s.understeer,
+        key("understeer", "rad s²/m", from(-1, 1),
+            "Understeer gradient: how much more the wheels must turn per m/s^2 of lateral acceleration."));
+  visit(s.side_slip,
+        key("side_slip", "rad s²/m", from(0, 1),
             "Slip angle of the rear axle per m/s^2 of lateral acceleration: 1/(g C) for tires whose side force grows "
-            "by C times their load per rad; without it C = 7."),
-        s.side_slip);
-  visit(key("yaw_damping", "s", from(0, 10), "Wheel angle against the yaw rate that the path does not ask for."),
-        s.yaw_damping);
+            "by C times their load per rad; without it C = 7."));
+  visit(s.yaw_damping,
+        key("yaw_damping", "s", from(0, 10), "Wheel angle against the yaw rate that the path does not ask for."));
 }
 
 using SteeringLaw = std::variant<PurePursuit, Stanley, Preview>;
@@ -186,11 +176,10 @@ struct PathSteeringSpec {
   SteeringLaw law;
   double rate = 1.0;  // largest, of steering, 1/s
 };
-void visit_fields(auto&& visit, FieldsOf<PathSteeringSpec> auto& s) {
+void visit_fields(FieldsOf<PathSteeringSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("rate", "1/s", above(0).to(1e6),
-            "Largest change of steering: at 1 the wheel turns from the middle to its stop in 1 s."),
-        s.rate);
+  visit(s.rate, key("rate", "1/s", above(0).to(1e6),
+                    "Largest change of steering: at 1 the wheel turns from the middle to its stop in 1 s."));
 }
 
 using PathShape = std::variant<StraightPath, CirclePath, LaneChangePath, WaypointPath>;
@@ -201,12 +190,12 @@ struct PathSpec {
   double heading_deg = 0.0;  // of its x axis
   PathSteeringSpec steering;
 };
-void visit_fields(auto&& visit, FieldsOf<PathSpec> auto& s) {
+void visit_fields(FieldsOf<PathSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("x", "m", from(-keys::kMostLength, keys::kMostLength), "x of the path's origin."), s.x);
-  visit(key("y", "m", from(-keys::kMostLength, keys::kMostLength), "y of the path's origin."), s.y);
-  visit(key("heading_deg", "deg", from(-360, 360), "Of the path's x axis, about z."), s.heading_deg);
-  visit(key("steering", "", role::by_hand, ""), s.steering);
+  visit(s.x, key("x", "m", from(-keys::kMostLength, keys::kMostLength), "x of the path's origin."));
+  visit(s.y, key("y", "m", from(-keys::kMostLength, keys::kMostLength), "y of the path's origin."));
+  visit(s.heading_deg, key("heading_deg", "deg", from(-360, 360), "Of the path's x axis, about z."));
+  visit(s.steering, key("steering", "", role::by_hand, ""));
 }
 
 struct DriverSpec {

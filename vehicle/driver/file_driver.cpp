@@ -16,10 +16,10 @@ struct FileDriverState {
   PathState path;
   DriverRecord record;
 };
-void visit_fields(auto&& visit, FieldsOf<FileDriverState> auto& s) {
-  visit(Field{"speed", ""}, s.speed);
-  visit(Field{"path", ""}, s.path);
-  visit(Field{"record", ""}, s.record);
+void visit_fields(FieldsOf<FileDriverState> auto& s, auto&& visit) {
+  visit(s.speed, Field{"speed", ""});
+  visit(s.path, Field{"path", ""});
+  visit(s.record, Field{"record", ""});
 }
 
 /// The value of the last point that has been reached, or else of the first.
@@ -74,7 +74,7 @@ class FileDriver final : public Driver {
 }  // namespace
 
 std::unique_ptr<Driver> make_driver(const DriverSpec& spec, const DriverCar& car) {
-  visit_fields([](const Field& field, const double& value) { FURROW_ASSERT(value > 0.0, field.name, value); }, car);
+  visit_fields(car, [](const double& value, const Field& field) { FURROW_ASSERT(value > 0.0, field.name, value); });
   return std::make_unique<FileDriver>(spec, car);
 }
 

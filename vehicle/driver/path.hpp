@@ -24,9 +24,9 @@ struct PathPlace {
   int piece = 0;          // counted from 0
   double fraction = 0.0;  // of the piece, 0 to 1
 };
-void visit_fields(auto&& visit, FieldsOf<PathPlace> auto& s) {
-  visit(Field{"piece"}, s.piece);
-  visit(Field{"fraction"}, s.fraction);
+void visit_fields(FieldsOf<PathPlace> auto& s, auto&& visit) {
+  visit(s.piece, Field{"piece"});
+  visit(s.fraction, Field{"fraction"});
 }
 
 class Path {

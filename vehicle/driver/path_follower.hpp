@@ -41,11 +41,11 @@ struct PathState {
   double steering = 0.0;  // then
   PathPlace place;        // that the axle has reached; never goes back
 };
-void visit_fields(auto&& visit, FieldsOf<PathState> auto& s) {
-  visit(Field{"begun", ""}, s.begun);
-  visit(Field{"time", "s"}, s.time);
-  visit(Field{"steering"}, s.steering);
-  visit(Field{"place", ""}, s.place);
+void visit_fields(FieldsOf<PathState> auto& s, auto&& visit) {
+  visit(s.begun, Field{"begun", ""});
+  visit(s.time, Field{"time", "s"});
+  visit(s.steering, Field{"steering"});
+  visit(s.place, Field{"place", ""});
 }
 
 class PathFollower {

@@ -33,13 +33,13 @@ struct SpeedState {
   bool braking = false;   // the foot is on the brake
   bool stopped = false;   // and holds
 };
-void visit_fields(auto&& visit, FieldsOf<SpeedState> auto& s) {
-  visit(Field{"begun", ""}, s.begun);
-  visit(Field{"time", "s"}, s.time);
-  visit(Field{"error", "m/s"}, s.error);
-  visit(Field{"integral"}, s.integral);
-  visit(Field{"braking", ""}, s.braking);
-  visit(Field{"stopped", ""}, s.stopped);
+void visit_fields(FieldsOf<SpeedState> auto& s, auto&& visit) {
+  visit(s.begun, Field{"begun", ""});
+  visit(s.time, Field{"time", "s"});
+  visit(s.error, Field{"error", "m/s"});
+  visit(s.integral, Field{"integral"});
+  visit(s.braking, Field{"braking", ""});
+  visit(s.stopped, Field{"stopped", ""});
 }
 
 class SpeedControl {

@@ -25,15 +25,13 @@ json gears(const DriverPoints& points) {
 /// The numbers, texts and lists of a struct.
 template <HasFields T>
 void put_keys(const T& values, json& object) {
-  visit_fields(
-      [&](const Field& field, const auto& value) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::string>)
-          object[field.name] = value;
-        else if constexpr (std::is_same_v<Value, DriverPoints>)
-          object[field.name] = pairs(value);
-      },
-      values);
+  visit_fields(values, [&](const auto& value, const Field& field) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::string>)
+      object[field.name] = value;
+    else if constexpr (std::is_same_v<Value, DriverPoints>)
+      object[field.name] = pairs(value);
+  });
 }
 
 /// A number below zero stands for what the vehicle gives on its own; a file says so by leaving the key out.

@@ -16,11 +16,11 @@ struct BodyState {
   Vec3 velocity = Vec3::Zero();          // m/s, W
   Vec3 angular_velocity = Vec3::Zero();  // rad/s, W
 };
-void visit_fields(auto&& visit, FieldsOf<BodyState> auto& s) {
-  visit(Field{"position", "m"}, s.position);
-  visit(Field{"orientation"}, s.orientation);
-  visit(Field{"velocity", "m/s"}, s.velocity);
-  visit(Field{"angular_velocity", "rad/s"}, s.angular_velocity);
+void visit_fields(FieldsOf<BodyState> auto& s, auto&& visit) {
+  visit(s.position, Field{"position", "m"});
+  visit(s.orientation, Field{"orientation"});
+  visit(s.velocity, Field{"velocity", "m/s"});
+  visit(s.angular_velocity, Field{"angular_velocity", "rad/s"});
 }
 
 struct Body {
@@ -43,9 +43,9 @@ struct Body {
   }
 };
 /// What a saved state keeps of a body; the rest follows, or is the builder's.
-void visit_fields(auto&& visit, FieldsOf<Body> auto& s) {
-  visit(Field{"state", ""}, s.state);
-  visit(Field{"angular_momentum", "kg m²/s"}, s.angular_momentum);
+void visit_fields(FieldsOf<Body> auto& s, auto&& visit) {
+  visit(s.state, Field{"state", ""});
+  visit(s.angular_momentum, Field{"angular_momentum", "kg m²/s"});
 }
 
 }  // namespace furrow::vehicle

@@ -40,10 +40,10 @@ struct ElementEnergy {
   double elastic = 0.0;     // work that the elastic part has done since the start, J
   double dissipated = 0.0;  // what the other part has taken since the start, J
 };
-void visit_fields(auto&& visit, FieldsOf<ElementEnergy> auto& s) {
-  visit(Field{"stored", "J"}, s.stored);
-  visit(Field{"elastic", "J"}, s.elastic);
-  visit(Field{"dissipated", "J"}, s.dissipated);
+void visit_fields(FieldsOf<ElementEnergy> auto& s, auto&& visit) {
+  visit(s.stored, Field{"stored", "J"});
+  visit(s.elastic, Field{"elastic", "J"});
+  visit(s.dissipated, Field{"dissipated", "J"});
 }
 
 }  // namespace furrow::vehicle

@@ -43,9 +43,9 @@ struct Reaction {
   Vec3 force = Vec3::Zero();   // N
   Vec3 moment = Vec3::Zero();  // N m
 };
-void visit_fields(auto&& visit, FieldsOf<Reaction> auto& s) {
-  visit(Field{"force", "N"}, s.force);
-  visit(Field{"moment", "N m"}, s.moment);
+void visit_fields(FieldsOf<Reaction> auto& s, auto&& visit) {
+  visit(s.force, Field{"force", "N"});
+  visit(s.moment, Field{"moment", "N m"});
 }
 
 /// Fills the joint's frames from the poses of its bodies and the place, and returns its rows.

@@ -52,12 +52,12 @@ struct RateControl {
          upper = std::numeric_limits<double>::infinity();  // N m
   double torque = 0.0;                                     // N m
 };
-void visit_fields(auto&& visit, FieldsOf<RateControl> auto& s) {
-  visit(Field{"mode", ""}, s.mode);
-  visit(Field{"target", "rad/s"}, s.target);
-  visit(Field{"lower", "N m"}, s.lower);
-  visit(Field{"upper", "N m"}, s.upper);
-  visit(Field{"torque", "N m"}, s.torque);
+void visit_fields(FieldsOf<RateControl> auto& s, auto&& visit) {
+  visit(s.mode, Field{"mode", ""});
+  visit(s.target, Field{"target", "rad/s"});
+  visit(s.lower, Field{"lower", "N m"});
+  visit(s.upper, Field{"upper", "N m"});
+  visit(s.torque, Field{"torque", "N m"});
 }
 
 struct RateState {
@@ -65,10 +65,10 @@ struct RateState {
   double torque = 0.0;  // λ, mean over the last step, N m
   double work = 0.0;    // ∫ λ u dt since the start, J; negative: taken from the system
 };
-void visit_fields(auto&& visit, FieldsOf<RateState> auto& s) {
-  visit(Field{"side"}, s.side);
-  visit(Field{"torque", "N m"}, s.torque);
-  visit(Field{"work", "J"}, s.work);
+void visit_fields(FieldsOf<RateState> auto& s, auto&& visit) {
+  visit(s.side, Field{"side"});
+  visit(s.torque, Field{"torque", "N m"});
+  visit(s.work, Field{"work", "J"});
 }
 
 /// λ of several rows from their speeds u (rad/s) at a time (s), each with its damping −∂λ/∂u ≥ 0, N m s.

@@ -15,9 +15,9 @@ struct ShaftState {
   double angle = 0.0;  // ∫ Ω dt, rad
   double speed = 0.0;  // Ω, rad/s
 };
-void visit_fields(auto&& visit, FieldsOf<ShaftState> auto& s) {
-  visit(Field{"angle", "rad"}, s.angle);
-  visit(Field{"speed", "rad/s"}, s.speed);
+void visit_fields(FieldsOf<ShaftState> auto& s, auto&& visit) {
+  visit(s.angle, Field{"angle", "rad"});
+  visit(s.speed, Field{"speed", "rad/s"});
 }
 
 struct Shaft {

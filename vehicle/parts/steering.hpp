@@ -17,11 +17,11 @@ struct SteeringState {
   double since = 0.0;                            // s; below, at that time
   double value = 0.0, rate = 0.0, target = 0.0;  // s, s′ (1/s), s*
 };
-void visit_fields(auto&& visit, FieldsOf<SteeringState> auto& s) {
-  visit(Field{"since", "s"}, s.since);
-  visit(Field{"value"}, s.value);
-  visit(Field{"rate", "1/s"}, s.rate);
-  visit(Field{"target"}, s.target);
+void visit_fields(FieldsOf<SteeringState> auto& s, auto&& visit) {
+  visit(s.since, Field{"since", "s"});
+  visit(s.value, Field{"value"});
+  visit(s.rate, Field{"rate", "1/s"});
+  visit(s.target, Field{"target"});
 }
 
 class Steering {

@@ -23,16 +23,16 @@ struct VehicleEnergy {
   double stored() const { return kinetic + gravity + springs; }
   double lost() const { return converter_heat + clutch_heat + shift_heat + brake_heat + shock_heat; }
 };
-void visit_fields(auto&& visit, FieldsOf<VehicleEnergy> auto& s) {
-  visit(Field{"kinetic", "J"}, s.kinetic);
-  visit(Field{"gravity", "J"}, s.gravity);
-  visit(Field{"springs", "J"}, s.springs);
-  visit(Field{"drive_work", "J"}, s.drive_work);
-  visit(Field{"converter_heat", "J"}, s.converter_heat);
-  visit(Field{"clutch_heat", "J"}, s.clutch_heat);
-  visit(Field{"shift_heat", "J"}, s.shift_heat);
-  visit(Field{"brake_heat", "J"}, s.brake_heat);
-  visit(Field{"shock_heat", "J"}, s.shock_heat);
+void visit_fields(FieldsOf<VehicleEnergy> auto& s, auto&& visit) {
+  visit(s.kinetic, Field{"kinetic", "J"});
+  visit(s.gravity, Field{"gravity", "J"});
+  visit(s.springs, Field{"springs", "J"});
+  visit(s.drive_work, Field{"drive_work", "J"});
+  visit(s.converter_heat, Field{"converter_heat", "J"});
+  visit(s.clutch_heat, Field{"clutch_heat", "J"});
+  visit(s.shift_heat, Field{"shift_heat", "J"});
+  visit(s.brake_heat, Field{"brake_heat", "J"});
+  visit(s.shock_heat, Field{"shock_heat", "J"});
 }
 
 VehicleEnergy vehicle_energy(const Vehicle& vehicle);

@@ -16,12 +16,12 @@ struct ShaftSpec {
   Vec3 axis = Vec3::UnitX();        // a direction in the vehicle's frame
   std::string carrier = "chassis";  // or the name of an axle with a housing
 };
-void visit_fields(auto&& visit, FieldsOf<ShaftSpec> auto& s) {
+void visit_fields(FieldsOf<ShaftSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("name", "", not_empty(), "Name of the shaft, by which other parts refer to it."), s.name);
-  visit(needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia."), s.inertia);
-  visit(needed("axis", "-", keys::kPoint, "Direction in the vehicle's frame."), s.axis);
-  visit(key("carrier", "", "Body in whose bearings the shaft turns: chassis, or the name of a rigid axle."), s.carrier);
+  visit(s.name, needed("name", "", not_empty(), "Name of the shaft, by which other parts refer to it."));
+  visit(s.inertia, needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia."));
+  visit(s.axis, needed("axis", "-", keys::kPoint, "Direction in the vehicle's frame."));
+  visit(s.carrier, key("carrier", "", "Body in whose bearings the shaft turns: chassis, or the name of a rigid axle."));
 }
 
 struct EngineSpec {
@@ -32,17 +32,15 @@ struct EngineSpec {
   double idle_rpm = 0.0;         // below which the governor opens the throttle
   double idle_band_rpm = 100.0;  // over which it opens fully
 };
-void visit_fields(auto&& visit, FieldsOf<EngineSpec> auto& s) {
+void visit_fields(FieldsOf<EngineSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("shaft", "", not_empty(), "Shaft that is the engine's crankshaft."), s.shaft);
-  visit(needed("torque", "N m", keys::kTable, "Torque at full throttle: pairs of rpm and N m."), s.torque);
-  visit(needed("losses", "N m", keys::kTable, "Pairs of rpm and N m, against the speed."), s.losses);
-  visit(needed("idle_rpm", "rpm", from(0, 1e6),
-               "Speed below which the governor opens the throttle; at most the last speed of torque."),
-        s.idle_rpm);
-  visit(key("idle_band_rpm", "rpm", above(0).to(1e6),
-            "Drop of the speed below idle_rpm over which the governor opens the throttle fully."),
-        s.idle_band_rpm);
+  visit(s.shaft, needed("shaft", "", not_empty(), "Shaft that is the engine's crankshaft."));
+  visit(s.torque, needed("torque", "N m", keys::kTable, "Torque at full throttle: pairs of rpm and N m."));
+  visit(s.losses, needed("losses", "N m", keys::kTable, "Pairs of rpm and N m, against the speed."));
+  visit(s.idle_rpm, needed("idle_rpm", "rpm", from(0, 1e6),
+                           "Speed below which the governor opens the throttle; at most the last speed of torque."));
+  visit(s.idle_band_rpm, key("idle_band_rpm", "rpm", above(0).to(1e6),
+                             "Drop of the speed below idle_rpm over which the governor opens the throttle fully."));
 }
 
 struct ConverterSpec {
@@ -51,13 +49,13 @@ struct ConverterSpec {
   Points capacity;      // (rad/s)/√(N m) against the speed ratio, 0 to 1
   Points torque_ratio;  // against the speed ratio
 };
-void visit_fields(auto&& visit, FieldsOf<ConverterSpec> auto& s) {
+void visit_fields(FieldsOf<ConverterSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("in", "", not_empty(), "Shaft of the impeller."), s.in);
-  visit(needed("out", "", not_empty(), "Shaft of the turbine."), s.out);
-  visit(needed("capacity", "", keys::kTable, "Pairs of speed ratio, 0 to 1, and capacity, (rad/s)/√(N m)."),
-        s.capacity);
-  visit(needed("torque_ratio", "-", keys::kTable, "Pairs of speed ratio, 0 to 1, and torque ratio."), s.torque_ratio);
+  visit(s.in, needed("in", "", not_empty(), "Shaft of the impeller."));
+  visit(s.out, needed("out", "", not_empty(), "Shaft of the turbine."));
+  visit(s.capacity,
+        needed("capacity", "", keys::kTable, "Pairs of speed ratio, 0 to 1, and capacity, (rad/s)/√(N m)."));
+  visit(s.torque_ratio, needed("torque_ratio", "-", keys::kTable, "Pairs of speed ratio, 0 to 1, and torque ratio."));
 }
 
 /// A friction clutch that closes with the speed of its input, as a centrifugal one does.
@@ -67,13 +65,13 @@ struct ClutchSpec {
   double torque = 0.0;                      // closed, N m
   double open_rpm = 0.0, closed_rpm = 0.0;  // of the input
 };
-void visit_fields(auto&& visit, FieldsOf<ClutchSpec> auto& s) {
+void visit_fields(FieldsOf<ClutchSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(keys::kIn, s.in);
-  visit(keys::kOut, s.out);
-  visit(needed("torque", "N m", above(0).to(1e8), "Torque that the closed clutch can carry."), s.torque);
-  visit(needed("open_rpm", "rpm", "Speed at which the clutch begins to close."), s.open_rpm);
-  visit(needed("closed_rpm", "rpm", "Speed at which the clutch is closed."), s.closed_rpm);
+  visit(s.in, keys::kIn);
+  visit(s.out, keys::kOut);
+  visit(s.torque, needed("torque", "N m", above(0).to(1e8), "Torque that the closed clutch can carry."));
+  visit(s.open_rpm, needed("open_rpm", "rpm", "Speed at which the clutch begins to close."));
+  visit(s.closed_rpm, needed("closed_rpm", "rpm", "Speed at which the clutch is closed."));
 }
 
 struct GearboxSpec {
@@ -85,20 +83,20 @@ struct GearboxSpec {
   double up_rpm = 0.0, down_rpm = 0.0;  // of the input
   double latency = 1.0;                 // between the starts of two shifts, s
 };
-void visit_fields(auto&& visit, FieldsOf<GearboxSpec> auto& s) {
+void visit_fields(FieldsOf<GearboxSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(keys::kIn, s.in);
-  visit(keys::kOut, s.out);
-  visit(needed("ratios", "-",
+  visit(s.in, keys::kIn);
+  visit(s.out, keys::kOut);
+  visit(s.ratios,
+        needed("ratios", "-",
                shaped(R"({"type": "array", "minItems": 1, "items": {"type": "number", "exclusiveMinimum": 0}})"),
-               "Ratio of each gear from the lowest, output over input."),
-        s.ratios);
-  visit(key("reverse", "-", below(0), "Ratio of the reverse gear, output over input; negative."), s.reverse);
-  visit(needed("shift_time", "s", from(0), "Time of a change of gear; 0: the speeds meet in an impact."), s.shift_time);
-  visit(needed("up_rpm", "rpm", above(0), "Speed of the input above which the gearbox shifts up."), s.up_rpm);
-  visit(needed("down_rpm", "rpm", above(0).to(1e6), "Speed of the input below which the gearbox shifts down."),
-        s.down_rpm);
-  visit(key("latency", "s", above(0), "Least time between the starts of two shifts."), s.latency);
+               "Ratio of each gear from the lowest, output over input."));
+  visit(s.reverse, key("reverse", "-", below(0), "Ratio of the reverse gear, output over input; negative."));
+  visit(s.shift_time, needed("shift_time", "s", from(0), "Time of a change of gear; 0: the speeds meet in an impact."));
+  visit(s.up_rpm, needed("up_rpm", "rpm", above(0), "Speed of the input above which the gearbox shifts up."));
+  visit(s.down_rpm,
+        needed("down_rpm", "rpm", above(0).to(1e6), "Speed of the input below which the gearbox shifts down."));
+  visit(s.latency, key("latency", "s", above(0), "Least time between the starts of two shifts."));
 }
 
 /// Between two shafts of one carrier: a gear. Between two carriers: a shaft with joints, whose ratio is 1.
@@ -109,12 +107,12 @@ struct GearSpec {
   std::string in, out;  // shafts
   double ratio = 1.0;   // output over input
 };
-void visit_fields(auto&& visit, FieldsOf<GearSpec> auto& s) {
+void visit_fields(FieldsOf<GearSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("name", "", not_empty(), "Name of the joint in messages."), s.name);
-  visit(keys::kIn, s.in);
-  visit(keys::kOut, s.out);
-  visit(needed("ratio", "-", "Ratio, output over input, not 0; 1 between two carriers."), s.ratio);
+  visit(s.name, needed("name", "", not_empty(), "Name of the joint in messages."));
+  visit(s.in, keys::kIn);
+  visit(s.out, keys::kOut);
+  visit(s.ratio, needed("ratio", "-", "Ratio, output over input, not 0; 1 between two carriers."));
 }
 
 struct DifferentialSpec {
@@ -125,17 +123,17 @@ struct DifferentialSpec {
   double share = 0.5;                 // of the torque that goes to the first output
   std::optional<double> lock_torque;  // of the clutch between the outputs, when locked, N m
 };
-void visit_fields(auto&& visit, FieldsOf<DifferentialSpec> auto& s) {
+void visit_fields(FieldsOf<DifferentialSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("name", "", not_empty(), "Name of the differential in messages."), s.name);
-  visit(needed("box", "", not_empty(), "Shaft that drives the differential's housing."), s.box);
-  visit(needed("outputs", "", shaped(R"({"type": "array", "minItems": 2, "maxItems": 2, "items": {"type": "string"}})"),
-               "The two output shafts."),
-        s.outputs);
-  visit(key("share", "-", above(0).below(1), "Share of the torque that goes to the first output."), s.share);
-  visit(key("lock_torque", "N m", above(0).to(1e8),
-            "Torque of the clutch between the outputs when the driver locks it. Without this key there is no lock."),
-        s.lock_torque);
+  visit(s.name, needed("name", "", not_empty(), "Name of the differential in messages."));
+  visit(s.box, needed("box", "", not_empty(), "Shaft that drives the differential's housing."));
+  visit(s.outputs,
+        needed("outputs", "", shaped(R"({"type": "array", "minItems": 2, "maxItems": 2, "items": {"type": "string"}})"),
+               "The two output shafts."));
+  visit(s.share, key("share", "-", above(0).below(1), "Share of the torque that goes to the first output."));
+  visit(s.lock_torque,
+        key("lock_torque", "N m", above(0).to(1e8),
+            "Torque of the clutch between the outputs when the driver locks it. Without this key there is no lock."));
 }
 
 /// A shaft that turns with a wheel.
@@ -144,11 +142,11 @@ struct WheelShaftSpec {
   std::string shaft;
   std::string axle, side;  // side: left or right
 };
-void visit_fields(auto&& visit, FieldsOf<WheelShaftSpec> auto& s) {
+void visit_fields(FieldsOf<WheelShaftSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("shaft", "", not_empty(), "Shaft that turns with the wheel."), s.shaft);
-  visit(needed("axle", "", not_empty(), "Name of the wheel's axle."), s.axle);
-  visit(needed("side", "", words("left right"), "Side of the axle."), s.side);
+  visit(s.shaft, needed("shaft", "", not_empty(), "Shaft that turns with the wheel."));
+  visit(s.axle, needed("axle", "", not_empty(), "Name of the wheel's axle."));
+  visit(s.side, needed("side", "", words("left right"), "Side of the axle."));
 }
 
 /// An electric motor at each wheel of an axle: torque = stall_torque (command − speed/no_load_speed).
@@ -162,13 +160,13 @@ struct MotorSpec {
   double stall_torque = 0.0;  // of the motor, N m
   double no_load_rpm = 0.0;   // of the motor
 };
-void visit_fields(auto&& visit, FieldsOf<MotorSpec> auto& s) {
+void visit_fields(FieldsOf<MotorSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("axle", "", not_empty(), "Name of the axle."), s.axle);
-  visit(needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia of the rotor."), s.inertia);
-  visit(needed("gear_ratio", "-", "Speed of the motor over that of the wheel, not 0."), s.gear_ratio);
-  visit(needed("stall_torque", "N m", above(0).to(1e8), "Torque of the motor at rest."), s.stall_torque);
-  visit(needed("no_load_rpm", "rpm", above(0).to(1e6), "Speed of the motor without load."), s.no_load_rpm);
+  visit(s.axle, needed("axle", "", not_empty(), "Name of the axle."));
+  visit(s.inertia, needed("inertia", "kg m²", above(0).to(1e6), "Moment of inertia of the rotor."));
+  visit(s.gear_ratio, needed("gear_ratio", "-", "Speed of the motor over that of the wheel, not 0."));
+  visit(s.stall_torque, needed("stall_torque", "N m", above(0).to(1e8), "Torque of the motor at rest."));
+  visit(s.no_load_rpm, needed("no_load_rpm", "rpm", above(0).to(1e6), "Speed of the motor without load."));
 }
 
 struct DrivelineSpec {
@@ -191,20 +189,20 @@ struct DrivelineSpec {
     return -1;
   }
 };
-void visit_fields(auto&& visit, FieldsOf<DrivelineSpec> auto& s) {
+void visit_fields(FieldsOf<DrivelineSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(key("shafts", "", "All shafts, but the rotors of motors."), s.shafts);
-  visit(key("engine"), s.engine);
-  visit(key("converter"), s.converter);
-  visit(key("clutch"), s.clutch);
-  visit(key("gearbox"), s.gearbox);
-  visit(key("gears", "", "Gears, and shafts with joints."), s.gears);
-  visit(key("differentials", "", "Open differentials."), s.differentials);
-  visit(key("wheels", "", "Shafts that turn with wheels."), s.wheels);
-  visit(key("motors", "", "Motors at wheels."), s.motors);
-  visit(key("skid_steer", "-", from(0, 1),
-            "Share of the motors' command that full steering takes from the inner side and gives to the outer one."),
-        s.skid_steer);
+  visit(s.shafts, key("shafts", "", "All shafts, but the rotors of motors."));
+  visit(s.engine, key("engine"));
+  visit(s.converter, key("converter"));
+  visit(s.clutch, key("clutch"));
+  visit(s.gearbox, key("gearbox"));
+  visit(s.gears, key("gears", "", "Gears, and shafts with joints."));
+  visit(s.differentials, key("differentials", "", "Open differentials."));
+  visit(s.wheels, key("wheels", "", "Shafts that turn with wheels."));
+  visit(s.motors, key("motors", "", "Motors at wheels."));
+  visit(s.skid_steer,
+        key("skid_steer", "-", from(0, 1),
+            "Share of the motors' command that full steering takes from the inner side and gives to the outer one."));
 }
 
 }  // namespace furrow::vehicle

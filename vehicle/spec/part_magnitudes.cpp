@@ -30,7 +30,7 @@ template <class T, class Call>
 void each_part(const std::string& key, const T& part, const Call& call) {
   if constexpr (HasFields<T>) {
     call(key, part);
-    visit_fields([&](const Field& field, const auto& value) { each_part(key + "." + field.name, value, call); }, part);
+    visit_fields(part, [&](const auto& value, const Field& field) { each_part(key + "." + field.name, value, call); });
   } else if constexpr (requires { part.has_value(); }) {
     if (part) each_part(key, *part, call);
   } else if constexpr (requires { part.valueless_by_exception(); }) {

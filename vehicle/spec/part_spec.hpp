@@ -24,10 +24,10 @@ struct BodySpec {
   Vec3 center_of_mass = Vec3::Zero();  // m
   Mat3 inertia = Mat3::Zero();         // about it, kg m²; in a file [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]
 };
-void visit_fields(auto&& visit, FieldsOf<BodySpec> auto& s) {
-  visit(keys::kMass, s.mass);
-  visit(keys::kCenterOfMass, s.center_of_mass);
-  visit(keys::kInertia, s.inertia);
+void visit_fields(FieldsOf<BodySpec> auto& s, auto&& visit) {
+  visit(s.mass, keys::kMass);
+  visit(s.center_of_mass, keys::kCenterOfMass);
+  visit(s.inertia, keys::kInertia);
 }
 
 /// What turns with the wheel, without the wheel; its centre of mass is the wheel's centre.
@@ -39,14 +39,14 @@ struct SpindleSpec {
   double camber_deg = 0.0;      // as drawn; positive: the wheel's top leans outward
   double toe_deg = 0.0;         // as drawn; positive: toe-in
 };
-void visit_fields(auto&& visit, FieldsOf<SpindleSpec> auto& s) {
+void visit_fields(FieldsOf<SpindleSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("center", "m", keys::kPoint, "Centre of the wheel, from the axle's origin."), s.center);
-  visit(keys::kMass, s.mass);
-  visit(keys::kInertia, s.inertia);
-  visit(key("camber_deg", "deg", above(-45).below(45), "Camber of the drawn wheel; positive: the top leans outward."),
-        s.camber_deg);
-  visit(key("toe_deg", "deg", above(-45).below(45), "Toe of the drawn wheel; positive: toe-in."), s.toe_deg);
+  visit(s.center, needed("center", "m", keys::kPoint, "Centre of the wheel, from the axle's origin."));
+  visit(s.mass, keys::kMass);
+  visit(s.inertia, keys::kInertia);
+  visit(s.camber_deg,
+        key("camber_deg", "deg", above(-45).below(45), "Camber of the drawn wheel; positive: the top leans outward."));
+  visit(s.toe_deg, key("toe_deg", "deg", above(-45).below(45), "Toe of the drawn wheel; positive: toe-in."));
 }
 
 /// Hinged to the chassis, with a ball at the upright. Its inertia is in axes of its own: x along the hinge from back to
@@ -61,15 +61,15 @@ struct ArmSpec {
   Vec3 chassis_front = Vec3::Zero(), chassis_back = Vec3::Zero();  // of the hinge, m
   Vec3 upright = Vec3::Zero();                                     // ball, m
 };
-void visit_fields(auto&& visit, FieldsOf<ArmSpec> auto& s) {
-  visit(keys::kMass, s.mass);
-  visit(keys::kCenterOfMass, s.center_of_mass);
-  visit(keys::kInertia, s.inertia);
-  visit(needed("chassis_front", "m", keys::kPoint, "Front point of the hinge on the chassis, from the axle's origin."),
-        s.chassis_front);
-  visit(needed("chassis_back", "m", keys::kPoint, "Rear point of the hinge on the chassis, from the axle's origin."),
-        s.chassis_back);
-  visit(needed("upright", "m", keys::kPoint, "Ball joint at the upright, from the axle's origin."), s.upright);
+void visit_fields(FieldsOf<ArmSpec> auto& s, auto&& visit) {
+  visit(s.mass, keys::kMass);
+  visit(s.center_of_mass, keys::kCenterOfMass);
+  visit(s.inertia, keys::kInertia);
+  visit(s.chassis_front,
+        needed("chassis_front", "m", keys::kPoint, "Front point of the hinge on the chassis, from the axle's origin."));
+  visit(s.chassis_back,
+        needed("chassis_back", "m", keys::kPoint, "Rear point of the hinge on the chassis, from the axle's origin."));
+  visit(s.upright, needed("upright", "m", keys::kPoint, "Ball joint at the upright, from the axle's origin."));
 }
 
 /// A massless rod; its inner end is on the steering link or the rack, of an axle that is not steered on the chassis.
@@ -79,9 +79,9 @@ struct TieRodSpec {
                                       "chassis if the axle is not steered."};
   Vec3 inner = Vec3::Zero(), outer = Vec3::Zero();  // m
 };
-void visit_fields(auto&& visit, FieldsOf<TieRodSpec> auto& s) {
-  visit(needed("inner", "m", keys::kPoint, "Inner end, from the axle's origin."), s.inner);
-  visit(needed("outer", "m", keys::kPoint, "Outer end on the upright, from the axle's origin."), s.outer);
+void visit_fields(FieldsOf<TieRodSpec> auto& s, auto&& visit) {
+  visit(s.inner, needed("inner", "m", keys::kPoint, "Inner end, from the axle's origin."));
+  visit(s.outer, needed("outer", "m", keys::kPoint, "Outer end on the upright, from the axle's origin."));
 }
 
 /// Acts beyond `shortest` and `longest`, added to the spring.
@@ -91,13 +91,12 @@ struct StopSpec {
   double shortest = 0.0, longest = 0.0;  // m
   Points force;                          // N against m beyond the mark
 };
-void visit_fields(auto&& visit, FieldsOf<StopSpec> auto& s) {
+void visit_fields(FieldsOf<StopSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("shortest", "m", above(0), "Length below which it acts."), s.shortest);
-  visit(needed("longest", "m", above(0), "Length above which it acts."), s.longest);
-  visit(needed("force", "N", keys::kTable,
-               "Pairs of length beyond the mark, m, and force, N; begins with [0, 0] and rises."),
-        s.force);
+  visit(s.shortest, needed("shortest", "m", above(0), "Length below which it acts."));
+  visit(s.longest, needed("longest", "m", above(0), "Length above which it acts."));
+  visit(s.force, needed("force", "N", keys::kTable,
+                        "Pairs of length beyond the mark, m, and force, N; begins with [0, 0] and rises."));
 }
 
 /// A coil spring: either a rate or a table of force against deflection, which is an odd function.
@@ -111,17 +110,17 @@ struct SpringSpec {
   Points force;                                     // N against m
   std::optional<StopSpec> stop;
 };
-void visit_fields(auto&& visit, FieldsOf<SpringSpec> auto& s) {
+void visit_fields(FieldsOf<SpringSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(keys::kChassisEnd, s.chassis);
-  visit(keys::kEnd, s.end);
-  visit(keys::kOn, s.on);
-  visit(needed("free_length", "m", above(0), "Length without force."), s.free_length);
-  visit(key("rate", "N/m", above(0).to(1e10), "Stiffness."), s.rate);
-  visit(key("force", "N", keys::kTable,
-            "Pairs of deflection, m, and force, N, straight between them; begins with [0, 0] and rises; odd."),
-        s.force);
-  visit(key("stop"), s.stop);
+  visit(s.chassis, keys::kChassisEnd);
+  visit(s.end, keys::kEnd);
+  visit(s.on, keys::kOn);
+  visit(s.free_length, needed("free_length", "m", above(0), "Length without force."));
+  visit(s.rate, key("rate", "N/m", above(0).to(1e10), "Stiffness."));
+  visit(s.force,
+        key("force", "N", keys::kTable,
+            "Pairs of deflection, m, and force, N, straight between them; begins with [0, 0] and rises; odd."));
+  visit(s.stop, key("stop"));
 }
 
 /// Coefficients of a shock absorber outside two lengths; they change over `blend_length` about each.
@@ -131,14 +130,14 @@ struct OuterShockSpec {
   double blend_length = 0.0;                // m
   double compression = 0.0, rebound = 0.0;  // N s/m
 };
-void visit_fields(auto&& visit, FieldsOf<OuterShockSpec> auto& s) {
+void visit_fields(FieldsOf<OuterShockSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("shortest", "m", above(0), "Length below which these coefficients hold."), s.shortest);
-  visit(needed("longest", "m", above(0), "Length above which these coefficients hold."), s.longest);
-  visit(needed("blend_length", "m", above(0), "Length over which the coefficients change at each mark."),
-        s.blend_length);
-  visit(keys::kCompression, s.compression);
-  visit(keys::kRebound, s.rebound);
+  visit(s.shortest, needed("shortest", "m", above(0), "Length below which these coefficients hold."));
+  visit(s.longest, needed("longest", "m", above(0), "Length above which these coefficients hold."));
+  visit(s.blend_length,
+        needed("blend_length", "m", above(0), "Length over which the coefficients change at each mark."));
+  visit(s.compression, keys::kCompression);
+  visit(s.rebound, keys::kRebound);
 }
 
 struct ShockSpec {
@@ -148,13 +147,13 @@ struct ShockSpec {
   double compression = 0.0, rebound = 0.0;          // N s/m
   std::optional<OuterShockSpec> outer;
 };
-void visit_fields(auto&& visit, FieldsOf<ShockSpec> auto& s) {
-  visit(keys::kChassisEnd, s.chassis);
-  visit(keys::kEnd, s.end);
-  visit(keys::kOn, s.on);
-  visit(keys::kCompression, s.compression);
-  visit(keys::kRebound, s.rebound);
-  visit(key("outer"), s.outer);
+void visit_fields(FieldsOf<ShockSpec> auto& s, auto&& visit) {
+  visit(s.chassis, keys::kChassisEnd);
+  visit(s.end, keys::kEnd);
+  visit(s.on, keys::kOn);
+  visit(s.compression, keys::kCompression);
+  visit(s.rebound, keys::kRebound);
+  visit(s.outer, key("outer"));
 }
 
 /// An axle under construction: vehicle/parts/suspension_kinds.hpp.

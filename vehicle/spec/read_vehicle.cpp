@@ -32,10 +32,10 @@ struct RightKeys {
   std::optional<WheelSpec> wheel;
   std::optional<BrakeSpec> brake;
 };
-void visit_fields(auto&& visit, FieldsOf<RightKeys> auto& s) {
-  visit(key("suspension", "", "Suspension of the right side."), s.suspension);
-  visit(key("wheel"), s.wheel);
-  visit(key("brake"), s.brake);
+void visit_fields(FieldsOf<RightKeys> auto& s, auto&& visit) {
+  visit(s.suspension, key("suspension", "", "Suspension of the right side."));
+  visit(s.wheel, key("wheel"));
+  visit(s.brake, key("brake"));
 }
 
 struct AxleKeys {
@@ -49,16 +49,15 @@ struct AxleKeys {
   std::optional<SteeringSpec> steering;
   std::optional<RightKeys> right;
 };
-void visit_fields(auto&& visit, FieldsOf<AxleKeys> auto& s) {
-  visit(needed("name", "", allowed::not_empty(), "Name of the axle, in messages and for the driveline."), s.name);
-  visit(
-      needed("origin", "m", keys::kPoint, "Origin from which the axle's points are measured, in the vehicle's frame."),
-      s.origin);
-  visit(needed("suspension", "", "Suspension of the left side."), s.suspension);
-  visit(needed("wheel"), s.wheel);
-  visit(key("brake"), s.brake);
-  visit(key("steering", "", "Steering of the axle. Without this key it is not steered."), s.steering);
-  visit(key("right"), s.right);
+void visit_fields(FieldsOf<AxleKeys> auto& s, auto&& visit) {
+  visit(s.name, needed("name", "", allowed::not_empty(), "Name of the axle, in messages and for the driveline."));
+  visit(s.origin, needed("origin", "m", keys::kPoint,
+                         "Origin from which the axle's points are measured, in the vehicle's frame."));
+  visit(s.suspension, needed("suspension", "", "Suspension of the left side."));
+  visit(s.wheel, needed("wheel"));
+  visit(s.brake, key("brake"));
+  visit(s.steering, key("steering", "", "Steering of the axle. Without this key it is not steered."));
+  visit(s.right, key("right"));
 }
 
 void check_spec(const RightKeys&, const JsonReader&) {}

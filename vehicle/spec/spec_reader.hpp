@@ -73,13 +73,11 @@ void take(JsonReader& reader, const Key& key, std::optional<T>& value) {
 /// Takes the keys of T, except those with the role role::by_hand; the reader may have others besides.
 template <HasFields T>
 void take_fields(JsonReader& reader, T& target) {
-  visit_fields(
-      [&](const Key& key, auto& value) {
-        reader.skip(key.name);
-        if (key.is(role::by_hand)) return;
-        if (key.missing == Missing::mistake || reader.given(key.name)) detail::take(reader, key, value);
-      },
-      target);
+  visit_fields(target, [&](auto& value, const Key& key) {
+    reader.skip(key.name);
+    if (key.is(role::by_hand)) return;
+    if (key.missing == Missing::mistake || reader.given(key.name)) detail::take(reader, key, value);
+  });
 }
 
 /// @throws Error(bad_input) naming file and key

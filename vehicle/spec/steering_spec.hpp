@@ -24,21 +24,20 @@ struct PitmanArmSpec {
   double left_angle_deg = 0.0;                          // of the arm about z, with the wheel fully to the left
   double response_time = 0.05;                          // with which it follows the steering wheel, s
 };
-void visit_fields(auto&& visit, FieldsOf<PitmanArmSpec> auto& s) {
+void visit_fields(FieldsOf<PitmanArmSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("origin", "m", keys::kPoint, "Origin of the linkage in the vehicle's frame."), s.origin);
-  visit(needed("pitch_deg", "deg", from(-90, 90), "Turn of the linkage's axes about y; positive: x points downward."),
-        s.pitch_deg);
-  visit(needed("arm"), s.arm);
-  visit(needed("link"), s.link);
-  visit(needed("pivot", "m", keys::kPoint, "Pivot of the pitman arm on the chassis."), s.pivot);
-  visit(needed("arm_end", "m", keys::kPoint, "Joint of the pitman arm with the link."), s.arm_end);
-  visit(needed("idler", "m", keys::kPoint, "Pivot of the idler arm on the chassis."), s.idler);
-  visit(needed("idler_end", "m", keys::kPoint, "Joint of the idler arm with the link."), s.idler_end);
-  visit(needed("left_angle_deg", "deg", above(-90).below(90),
-               "Angle of the pitman arm about z with the wheel fully to the left; not 0."),
-        s.left_angle_deg);
-  visit(keys::kResponseTime, s.response_time);
+  visit(s.origin, needed("origin", "m", keys::kPoint, "Origin of the linkage in the vehicle's frame."));
+  visit(s.pitch_deg,
+        needed("pitch_deg", "deg", from(-90, 90), "Turn of the linkage's axes about y; positive: x points downward."));
+  visit(s.arm, needed("arm"));
+  visit(s.link, needed("link"));
+  visit(s.pivot, needed("pivot", "m", keys::kPoint, "Pivot of the pitman arm on the chassis."));
+  visit(s.arm_end, needed("arm_end", "m", keys::kPoint, "Joint of the pitman arm with the link."));
+  visit(s.idler, needed("idler", "m", keys::kPoint, "Pivot of the idler arm on the chassis."));
+  visit(s.idler_end, needed("idler_end", "m", keys::kPoint, "Joint of the idler arm with the link."));
+  visit(s.left_angle_deg, needed("left_angle_deg", "deg", above(-90).below(90),
+                                 "Angle of the pitman arm about z with the wheel fully to the left; not 0."));
+  visit(s.response_time, keys::kResponseTime);
 }
 
 /// A rack that slides along y in the chassis; the tie rods' inner ends are on it. Points are from the axle's origin.
@@ -49,13 +48,12 @@ struct RackSpec {
   double left_travel = 0.0;     // along y with the wheel fully to the left, m
   double response_time = 0.05;  // with which it follows the steering wheel, s
 };
-void visit_fields(auto&& visit, FieldsOf<RackSpec> auto& s) {
+void visit_fields(FieldsOf<RackSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("rack"), s.rack);
-  visit(needed("left_travel", "m", from(-10, 10),
-               "Travel of the rack along y with the steering wheel fully to the left; not 0."),
-        s.left_travel);
-  visit(keys::kResponseTime, s.response_time);
+  visit(s.rack, needed("rack"));
+  visit(s.left_travel, needed("left_travel", "m", from(-10, 10),
+                              "Travel of the rack along y with the steering wheel fully to the left; not 0."));
+  visit(s.response_time, keys::kResponseTime);
 }
 
 using SteeringSpec = std::variant<PitmanArmSpec, RackSpec>;

@@ -25,14 +25,14 @@ struct DoubleWishboneSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-void visit_fields(auto&& visit, FieldsOf<DoubleWishboneSpec> auto& s) {
-  visit(needed("spindle"), s.spindle);
-  visit(needed("upright"), s.upright);
-  visit(needed("upper_arm"), s.upper_arm);
-  visit(needed("lower_arm"), s.lower_arm);
-  visit(needed("tie_rod"), s.tie_rod);
-  visit(key("spring"), s.spring);
-  visit(key("shock"), s.shock);
+void visit_fields(FieldsOf<DoubleWishboneSpec> auto& s, auto&& visit) {
+  visit(s.spindle, needed("spindle"));
+  visit(s.upright, needed("upright"));
+  visit(s.upper_arm, needed("upper_arm"));
+  visit(s.lower_arm, needed("lower_arm"));
+  visit(s.tie_rod, needed("tie_rod"));
+  visit(s.spring, key("spring"));
+  visit(s.shock, key("shock"));
 }
 void add_suspension(AxleBuild& build, const Sides<DoubleWishboneSpec>& sides);
 
@@ -49,13 +49,13 @@ struct TrailingArmSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-void visit_fields(auto&& visit, FieldsOf<TrailingArmSpec> auto& s) {
-  visit(needed("spindle"), s.spindle);
-  visit(needed("arm"), s.arm);
-  visit(needed("pivot_inner", "m", keys::kPoint, "Inner pivot on the chassis, from the axle's origin."), s.pivot_inner);
-  visit(needed("pivot_outer", "m", keys::kPoint, "Outer pivot on the chassis, from the axle's origin."), s.pivot_outer);
-  visit(key("spring"), s.spring);
-  visit(key("shock"), s.shock);
+void visit_fields(FieldsOf<TrailingArmSpec> auto& s, auto&& visit) {
+  visit(s.spindle, needed("spindle"));
+  visit(s.arm, needed("arm"));
+  visit(s.pivot_inner, needed("pivot_inner", "m", keys::kPoint, "Inner pivot on the chassis, from the axle's origin."));
+  visit(s.pivot_outer, needed("pivot_outer", "m", keys::kPoint, "Outer pivot on the chassis, from the axle's origin."));
+  visit(s.spring, key("spring"));
+  visit(s.shock, key("shock"));
 }
 void add_suspension(AxleBuild& build, const Sides<TrailingArmSpec>& sides);
 
@@ -66,12 +66,12 @@ struct LinkSpec {
   Vec3 chassis = Vec3::Zero(), axle = Vec3::Zero();  // m
   bool mirrored = true;                              // there is one on the right, too
 };
-void visit_fields(auto&& visit, FieldsOf<LinkSpec> auto& s) {
+void visit_fields(FieldsOf<LinkSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("name", "", not_empty(), "Name of the rod in messages."), s.name);
-  visit(keys::kChassisEnd, s.chassis);
-  visit(needed("axle", "m", keys::kPoint, "End on the axle, from the axle's origin."), s.axle);
-  visit(key("mirrored", "", "Whether the right side has the mirror image of the rod."), s.mirrored);
+  visit(s.name, needed("name", "", not_empty(), "Name of the rod in messages."));
+  visit(s.chassis, keys::kChassisEnd);
+  visit(s.axle, needed("axle", "m", keys::kPoint, "End on the axle, from the axle's origin."));
+  visit(s.mirrored, key("mirrored", "", "Whether the right side has the mirror image of the rod."));
 }
 
 /// One housing for both wheels, guided by links.
@@ -84,12 +84,12 @@ struct RigidAxleSpec {
   std::optional<SpringSpec> spring;
   std::optional<ShockSpec> shock;
 };
-void visit_fields(auto&& visit, FieldsOf<RigidAxleSpec> auto& s) {
-  visit(needed("spindle"), s.spindle);
-  visit(needed("housing"), s.housing);
-  visit(needed("links", "", "Four rods; a mirrored one counts twice."), s.links);
-  visit(key("spring"), s.spring);
-  visit(key("shock"), s.shock);
+void visit_fields(FieldsOf<RigidAxleSpec> auto& s, auto&& visit) {
+  visit(s.spindle, needed("spindle"));
+  visit(s.housing, needed("housing"));
+  visit(s.links, needed("links", "", "Four rods; a mirrored one counts twice."));
+  visit(s.spring, key("spring"));
+  visit(s.shock, key("shock"));
 }
 void add_suspension(AxleBuild& build, const Sides<RigidAxleSpec>& sides);
 
@@ -101,12 +101,12 @@ struct FixedSpec {
   SpindleSpec spindle;
   std::optional<std::string> on;  // name of the axle
 };
-void visit_fields(auto&& visit, FieldsOf<FixedSpec> auto& s) {
+void visit_fields(FieldsOf<FixedSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("spindle"), s.spindle);
-  visit(key("on", "", not_empty(),
-            "Name of the axle whose trailing arms carry these wheels. Without this key the chassis carries them."),
-        s.on);
+  visit(s.spindle, needed("spindle"));
+  visit(s.on,
+        key("on", "", not_empty(),
+            "Name of the axle whose trailing arms carry these wheels. Without this key the chassis carries them."));
 }
 void add_suspension(AxleBuild& build, const Sides<FixedSpec>& sides);
 
@@ -119,12 +119,12 @@ struct WheelSpec {
   std::string tire;             // name of a tire file
   bool rigid = false;           // the tire is not to deform
 };
-void visit_fields(auto&& visit, FieldsOf<WheelSpec> auto& s) {
+void visit_fields(FieldsOf<WheelSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("mass", "kg", above(0).to(1e7), "Rim without tire."), s.mass);
-  visit(keys::kInertia, s.inertia);
-  visit(needed("tire", "", not_empty(), "Name of a tire file."), s.tire);
-  visit(key("rigid", "", "The tire does not deform."), s.rigid);
+  visit(s.mass, needed("mass", "kg", above(0).to(1e7), "Rim without tire."));
+  visit(s.inertia, keys::kInertia);
+  visit(s.tire, needed("tire", "", not_empty(), "Name of a tire file."));
+  visit(s.rigid, key("rigid", "", "The tire does not deform."));
 }
 
 /// Dry friction between the spindle and what carries its bearing.
@@ -132,9 +132,9 @@ struct BrakeSpec {
   static constexpr SchemaName kSchema{"brake", "Dry friction between the spindle and what carries its bearing."};
   double torque = 0.0;  // with the pedal fully down, N m
 };
-void visit_fields(auto&& visit, FieldsOf<BrakeSpec> auto& s) {
+void visit_fields(FieldsOf<BrakeSpec> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(needed("torque", "N m", above(0).to(1e8), "Torque of the brake with the pedal fully down."), s.torque);
+  visit(s.torque, needed("torque", "N m", above(0).to(1e8), "Torque of the brake with the pedal fully down."));
 }
 
 }  // namespace furrow::vehicle

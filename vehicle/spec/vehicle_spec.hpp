@@ -56,7 +56,7 @@ void for_each_vector(T& value, const Call& call) {
   if constexpr (std::is_same_v<T, Vec3> || std::is_same_v<T, Mat3>)
     call(value);
   else if constexpr (HasFields<T>)
-    visit_fields([&](const Field&, auto& field) { for_each_vector(field, call); }, value);
+    visit_fields(value, [&](auto& field, const Field&) { for_each_vector(field, call); });
   else if constexpr (std::is_same_v<T, std::vector<LinkSpec>>)
     for (LinkSpec& link : value) for_each_vector(link, call);
   else if constexpr (requires { value.has_value(); })

@@ -14,12 +14,12 @@ struct LossesOf {
   T sliding{}, normal_damping{}, tangential_damping{}, rolling{}, opening{};
 };
 using Losses = LossesOf<double>;
-void visit_fields(auto&& visit, FieldsOf<Losses> auto& s) {
-  visit(Field{"sliding", ""}, s.sliding);
-  visit(Field{"normal_damping", ""}, s.normal_damping);
-  visit(Field{"tangential_damping", ""}, s.tangential_damping);
-  visit(Field{"rolling", ""}, s.rolling);
-  visit(Field{"opening", ""}, s.opening);
+void visit_fields(FieldsOf<Losses> auto& s, auto&& visit) {
+  visit(s.sliding, Field{"sliding", ""});
+  visit(s.normal_damping, Field{"normal_damping", ""});
+  visit(s.tangential_damping, Field{"tangential_damping", ""});
+  visit(s.rolling, Field{"rolling", ""});
+  visit(s.opening, Field{"opening", ""});
 }
 inline double total(const Losses& l) {
   return l.sliding + l.normal_damping + l.tangential_damping + l.rolling + l.opening;
@@ -41,9 +41,9 @@ struct StoredOf {
   T tangential{};  // tangential and rolling springs
 };
 using Stored = StoredOf<double>;
-void visit_fields(auto&& visit, FieldsOf<Stored> auto& s) {
-  visit(Field{"cohesion", "J"}, s.cohesion);
-  visit(Field{"tangential", "J"}, s.tangential);
+void visit_fields(FieldsOf<Stored> auto& s, auto&& visit) {
+  visit(s.cohesion, Field{"cohesion", "J"});
+  visit(s.tangential, Field{"tangential", "J"});
 }
 inline void add(Stored& to, const Stored& s, double times) {
   to.cohesion += times * s.cohesion;

@@ -87,17 +87,17 @@ class EnergyAccounts {
   State state_;
   std::vector<Stored> stored_;  // per strip, when it was last part of a sample
 };
-void visit_fields(auto&& visit, FieldsOf<EnergyAccounts::State> auto& s) {
-  visit(Field{"lost", "J"}, s.lost);
-  visit(Field{"power", "W"}, s.power);
-  visit(Field{"since", "s"}, s.since);
-  visit(Field{"own", "s"}, s.own);
-  visit(Field{"time", "s"}, s.time);
-  visit(Field{"error2", "J²"}, s.error2);
-  visit(Field{"rotation", "J"}, s.rotation);
-  visit(Field{"stored", "J"}, s.stored);
-  visit(Field{"samples"}, s.samples);
-  visit(Field{"until"}, s.until);
+void visit_fields(FieldsOf<EnergyAccounts::State> auto& s, auto&& visit) {
+  visit(s.lost, Field{"lost", "J"});
+  visit(s.power, Field{"power", "W"});
+  visit(s.since, Field{"since", "s"});
+  visit(s.own, Field{"own", "s"});
+  visit(s.time, Field{"time", "s"});
+  visit(s.error2, Field{"error2", "J²"});
+  visit(s.rotation, Field{"rotation", "J"});
+  visit(s.stored, Field{"stored", "J"});
+  visit(s.samples, Field{"samples"});
+  visit(s.until, Field{"until"});
 }
 
 }  // namespace furrow::terrain::dem

@@ -88,13 +88,13 @@ class StepRefinement {
   std::vector<double> limits_;  // by level, m
   State state_;
 };
-void visit_fields(auto&& visit, FieldsOf<StepRefinement::State> auto& s) {
-  visit(Field{"level"}, s.level);
-  visit(Field{"calm"}, s.calm);
-  visit(Field{"added"}, s.added);
-  visit(Field{"time", "s"}, s.time);
-  visit(Field{"finest"}, s.finest);
-  visit(Field{"since", "s"}, s.since);
+void visit_fields(FieldsOf<StepRefinement::State> auto& s, auto&& visit) {
+  visit(s.level, Field{"level"});
+  visit(s.calm, Field{"calm"});
+  visit(s.added, Field{"added"});
+  visit(s.time, Field{"time", "s"});
+  visit(s.finest, Field{"finest"});
+  visit(s.since, Field{"since", "s"});
 }
 
 }  // namespace furrow::terrain::dem

@@ -24,12 +24,12 @@ struct SurfaceHistory {
   Quad tangential;  // spring force on the grain, N; w = √δ
   Quad rolling;     // N m
 };
-void visit_fields(auto&& visit, FieldsOf<SurfaceHistory> auto& s) {
-  visit(Field{"grain"}, s.grain);
-  visit(Field{"surface"}, s.surface);
-  visit(Field{"normal"}, s.normal);
-  visit(Field{"tangential", "N"}, s.tangential);
-  visit(Field{"rolling", "N m"}, s.rolling);
+void visit_fields(FieldsOf<SurfaceHistory> auto& s, auto&& visit) {
+  visit(s.grain, Field{"grain"});
+  visit(s.surface, Field{"surface"});
+  visit(s.normal, Field{"normal"});
+  visit(s.tangential, Field{"tangential", "N"});
+  visit(s.rolling, Field{"rolling", "N m"});
 }
 
 struct SurfaceTouch {

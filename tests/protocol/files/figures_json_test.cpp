@@ -12,9 +12,9 @@ namespace {
 struct Strut {
   double length = 0.2, room = std::numeric_limits<double>::infinity();
 };
-void visit_fields(auto&& visit, FieldsOf<Strut> auto& s) {
-  visit(Field{"length", "m"}, s.length);
-  visit(Field{"room", "m"}, s.room);
+void visit_fields(FieldsOf<Strut> auto& s, auto&& visit) {
+  visit(s.length, Field{"length", "m"});
+  visit(s.room, Field{"room", "m"});
 }
 
 struct Wheel {
@@ -25,15 +25,15 @@ struct Wheel {
   std::optional<Strut> spring = Strut{}, shock;
   std::vector<double> loads = {1.0, 2.0};
 };
-void visit_fields(auto&& visit, FieldsOf<Wheel> auto& s) {
-  visit(Field{"name", ""}, s.name);
-  visit(Field{"bodies", ""}, s.bodies);
-  visit(Field{"rate", "N/m"}, s.rate);
-  visit(Field{"share"}, s.share);
-  visit(Field{"place", "m"}, s.place);
-  visit(Field{"spring", ""}, s.spring);
-  visit(Field{"shock", ""}, s.shock);
-  visit(Field{"loads", "N"}, s.loads);
+void visit_fields(FieldsOf<Wheel> auto& s, auto&& visit) {
+  visit(s.name, Field{"name", ""});
+  visit(s.bodies, Field{"bodies", ""});
+  visit(s.rate, Field{"rate", "N/m"});
+  visit(s.share, Field{"share"});
+  visit(s.place, Field{"place", "m"});
+  visit(s.spring, Field{"spring", ""});
+  visit(s.shock, Field{"shock", ""});
+  visit(s.loads, Field{"loads", "N"});
 }
 
 }  // namespace

@@ -16,8 +16,8 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

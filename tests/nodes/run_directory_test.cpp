@@ -17,8 +17,8 @@
 #include "nodes/launch/held_folder.hpp"
 #include "nodes/output/frames.hpp"
 #include "protocol/core/error.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

@@ -18,7 +18,7 @@
 #include "nodes/calibrate/optimum.hpp"
 #include "nodes/calibrate/study.hpp"
 #include "protocol/core/error.hpp"
-#include "tests/nodes/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow::calibrate::testing {
 

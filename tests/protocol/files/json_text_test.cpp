@@ -7,8 +7,8 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

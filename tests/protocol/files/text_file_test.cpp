@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "protocol/core/error.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

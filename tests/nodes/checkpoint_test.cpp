@@ -196,12 +196,5 @@ TEST(WallSchedule, begins_early_and_slows_down_to_its_interval) {
   EXPECT_TRUE(times(0.0, 1000.0).empty());
 }
 
-TEST(Resume, what_decides_the_results_may_not_change) {
-  for (const char* key : {"run.end", "run.threads", "output.frame_interval", "checkpoint.keep", "terrain.cache"})
-    EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
-  for (const char* key : {"run.step", "run.seed", "rig.slip", "terrain.bed", "tire.file", "run.end_of", "outputs"})
-    EXPECT_FALSE(scenario::may_change_on_resume(key)) << key;
-}
-
 }  // namespace
 }  // namespace furrow

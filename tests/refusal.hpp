@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <source_location>
 #include <string>
@@ -27,6 +28,14 @@ inline std::string refusal(ExitCode code, const std::function<void()>& work) {
     return error.what();
   }
   return "";
+}
+
+/// A message without the name of its file: what follows "f.json: ", or the place in "f.json:3:7: …".
+inline std::string without_file(const std::string& text, const std::string& file) {
+  if (text.empty()) return text;
+  EXPECT_TRUE(text.starts_with(file + ":")) << text;
+  const std::string rest = text.substr(std::min(text.size(), file.size() + 1));
+  return rest.starts_with(' ') ? rest.substr(1) : rest;
 }
 
 /// `work` must throw an Error with this code, whose message has every part in it.

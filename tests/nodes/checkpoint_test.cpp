@@ -16,8 +16,8 @@
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {
@@ -194,13 +194,6 @@ TEST(WallSchedule, begins_early_and_slows_down_to_its_interval) {
   EXPECT_EQ(times(600.0, 2800.0), (std::vector<double>{30, 90, 210, 450, 930, 1530, 2130, 2730}));
   EXPECT_EQ(times(10.0, 45.0), (std::vector<double>{10, 20, 30, 40}));
   EXPECT_TRUE(times(0.0, 1000.0).empty());
-}
-
-TEST(Resume, what_decides_the_results_may_not_change) {
-  for (const char* key : {"run.end", "run.threads", "output.frame_interval", "checkpoint.keep", "terrain.cache"})
-    EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
-  for (const char* key : {"run.step", "run.seed", "rig.slip", "terrain.bed", "tire.file", "run.end_of", "outputs"})
-    EXPECT_FALSE(scenario::may_change_on_resume(key)) << key;
 }
 
 }  // namespace

@@ -20,14 +20,10 @@ using testing::rigid_wheel_on_grains;
 using testing::rigid_wheel_on_plane;
 
 void expect_same_bits_after_restore(const scenario::Scenario& scenario, std::int64_t half, std::int64_t end) {
-  testing::InProcessRun whole(scenario);
+  testing::InProcessRun whole(scenario), resumed(scenario);
   whole.steps(0, half);
-  const std::vector<Archive> saved = whole.save();
-  whole.steps(half, end);
-
-  testing::InProcessRun resumed(scenario);
-  resumed.restore(saved);
-  resumed.steps(half, end);
+  resumed.restore(whole.save());
+  whole.steps(half, end), resumed.steps(half, end);
   EXPECT_EQ(whole.hashes(), resumed.hashes());
 }
 
@@ -46,14 +42,28 @@ TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
   expect_same_bits_after_restore(scenario.made(), 60, 120);
 }
 
+/// The series of a wheel as the rig's node has it now; means are sums since the last line.
+output::SeriesBuilder series_now(const testing::InProcessRun& run, int wheel = 0) {
+  const Archive rig = run.save().front();
+  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
+  Archive::Scope scope(rig, "wheel" + std::to_string(wheel) + "/");
+  builder.restore(rig);
+  return builder;
+}
+
+std::vector<std::uint64_t> hashes_after(const scenario::Scenario& scenario, std::int64_t steps, int threads = 0) {
+  ranks::RunContext context;
+  if (threads > 0) context.threads = threads;
+  testing::InProcessRun run(scenario, context);
+  run.steps(0, steps);
+  return run.hashes();
+}
+
 TEST(Coupling, momentum_received_equals_momentum_sent_one_interval_before) {
   testing::InProcessRun run(rigid_wheel_on_grains().made());
   run.steps(0, 1500);
   run.synchronize(1500);
-  const auto saved = run.save();
-  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
-  Archive::Scope scope(saved[0], "wheel0/");
-  builder.restore(saved[0]);
+  const output::SeriesBuilder builder = series_now(run);
   const Vec3 sent = builder.impulse_sent_arrived(), received = builder.now().impulse_received;
   EXPECT_GT(builder.impulse_sent_abs(), 0.0) << "the wheel never touched the grains";
   EXPECT_LE((sent - received).norm(), 1e-12 * builder.impulse_sent_abs());
@@ -75,13 +85,7 @@ OneWheel flexible_tire_on_grains_with_tangents() {
 TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) {
   const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents().made();
   expect_same_bits_after_restore(scenario, 250, 350);
-  ranks::RunContext one, two;
-  one.threads = 1;
-  two.threads = 2;
-  testing::InProcessRun first(scenario, one), second(scenario, two);
-  first.steps(0, 350);
-  second.steps(0, 350);
-  EXPECT_EQ(first.hashes(), second.hashes());
+  EXPECT_EQ(hashes_after(scenario, 350, 1), hashes_after(scenario, 350, 2));
 }
 
 /// Σ impulses on the tire − Σ impulses by the grains = what the ledger holds.
@@ -91,9 +95,7 @@ TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
   run.steps(0, 600);
   run.synchronize(600);
   const auto saved = run.save();
-  output::SeriesBuilder builder(0.4673, 0.0, scenario.run.step);
-  const Archive::Scope scope(saved[0], "wheel0/");
-  builder.restore(saved[0]);
+  const output::SeriesBuilder builder = series_now(run);
   Vec3 ahead = Vec3::Zero();
   const auto& owed = saved[1].get<double>("ledger/owed");
   for (std::size_t i = 0; i < owed.size(); i += 3) ahead += Vec3(owed[i], owed[i + 1], owed[i + 2]);
@@ -102,15 +104,6 @@ TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
   EXPECT_LE((difference - ahead).norm(), 1e-12 * builder.impulse_sent_abs());
   EXPECT_GT(ahead.norm(), 0.0);
   EXPECT_LT(saved[1].get_double("ledger/largest"), 0.05 * builder.impulse_sent_abs());
-}
-
-/// The series of wheel 0 as the rig's node has it now; means are sums since the last line.
-output::WheelRow series_now(const testing::InProcessRun& run) {
-  const Archive rig = run.save().front();
-  output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
-  Archive::Scope scope(rig, "wheel0/");
-  builder.restore(rig);
-  return builder.now();
 }
 
 /// Added mass: a lagged wrench that held the tire's own inertia would blow up from a ratio of one on.
@@ -131,7 +124,7 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
     testing::InProcessRun run(scenario.made());
     run.steps(0, 100);
     run.synchronize(100);
-    const output::WheelRow row = series_now(run);
+    const output::WheelRow row = series_now(run).now();
     const double mass = rig.carrier_mass + rig.rim_mass + tire.mass, spin = rig.angular_speed;
     const double tolerance = rigid ? 1e-9 : 0.2;  // the flexible tire also winds up and swings
     EXPECT_EQ(row.force.norm(), 0.0) << "it must not have landed";
@@ -142,34 +135,20 @@ TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
 }
 
 TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
-  ranks::RunContext one, two;
-  one.threads = 1;
-  two.threads = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains().made(), one), second(rigid_wheel_on_grains().made(), two);
-  first.steps(0, 200);
-  second.steps(0, 200);
-  EXPECT_EQ(first.hashes(), second.hashes());
+  const scenario::Scenario scenario = rigid_wheel_on_grains().made();
+  EXPECT_EQ(hashes_after(scenario, 200, 1), hashes_after(scenario, 200, 2));
 }
 
 TEST(Coupling, another_seed_gives_another_state) {
   scenario::Scenario other = rigid_wheel_on_grains().made();
   other.run.seed = 2;
-  testing::InProcessRun first(rigid_wheel_on_grains().made()), second(other);
-  first.steps(0, 10);
-  second.steps(0, 10);
-  EXPECT_NE(first.hashes(), second.hashes());
+  EXPECT_NE(hashes_after(rigid_wheel_on_grains().made(), 10), hashes_after(other, 10));
 }
 
 /// z impulse that each wheel's tire has sent for up to now, N s.
-std::vector<double> vertical_impulses(const testing::InProcessRun& run, std::size_t wheels) {
-  const Archive rig = run.save().front();
+std::vector<double> vertical_impulses(const testing::InProcessRun& run, int wheels) {
   std::vector<double> impulses;
-  for (std::size_t k = 0; k < wheels; ++k) {
-    output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
-    Archive::Scope scope(rig, "wheel" + std::to_string(k) + "/");
-    builder.restore(rig);
-    impulses.push_back(builder.now().impulse_sent.z());
-  }
+  for (int k = 0; k < wheels; ++k) impulses.push_back(series_now(run, k).now().impulse_sent.z());
   return impulses;
 }
 

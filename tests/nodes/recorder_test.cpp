@@ -8,8 +8,8 @@
 #include "nodes/output/xdmf.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
-#include "temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

@@ -17,8 +17,8 @@
 #include "nodes/launch/held_folder.hpp"
 #include "nodes/output/frames.hpp"
 #include "protocol/core/error.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {
@@ -33,15 +33,8 @@ std::string read(const fs::path& file) {
   return text;
 }
 
-template <class Work>
-std::string error_of(const Work& work, ExitCode code = ExitCode::bad_input) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-    return error.what();
-  }
-  return "";
+std::string error_of(const std::function<void()>& work, ExitCode code = ExitCode::bad_input) {
+  return refusal(code, work);
 }
 
 /// All files below a folder, by their paths in it.

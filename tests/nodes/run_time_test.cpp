@@ -42,29 +42,14 @@ TEST(RunTime, the_slowest_node_decides_where_there_are_cores_for_all) {
 }
 
 TEST(RunTime, tires_share_the_cores_that_there_are) {
-  const Settings flexible{{"tire.elements_circumference", "60"}, {"tire.elements_width", "12"}};
+  const Settings flexible{
+      {"tire.elements_circumference", "60"}, {"tire.elements_width", "12"}, {"tire.rigid", "false"}};
   scenario::MachineSpeed machine = kMachine;
-  const double on_two = time_of(
-                            "four_wheels.json",
-                            [&] {
-                              Settings s = flexible;
-                              s.emplace_back("tire.rigid", "false");
-                              return s;
-                            }(),
-                            machine)
-                            .step;
+  const double on_two = time_of("four_wheels.json", flexible, machine).step;
   EXPECT_GT(on_two, 4e-3);  // four tires of 2.4 ms on two cores
   EXPECT_LT(on_two, 6.5e-3);
   machine.cores = 16;
-  const double on_many = time_of(
-                             "four_wheels.json",
-                             [&] {
-                               Settings s = flexible;
-                               s.emplace_back("tire.rigid", "false");
-                               return s;
-                             }(),
-                             machine)
-                             .step;
+  const double on_many = time_of("four_wheels.json", flexible, machine).step;
   EXPECT_NEAR(on_many, 2.53e-3, 1e-4);
 }
 

@@ -39,6 +39,7 @@ TEST(ScenarioFields, a_key_that_is_the_default_counts_like_one_that_is_missing) 
   const testing::ScenarioFile file(testing::kSmallest);
   const scenario::Scenario s = file.load();
   EXPECT_EQ(file.load({{"terrain.friction", "0.9"}, {"rig.slip", "0.3"}}).digest, s.digest);
+  EXPECT_EQ(file.load({{"rig.carrier_mass", "450.0"}, {"terrain.layers", "15.0"}}).digest, s.digest);
   EXPECT_NE(file.load({{"terrain.friction", "0.8"}}).digest, s.digest);
   EXPECT_NE(file.load({{"terrain.engine", "rigid"}}).digest, s.digest);
   json earlier = json::parse(s.completed);
@@ -73,11 +74,13 @@ TEST(ScenarioFields, what_is_harmless_is_free_on_resume_and_leaves_the_digest) {
     EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
     EXPECT_EQ(file.load({{key, value}}).digest, digest) << key;
   }
-  EXPECT_TRUE(scenario::may_change_on_resume("run.end"));
-  EXPECT_TRUE(scenario::may_change_on_resume("output.frame_interval"));
-  EXPECT_TRUE(scenario::may_change_on_resume("expected.drawbar_pull"));
-  EXPECT_FALSE(scenario::may_change_on_resume("run.step"));
-  EXPECT_FALSE(scenario::may_change_on_resume("rig.type"));
+  for (const char* key : {"run.end", "output.frame_interval", "expected.drawbar_pull"})
+    EXPECT_TRUE(scenario::may_change_on_resume(key)) << key;
+  for (const char* key : {"run.step", "run.seed", "rig.slip", "rig.type", "terrain.bed", "tire.file", "run.end_of",
+                          "outputs", "tire.pressure.1.0"})
+    EXPECT_FALSE(scenario::may_change_on_resume(key)) << key;
+  EXPECT_NE(file.load({{"rig.carrier_mass", "451"}}).digest, digest);
+  EXPECT_NE(file.load({{"run.seed", "2"}}).digest, digest);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "nodes/scenario/load_scenario.hpp"
 #include "protocol/core/error.hpp"
-#include "tests/nodes/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow::testing {
 

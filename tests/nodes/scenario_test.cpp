@@ -25,6 +25,12 @@ namespace {
 using testing::kSmallest;
 using testing::ScenarioFile;
 
+/// The smallest scenario with settings.
+class Smallest : public ::testing::Test {
+ protected:
+  const ScenarioFile file_{kSmallest};
+};
+
 /// The options as their structs default them; the schema must say the same. Those of rig, tire and run:
 /// scenario_fields_test.cpp.
 TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
@@ -57,15 +63,14 @@ TEST(Scenario, a_setting_of_every_kind_arrives) {
   EXPECT_EQ(s.terrain_context().seed, 7U);
 }
 
-TEST(Scenario, numbers_that_no_arithmetic_can_bear_are_refused) {
-  const ScenarioFile file(kSmallest);
+TEST_F(Smallest, numbers_that_no_arithmetic_can_bear_are_refused) {
   for (const auto& [key, value] : {std::pair{"terrain.young_modulus", "5e-324"},
                                    {"terrain.density", "1e-300"},
                                    {"terrain.radius", "5e-324"},
                                    {"terrain.normal_stiffness", "1e-300"},
                                    {"tire.elements_width", "-1e308"},
                                    {"tire.elements_width", "1e308"}})
-    EXPECT_TRUE(holds(file.complaint({{key, value}}), key)) << key << ' ' << value;
+    EXPECT_TRUE(holds(file_.complaint({{key, value}}), key)) << key << ' ' << value;
 }
 
 TEST(Scenario, a_line_of_the_series_may_be_as_long_as_the_averaging_window) {
@@ -83,36 +88,23 @@ TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
   EXPECT_EQ(again.completed, s.completed);
 }
 
-TEST(Scenario, digest_depends_on_what_decides_the_results_alone) {
-  const testing::ScenarioFile file(testing::kSmallest);
-  const std::string digest = file.load().digest;
-  EXPECT_EQ(file.load({{"run.threads", "2"}}).digest, digest);
-  EXPECT_EQ(file.load({{"run.peer_timeout", "5"}}).digest, digest);
-  EXPECT_EQ(file.load({{"terrain.cache", "false"}}).digest, digest);
-  EXPECT_EQ(file.load({{"rig.carrier_mass", "450.0"}, {"terrain.layers", "15.0"}}).digest, digest);
-  EXPECT_NE(file.load({{"rig.carrier_mass", "451"}}).digest, digest);
-  EXPECT_NE(file.load({{"run.seed", "2"}}).digest, digest);
-}
-
-TEST(Scenario, axle_starts_clear_of_the_wall_behind_it) {
-  const testing::ScenarioFile file(testing::kSmallest);
+TEST_F(Smallest, axle_starts_clear_of_the_wall_behind_it) {
   const double radius = 0.4673;  // m, of the tire
-  const scenario::Scenario forward = file.load(), backward = file.load({{"rig.travel_sign", "-1"}});
+  const scenario::Scenario forward = file_.load(), backward = file_.load({{"rig.travel_sign", "-1"}});
   const auto wheel = [](const scenario::Scenario& s) { return scenario::describe_rig(s).wheels.front(); };
   EXPECT_DOUBLE_EQ(wheel(forward).from, radius + scenario::wall_margin(radius));
   EXPECT_DOUBLE_EQ(wheel(backward).from, 10.0 - radius - scenario::wall_margin(radius));
   EXPECT_EQ(scenario::wall_margin(radius), 0.02);
   EXPECT_DOUBLE_EQ(scenario::wall_margin(0.058), 0.0029);
-  EXPECT_DOUBLE_EQ(wheel(file.load({{"rig.start", "3"}})).from, 3.0);
+  EXPECT_DOUBLE_EQ(wheel(file_.load({{"rig.start", "3"}})).from, 3.0);
   // v = ω R (1 − s) over the run, half of it over the ramp.
   const double travel = wheel(forward).to - wheel(forward).from;
   EXPECT_NEAR(travel, 8.56 * radius * 0.7 * (1.5 - 0.075), 1e-12);
   EXPECT_NEAR(wheel(backward).to - wheel(backward).from, -travel, 1e-12);
 }
 
-TEST(Scenario, a_load_in_newtons_is_the_load_of_the_wheel_and_stays_the_way_it_was_said) {
-  const testing::ScenarioFile file(testing::kSmallest);
-  const scenario::Scenario s = file.load({{"rig.load", "5000"}});
+TEST_F(Smallest, a_load_in_newtons_is_the_load_of_the_wheel_and_stays_the_way_it_was_said) {
+  const scenario::Scenario s = file_.load({{"rig.load", "5000"}});
   EXPECT_NEAR(scenario::wheel_scales(s).front().load, 5000.0, 1e-9);
   const nlohmann::json rig = nlohmann::json::parse(s.completed)["rig"];
   EXPECT_EQ(rig["load"], 5000.0);
@@ -121,7 +113,7 @@ TEST(Scenario, a_load_in_newtons_is_the_load_of_the_wheel_and_stays_the_way_it_w
   const scenario::Scenario again = testing::ScenarioFile(s.completed).load();
   EXPECT_EQ(again.digest, s.digest);
   EXPECT_EQ(again.completed, s.completed);
-  EXPECT_EQ(file.complaint({{"rig.load", "5000"}, {"rig.carrier_mass", "450"}}),
+  EXPECT_EQ(file_.complaint({{"rig.load", "5000"}, {"rig.carrier_mass", "450"}}),
             ": key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two");
 }
 
@@ -281,48 +273,43 @@ TEST(Scenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
             ": key 'terrain': has keys of other engines alone (bekker_n), expected some of engine 'dem'");
 }
 
-TEST(Scenario, mistakes_are_named_with_what_is_expected) {
-  const testing::ScenarioFile file(testing::kSmallest);
-  EXPECT_EQ(file.complaint({{"rig.slipp", "1"}}), ": key 'rig.slipp': is unknown, expected 'rig.slip'?");
-  EXPECT_EQ(file.complaint({{"tire.elements_width", "7"}}),
+TEST_F(Smallest, mistakes_are_named_with_what_is_expected) {
+  EXPECT_EQ(file_.complaint({{"rig.slipp", "1"}}), ": key 'rig.slipp': is unknown, expected 'rig.slip'?");
+  EXPECT_EQ(file_.complaint({{"tire.elements_width", "7"}}),
             ": key 'tire.elements_width': is 7, expected a whole number, 6 to 1000, a multiple of 2 or null");
-  EXPECT_EQ(file.complaint({{"terrain.layers", "many"}}),
+  EXPECT_EQ(file_.complaint({{"terrain.layers", "many"}}),
             ": key 'terrain.layers': is 'many', expected a whole number, 1 to 9999");
-  EXPECT_EQ(file.complaint({{"tire.rigid", "true"}, {"tire.contact_tangent", "true"}}),
+  EXPECT_EQ(file_.complaint({{"tire.rigid", "true"}, {"tire.contact_tangent", "true"}}),
             ": key 'tire.contact_tangent': is true, expected false for a rigid tire");
-  EXPECT_TRUE(file.load({{"tire.contact_tangent", "true"}}).terrain_context().contact_tangents);
-  EXPECT_EQ(file.complaint({{"run.step", "1e-3"}}).substr(0, 66),
+  EXPECT_TRUE(file_.load({{"tire.contact_tangent", "true"}}).terrain_context().contact_tangents);
+  EXPECT_EQ(file_.complaint({{"run.step", "1e-3"}}).substr(0, 66),
             ": key 'run.step': 0.001 s is above the stable step of 6.35e-05 s (");
-  EXPECT_EQ(file.complaint(
+  EXPECT_EQ(file_.complaint(
                 {{"run.step", "1e-3"}, {"output.series_interval", "1e-3"}, {"terrain.allow_unstable_step", "true"}}),
             "");
 }
 
-TEST(Scenario, pressure_is_a_number_or_a_table_in_time_and_part_of_the_digest) {
-  const testing::ScenarioFile file(testing::kSmallest);
-  const scenario::Scenario constant = file.load({{"tire.pressure", "150e3"}}),
-                           table = file.load({{"tire.pressure", "[[0.5, 2e5], [1, 1e5]]"}}),
-                           other = file.load({{"tire.pressure", "[[0.5, 2e5], [1.5, 1e5]]"}});
+TEST_F(Smallest, pressure_is_a_number_or_a_table_in_time_and_part_of_the_digest) {
+  const scenario::Scenario constant = file_.load({{"tire.pressure", "150e3"}}),
+                           table = file_.load({{"tire.pressure", "[[0.5, 2e5], [1, 1e5]]"}}),
+                           other = file_.load({{"tire.pressure", "[[0.5, 2e5], [1.5, 1e5]]"}});
   EXPECT_EQ(constant.tires[0]->options().pressure, (tire::PressureSchedule{{{0.0, 150e3}}}));
   EXPECT_EQ(table.tires[0]->options().pressure, (tire::PressureSchedule{{{0.5, 2e5}, {1.0, 1e5}}}));
   EXPECT_NE(table.digest, other.digest);
-  EXPECT_FALSE(scenario::may_change_on_resume("tire.pressure.1.0"));
 }
 
-TEST(Scenario, magnitudes_of_another_unit_are_warned_of) {
-  const testing::ScenarioFile file(testing::kSmallest);
+TEST_F(Smallest, magnitudes_of_another_unit_are_warned_of) {
   const auto warnings =
-      file.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
+      file_.load({{"tire.pressure", "2"}, {"terrain.density", "2.5"}, {"terrain.substeps", "100"}}).warnings;
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_TRUE(holds(warnings[0], "key 'terrain.density': 2.5 kg/m³ is unusually small"));
   EXPECT_TRUE(holds(warnings[0], "did you mean 2500?"));
   EXPECT_TRUE(holds(warnings[1], "did you mean 200e3?"));
-  EXPECT_TRUE(file.load({{"tire.pressure", "0"}, {"terrain.cohesion", "0"}}).warnings.empty());
+  EXPECT_TRUE(file_.load({{"tire.pressure", "0"}, {"terrain.cohesion", "0"}}).warnings.empty());
 }
 
-TEST(Scenario, times_that_are_no_whole_steps_are_told) {
-  const testing::ScenarioFile file(testing::kSmallest);
-  const auto warnings = [&](const char* key, const char* value) { return file.load({{key, value}}).warnings; };
+TEST_F(Smallest, times_that_are_no_whole_steps_are_told) {
+  const auto warnings = [&](const char* key, const char* value) { return file_.load({{key, value}}).warnings; };
   const auto only = [&](const char* key, const char* value, const std::string& expected) {
     const auto told = warnings(key, value);
     ASSERT_EQ(told.size(), 1U) << key;
@@ -338,10 +325,9 @@ TEST(Scenario, times_that_are_no_whole_steps_are_told) {
   EXPECT_TRUE(warnings("run.end", "1.50004").empty());
 }
 
-TEST(Scenario, disk_is_estimated_with_at_most_one_frame_and_one_line_per_step) {
-  const testing::ScenarioFile file(testing::kSmallest);
+TEST_F(Smallest, disk_is_estimated_with_at_most_one_frame_and_one_line_per_step) {
   const auto disk = [&](const char* key, const char* value) {
-    return scenario::estimate(file.load({{key, value}})).disk;
+    return scenario::estimate(file_.load({{key, value}})).disk;
   };
   for (const char* key : {"output.frame_interval", "output.series_interval"}) {
     EXPECT_EQ(disk(key, "1e-12"), disk(key, "4e-5")) << key;
@@ -372,15 +358,14 @@ TEST(Scenario, a_shipped_one_is_found_by_its_bare_name) {
   EXPECT_THROW(scenario::load_scenario("no_such_scenario.json", {}), Error);
 }
 
-TEST(Scenario, settings_cannot_nest_without_end) {
-  const testing::ScenarioFile file(testing::kSmallest);
+TEST_F(Smallest, settings_cannot_nest_without_end) {
   std::string key = "a";
   for (int k = 0; k < 200000; ++k) key += ".a";
-  EXPECT_TRUE(holds(file.complaint({{key, "1"}}), "': is not a key, expected --set section.key=value"));
-  EXPECT_LT(file.complaint({{key, "1"}}).size(), 200U);
-  EXPECT_TRUE(holds(file.complaint({{"rig.slip\n", "1"}}), "key 'rig.slip\\n': is not a key"));
-  EXPECT_TRUE(
-      holds(file.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}}), "nested deeper"));
+  EXPECT_TRUE(holds(file_.complaint({{key, "1"}}), "': is not a key, expected --set section.key=value"));
+  EXPECT_LT(file_.complaint({{key, "1"}}).size(), 200U);
+  EXPECT_TRUE(holds(file_.complaint({{"rig.slip\n", "1"}}), "key 'rig.slip\\n': is not a key"));
+  EXPECT_TRUE(holds(file_.complaint({{"tire.pressure", std::string(100000, '[') + std::string(100000, ']')}}),
+                    "nested deeper"));
 }
 
 TEST(Scenario, names_of_files_are_single_lines) {

@@ -20,10 +20,10 @@
 #include "protocol/files/text_file.hpp"
 #include "rigs/drawbar_rig.hpp"
 #include "rigs/rig_row.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/protocol/fields_of.hpp"
 #include "tests/refusal.hpp"
 #include "tests/rigs/reference_options.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 

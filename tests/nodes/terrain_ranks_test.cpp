@@ -49,11 +49,9 @@ TEST(TerrainRanks, rig_and_tire_feel_the_same_bits_from_any_number_of_them) {
 TEST(TerrainRanks, restored_they_continue_bit_for_bit) {
   InProcessRun whole(wheel_on_mat(3));
   whole.steps(0, kHalf);
-  const std::vector<Archive> saved = whole.save();
-  whole.steps(kHalf, kEnd);
   InProcessRun resumed(wheel_on_mat(3));
-  resumed.restore(saved);
-  resumed.steps(kHalf, kEnd);
+  resumed.restore(whole.save());
+  whole.steps(kHalf, kEnd), resumed.steps(kHalf, kEnd);
   EXPECT_EQ(whole.hashes(), resumed.hashes());
 }
 
@@ -108,14 +106,9 @@ TEST(TerrainRanks, an_engine_that_cannot_use_them_is_refused_by_key) {
   scenario::Scenario s = wheel_on_mat(9);
   s.file = "scenario.json";
   s.run.average_from = 0.1;
-  std::string text;
-  try {
-    const std::shared_ptr<rigs::RigSpec> rig = std::const_pointer_cast<rigs::RigSpec>(s.rig);
-    scenario::check_scenario(s, *rig);
-  } catch (const Error& error) {
-    text = error.what();
-  }
-  EXPECT_EQ(text, "scenario.json: key 'terrain.ranks': is 9, expected 1 to 8: engine 'strip_mat' runs on no more");
+  const std::shared_ptr<rigs::RigSpec> rig = std::const_pointer_cast<rigs::RigSpec>(s.rig);
+  EXPECT_EQ(refusal(ExitCode::bad_input, [&] { scenario::check_scenario(s, *rig); }),
+            "scenario.json: key 'terrain.ranks': is 9, expected 1 to 8: engine 'strip_mat' runs on no more");
 }
 
 }  // namespace

@@ -20,12 +20,34 @@ using testing::ScenarioFile;
 
 json hmmwv() { return {{"rig", {{"type", "vehicle"}, {"vehicle", "hmmwv.json"}}}, {"terrain", {{"engine", "rigid"}}}}; }
 
-scenario::Scenario load(const json& document, const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+scenario::Scenario load(const json& document, const Settings& settings = {}) {
   return ScenarioFile(document.dump()).load(settings);
 }
 
-std::string complaint(const json& document, const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+std::string complaint(const json& document, const Settings& settings = {}) {
   return ScenarioFile(document.dump()).complaint(settings);
+}
+
+json vehicle_text(const char* name) { return json::parse(std::ifstream(data_folder() / "vehicle" / "data" / name)); }
+
+/// A scenario beside the file of its vehicle, mine.json.
+class OwnVehicle : public ScenarioFile {
+ public:
+  OwnVehicle(json scenario, const json& vehicle) : ScenarioFile(named(std::move(scenario))) { write(vehicle); }
+  std::filesystem::path vehicle() const { return path().parent_path() / "mine.json"; }
+  void write(const json& content) const { std::ofstream(vehicle()) << content.dump(); }
+
+ private:
+  static std::string named(json scenario) {
+    scenario["rig"]["vehicle"] = "mine.json";
+    return scenario.dump();
+  }
+};
+
+void expect_complaint(const std::string& begin, const json& document, const Settings& settings = {}) {
+  EXPECT_TRUE(complaint(document, settings).starts_with(begin)) << complaint(document, settings);
 }
 
 TEST(VehicleScenario, brings_the_tires_of_its_wheels) {
@@ -82,21 +104,17 @@ TEST(VehicleScenario, completed_text_is_a_scenario_that_gives_the_same_digest_fr
 /// Files count by what they hold: the driver's is in the completed scenario, the vehicle's is named in full.
 TEST(VehicleScenario, files_beside_the_scenario_are_found_and_decide_the_results) {
   json document = hmmwv();
-  document["rig"]["vehicle"] = "mine.json";
   document["rig"]["driver"] = "mine.csv";
-  const ScenarioFile file(document.dump());
-  const std::filesystem::path folder = file.path().parent_path();
-  json car = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"));
-  const auto write = [&] { std::ofstream(folder / "mine.json") << car.dump(); };
-  write();
-  std::ofstream(folder / "mine.csv") << "time_s,throttle\n0,0\n1,0.5\n";
+  json car = vehicle_text("hmmwv.json");
+  const OwnVehicle file(document, car);
+  std::ofstream(file.path().parent_path() / "mine.csv") << "time_s,throttle\n0,0\n1,0.5\n";
   const scenario::Scenario s = file.load();
   const json completed = json::parse(s.completed);
-  EXPECT_EQ(completed["rig"]["vehicle"], (folder / "mine.json").string());
+  EXPECT_EQ(completed["rig"]["vehicle"], file.vehicle().string());
   EXPECT_EQ(completed["rig"]["driver"]["inputs"]["throttle"], json::parse("[[0.0, 0.0], [1.0, 0.5]]"));
   EXPECT_EQ(ScenarioFile(s.completed).load().digest, s.digest);
   car["chassis"]["mass"] = 2100.0;
-  write();
+  file.write(car);
   EXPECT_NE(file.load().digest, s.digest);
 }
 
@@ -113,11 +131,8 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   EXPECT_NEAR(wheels[2].from - wheels[2].along, 0.02, 1e-6);
   EXPECT_NEAR(wheels[0].to - wheels[0].from, 2.0, 1e-3);
   EXPECT_NEAR(json::parse(s.completed)["rig"]["start"].get<double>(), wheels[2].from + 1.653, 0.01);
-  const std::vector<std::pair<std::string, std::string>> into_wall{{"terrain.length", "5"},
-                                                                   {"rig.stop_before_wall", "0"}};
-  EXPECT_TRUE(
-      complaint(document, into_wall).starts_with(": key 'terrain.length': is 5 m, but the axle travels from x = "))
-      << complaint(document, into_wall);
+  expect_complaint(": key 'terrain.length': is 5 m, but the axle travels from x = ", document,
+                   {{"terrain.length", "5"}, {"rig.stop_before_wall", "0"}});
   const scenario::Scenario early = load(document, {{"terrain.length", "5"}});
   const rigs::WheelDescription foremost = scenario::describe_rig(early).wheels[0];
   EXPECT_TRUE(foremost.stops_before_wall);
@@ -125,14 +140,10 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
   EXPECT_TRUE(std::any_of(early.warnings.begin(), early.warnings.end(), [](const std::string& warning) {
     return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") != std::string::npos;
   }));
-  EXPECT_TRUE(
-      complaint(document, {{"terrain.width", "1.5"}}).starts_with(": key 'terrain.width': is 1.5 m, expected at "))
-      << complaint(document, {{"terrain.width", "1.5"}});
+  expect_complaint(": key 'terrain.width': is 1.5 m, expected at ", document, {{"terrain.width", "1.5"}});
   // Places are those of the key, the vehicle's origin, not those of a wheel.
-  EXPECT_TRUE(
-      complaint(document, {{"rig.start", "1"}})
-          .starts_with(": key 'rig.start': is 1 m, expected 2.120 to 5.884 m: the tire of rear_left with radius "))
-      << complaint(document, {{"rig.start", "1"}});
+  expect_complaint(": key 'rig.start': is 1 m, expected 2.120 to 5.884 m: the tire of rear_left with radius ", document,
+                   {{"rig.start", "1"}});
   EXPECT_EQ(complaint(document, {{"terrain.length", "3"}}),
             ": key 'terrain.length': is 3 m, expected at least 4.28 m: from the first to the last tire the "
             "rig is 4.24 m "
@@ -149,16 +160,14 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
   none["rig"].erase("vehicle");
   none["tire"] = {{"file", "hmmwv_layered.json"}};
   EXPECT_EQ(complaint(none), ": key 'rig.vehicle': is missing, expected the name of a vehicle's file: hmmwv.json");
-  EXPECT_TRUE(complaint(with("/rig/vehicle", "nowhere.json"))
-                  .starts_with(": key 'rig.vehicle': 'nowhere.json' does not exist, expected a file at one of: "));
+  expect_complaint(": key 'rig.vehicle': 'nowhere.json' does not exist, expected a file at one of: ",
+                   with("/rig/vehicle", "nowhere.json"));
   EXPECT_EQ(complaint(with("/tires", json::array({json::object()}))),
             ": key 'tires': has 1 entries, expected 4, one per wheel, or 2, one per axle");
   EXPECT_EQ(complaint(with("/rig/slip", 0.5)),
             ": key 'rig.slip': is a key of type 'drawbar', but rig.type is 'vehicle', expected keys of that "
             "type alone");
-  EXPECT_TRUE(complaint(with("/rig/driver", {{"inputs", {{"throttle", 2}}}}))
-                  .starts_with(": key 'rig.driver.inputs.throttle': "))
-      << complaint(with("/rig/driver", {{"inputs", {{"throttle", 2}}}}));
+  expect_complaint(": key 'rig.driver.inputs.throttle': ", with("/rig/driver", {{"inputs", {{"throttle", 2}}}}));
   EXPECT_EQ(complaint(with("/rig/driver", {{"inputs", {{"gear", {{0, 1}, {2, 4}}}}}})),
             ": key 'rig.driver': asks for gear 4 at 2 s, expected at most 3: the vehicle HMMWV has no more");
   json rover = with("/rig/driver", {{"inputs", {{"gear", 2}}}});
@@ -169,7 +178,7 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
   EXPECT_EQ(complaint(rover),
             ": key 'rig.driver': gives brake 0.5 at 1 s, expected a driver that does not: the vehicle Rover "
             "has no brakes");
-  EXPECT_EQ(complaint(json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"))),
+  EXPECT_EQ(complaint(vehicle_text("hmmwv.json")),
             ": is a vehicle, expected a scenario (the key rig.vehicle of a scenario takes vehicles)");
   json foreign = hmmwv();
   foreign["rig"] = {{"type", "drawbar"}, {"vehicle", "hmmwv.json"}};
@@ -178,22 +187,6 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
             ": key 'rig.vehicle': is a key of type 'vehicle', but rig.type is 'drawbar', expected "
             "keys of that type alone");
 }
-
-json vehicle_text(const char* name) { return json::parse(std::ifstream(data_folder() / "vehicle" / "data" / name)); }
-
-/// A scenario beside the file of its vehicle, mine.json.
-class OwnVehicle : public ScenarioFile {
- public:
-  OwnVehicle(json scenario, const json& vehicle) : ScenarioFile(named(std::move(scenario))) {
-    std::ofstream(path().parent_path() / "mine.json") << vehicle.dump();
-  }
-
- private:
-  static std::string named(json scenario) {
-    scenario["rig"]["vehicle"] = "mine.json";
-    return scenario.dump();
-  }
-};
 
 // Motors turn backward in gear -1 without a gearbox; without either nothing does.
 TEST(VehicleScenario, gear_minus_one_needs_motors_or_a_reverse_gear) {
@@ -276,13 +269,9 @@ TEST(VehicleScenario, a_parked_vehicle_without_brakes_is_warned_of) {
 }
 
 TEST(VehicleScenario, wheels_of_one_vehicle_in_each_other_are_its_file_s_fault) {
-  json document = hmmwv();
-  document["rig"]["vehicle"] = "mine.json";
-  const ScenarioFile file(document.dump());
-  json rover = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "rover.json"));
+  json rover = vehicle_text("rover.json");
   rover["axles"][0]["origin"] = {0.10, 0.0, 0.0};
-  std::ofstream(file.path().parent_path() / "mine.json") << rover.dump();
-  EXPECT_EQ(file.complaint(),
+  EXPECT_EQ(OwnVehicle(hmmwv(), rover).complaint(),
             ": key 'rig.vehicle': has the wheel middle_left in the way of front_left, expected 0.12 m "
             "between their axles "
             "or 0.05 m between their mid-planes");
@@ -290,17 +279,12 @@ TEST(VehicleScenario, wheels_of_one_vehicle_in_each_other_are_its_file_s_fault) 
 
 /// A driver must not ask for what the vehicle lacks: it would be ignored.
 TEST(VehicleScenario, pedals_and_steering_without_effect_are_refused) {
-  json document = hmmwv();
-  document["rig"]["vehicle"] = "mine.json";
   const auto complains = [&](const json& car, const char* input) {
-    json with = document;
+    json with = hmmwv();
     with["rig"]["driver"] = {{"inputs", {{input, {{0, 0}, {2, 1}}}}}};
-    const ScenarioFile file(with.dump());
-    std::ofstream(file.path().parent_path() / "mine.json") << car.dump();
-    return file.complaint();
+    return OwnVehicle(with, car).complaint();
   };
-  const json whole = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"));
-  json pushed = whole, straight = whole;
+  json pushed = vehicle_text("hmmwv.json"), straight = pushed;
   pushed.erase("driveline");
   straight["axles"][0].erase("steering");
   EXPECT_EQ(complains(pushed, "throttle"),
@@ -342,16 +326,12 @@ TEST(VehicleScenario, paths_that_the_vehicle_cannot_follow_are_warned_of) {
 
 /// What the vehicle's own file gets wrong is said with its name.
 TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
-  json document = hmmwv();
-  document["rig"]["vehicle"] = "mine.json";
-  const ScenarioFile file(document.dump());
-  const std::filesystem::path path = file.path().parent_path() / "mine.json";
-  const json car = json::parse(std::ifstream(data_folder() / "vehicle" / "data" / "hmmwv.json"));
+  const OwnVehicle file(hmmwv(), {});
   const auto complains = [&](const char* pointer, const json& value) {
-    json changed = car;
+    json changed = vehicle_text("hmmwv.json");
     changed[json::json_pointer(pointer)] = value;
-    std::ofstream(path) << changed.dump();
-    return file.complaint({}, path);
+    file.write(changed);
+    return file.complaint({}, file.vehicle());
   };
   EXPECT_TRUE(complains("/axles/0/wheel/tire", "none.json")
                   .starts_with(": key 'axles[0].wheel.tire': 'none.json' does not exist, expected a file at one of: "));
@@ -359,7 +339,7 @@ TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
             ": key 'driveline.gearbox.ratios[0]': is 0, expected a number above zero");
   // It cannot stand on wheels that all are in front of its centre of mass.
   const std::string falls = complains("/chassis/center_of_mass/0", -9.0);
-  EXPECT_TRUE(holds(falls, "key 'rig.vehicle': is " + path.string() + ", which cannot be used: "));
+  EXPECT_TRUE(holds(falls, "key 'rig.vehicle': is " + file.vehicle().string() + ", which cannot be used: "));
 }
 
 }  // namespace

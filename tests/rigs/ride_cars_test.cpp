@@ -16,6 +16,7 @@
 #include "rigs/half_car_spec.hpp"
 #include "rigs/quarter_car_spec.hpp"
 #include "rigs/ride_spec.hpp"
+#include "tests/refusal.hpp"
 #include "tests/rigs/linear_cars.hpp"
 #include "tests/rigs/rig_probe.hpp"
 
@@ -273,8 +274,7 @@ MountedTire tire() {
 
 /// What both cars leave to their tires, on `count` of them.
 template <class Options, class Mount>
-void expect_filled_in(int count, const Mount& mount,
-                      std::unique_ptr<RigSpec> (*read)(const nlohmann::json&, const ReadContext&)) {
+void expect_filled_in(int count, const Mount& mount) {
   const Options full = mount(Options(), tire());
   EXPECT_EQ(full.body_mass, count * 400.0);
   EXPECT_EQ(full.rim_diametral_inertia, 0.5);
@@ -285,31 +285,27 @@ void expect_filled_in(int count, const Mount& mount,
   loaded.load = count * 3000.0;
   EXPECT_NEAR(mount(loaded, tire()).body_mass, count * (3000.0 / kStandardGravity - 50.1), 1e-9);
   loaded.load = 300.0;
-  EXPECT_TRUE(
-      complaint([&] { mount(loaded, tire()); }).starts_with("s.json: key 'rig.load': is 300 N, expected above "));
+  expect_refused(ExitCode::bad_input, {"s.json: key 'rig.load': is 300 N, expected above "},
+                 [&] { mount(loaded, tire()); });
   MountedTire bare = tire();
   bare.rim = {};
-  EXPECT_TRUE(complaint([&] { mount(Options(), bare); })
-                  .starts_with("s.json: key 'rig.load': is missing and so is rig.rim_mass, rig.rim_spin_inertia, "
-                               "expected here"));
-  EXPECT_EQ(complaint([&] {
-              read({{"load", 1.0}, {"body_mass", 2.0}}, kContext);
-            }),
-            "s.json: key 'rig.load': is given beside 'rig.body_mass', expected one of the two");
+  expect_refused(ExitCode::bad_input,
+                 {"s.json: key 'rig.load': is missing and so is rig.rim_mass, rig.rim_spin_inertia, expected here"},
+                 [&] { mount(Options(), bare); });
 }
 
 TEST(QuarterCar, what_is_open_comes_from_the_tires_file) {
   EXPECT_NEAR(usual_stiffness(400.0) / 400.0, std::pow(3.0 * pi, 2), 1e-9);
   EXPECT_NEAR(usual_damping(400.0, 400.0), 240.0, 1e-12);
   expect_filled_in<QuarterCarOptions>(
-      1, [](const QuarterCarOptions& o, const MountedTire& t) { return mounted(o, t, kContext); }, read_quarter_car);
+      1, [](const QuarterCarOptions& o, const MountedTire& t) { return mounted(o, t, kContext); });
 }
 
 TEST(HalfCar, what_is_open_comes_from_the_tires_files) {
   const auto mount = [](const HalfCarOptions& o, const MountedTire& t) {
     return mounted(o, std::array{t, t}, kContext);
   };
-  expect_filled_in<HalfCarOptions>(2, mount, read_half_car);
+  expect_filled_in<HalfCarOptions>(2, mount);
   HalfCarOptions open;
   open.front_share = 0.6, open.wheelbase = 2.5;
   const HalfCarOptions full = mount(open, tire());

@@ -9,19 +9,6 @@
 using namespace furrow;
 using namespace furrow::testing;
 
-namespace {
-
-double energy_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
-  return end.drive_work + end.tow_work + end.guide_work + end.tire_work - (end.stored() - start.stored()) -
-         end.damper_loss;
-}
-
-Vec3 momentum_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
-  return end.momentum - start.momentum - end.gravity_impulse - end.guide_impulse - end.tire_impulse;
-}
-
-}  // namespace
-
 TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire_gives_beyond_the_weight) {
   rigs::DrawbarRigOptions options = reference_options();
   options.mode = "free_rolling";

@@ -1,16 +1,10 @@
 // What tests ask of a rig, whatever its kind.
 #pragma once
 
-#include <functional>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <gtest/gtest.h>
-
-#include "protocol/core/archive.hpp"
-#include "protocol/core/error.hpp"
 #include "rigs/rig.hpp"
 
 namespace furrow::testing {
@@ -24,21 +18,14 @@ inline double measured(const rigs::Rig& rig, int subject, std::string_view colum
 }
 inline double measured(const rigs::Rig& rig, std::string_view column) { return measured(rig, 0, column); }
 
-inline std::map<std::string, Archive::Array> saved(const rigs::Rig& rig) {
-  Archive archive;
-  rig.save(archive);
-  return archive.arrays();
+/// What the accounts leave over between two reports, J.
+inline double energy_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
+  return end.drive_work + end.tow_work + end.guide_work + end.tire_work - (end.stored() - start.stored()) -
+         end.damper_loss;
 }
-
-/// The message with which the input is refused; empty where it is not.
-inline std::string complaint(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "";
+/// The same of momentum, N s.
+inline Vec3 momentum_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
+  return end.momentum - start.momentum - end.gravity_impulse - end.guide_impulse - end.tire_impulse;
 }
 
 }  // namespace furrow::testing

@@ -3,6 +3,7 @@
 
 #include "rigs/rut_trace.hpp"
 #include "tests/rigs/vehicle_fixture.hpp"
+#include "tests/saved.hpp"
 
 using namespace furrow;
 using namespace furrow::testing;
@@ -40,27 +41,24 @@ TEST(VehicleRestart, continues_bit_for_bit_in_the_air_in_a_shift_in_a_brake_hold
     sinking.drive(*original, c.time, {}, 2);
     EXPECT_GE(of_vehicle(*original, c.column), c.least);
     EXPECT_LE(of_vehicle(*original, c.column), c.most);
-    Archive archive;
-    original->save(archive);
+    const Archive archive = saved(*original);
     const auto placed = track.rig(plan, 0.5), fresh = rigs::make_vehicle_rig(plan);
     track.add_tires(*fresh);
     placed->restore(archive);
     fresh->restore(archive);
-    EXPECT_EQ(saved(*fresh), saved(*original));
+    EXPECT_EQ(saved(*fresh).arrays(), saved(*original).arrays());
     for (rigs::Rig* rig : {original.get(), placed.get(), fresh.get()}) sinking.drive(*rig, 0.5, {}, 2);
-    EXPECT_EQ(saved(*placed), saved(*original));
-    EXPECT_EQ(saved(*fresh), saved(*original));
+    EXPECT_EQ(saved(*placed).arrays(), saved(*original).arrays());
+    EXPECT_EQ(saved(*fresh).arrays(), saved(*original).arrays());
   }
 }
 
 TEST(VehicleRestart, refuses_the_state_of_other_tires) {
   Track track;
   const auto original = track.rig(vehicle_plan("hmmwv.json"));
-  Archive archive;
-  original->save(archive);
   track.tire.mass = 10.0;
   const auto other = track.rig(vehicle_plan("hmmwv.json"));
-  EXPECT_THROW(other->restore(archive), Error);
+  EXPECT_THROW(other->restore(saved(*original)), Error);
 }
 
 TEST(RutTrace, is_found_within_half_its_width_and_survives_a_round_trip) {

@@ -3,13 +3,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "protocol/core/constants.hpp"
-#include "terrain/dem/beds/bed_layers.hpp"
-#include "terrain/dem/beds/bed_settling.hpp"
-#include "terrain/dem/solver_setup.hpp"
-#include "tests/terrain/few_grains.hpp"
+#include "tests/terrain/pressed_bed.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -25,77 +21,16 @@ DemOptions bed_options(double cohesion) {
   return options;
 }
 
-/// A settled bed, without activity so far.
-Archive settled(const DemOptions& options) {
-  SolverParams params = solver_params(options);
-  params.activity = false;
-  GrainSolver solver(params);
-  solver.place(bed_layers(params.bin, options.radius, options.layers, 1));
-  settle(solver, options, {});
-  Archive archive;
-  solver.save(archive);
-  return archive;
-}
-
-GrainSolver bed(const DemOptions& options, const Archive& archive, bool activity) {
-  SolverParams params = solver_params(options);
-  params.activity = activity;
-  GrainSolver solver(params);
-  solver.restore(archive);
-  solver.set_coefficients(run_coefficients(options, options.step));
-  solver.reset_accounts();
-  return solver;
-}
-
-/// A plate that spans the bin's middle, 0.1 m long, facing down.
-struct Plate {
-  SurfaceMesh mesh;
-  SurfaceState state;
-  Vec3 velocity = Vec3::Zero();
-
-  explicit Plate(double z) {
-    mesh.vertex_count = 4;
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    state.position = {{0.55, -0.04, z}, {0.55, 0.04, z}, {0.65, 0.04, z}, {0.65, -0.04, z}};
-    state.velocity.assign(4, Vec3::Zero());
-  }
-};
-
-/// Mean vertical force on the plate over each interval of `every` steps while it goes down from z = `from`, N.
-std::vector<double> press(GrainSolver& solver, const DemOptions& options, double from, double speed, int intervals,
-                          int every) {
-  Plate plate(from);
-  const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
-  solver.surfaces().attach(plate.mesh, rubber,
-                           mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options),
-                           plate.state);
-  solver.surfaces().restrict_to({Vec3(-1, -1, -1), Vec3(2, 1, solver.top() + 0.1)});
-  const double dt = options.step;
-  std::vector<double> force;
-  std::vector<NodalForces> nodal(1);
-  std::vector<ContactSums> sums(1);
-  for (int n = 0; n < intervals; ++n) {
-    double mean = 0.0;
-    for (int k = 0; k < every; ++k) {
-      for (Vec3& v : plate.state.velocity) v = Vec3(0, 0, -speed);
-      solver.surfaces().set_targets({&plate.state, 1}, dt);
-      solver.surfaces().move_to(0.0);
-      EXPECT_EQ(solver.step(dt), -1);
-      solver.surfaces().move_to(1.0);
-      solver.surfaces().finish(dt, nodal, sums);
-      for (Vec3& x : plate.state.position) x += dt * Vec3(0, 0, -speed);
-      mean += sums[0].force.z() / every;
-    }
-    force.push_back(mean);
-  }
-  return force;
+/// A plate that spans the bin's middle, 0.1 m long.
+Plate middle_plate(GrainSolver& solver, const DemOptions& options, double z) {
+  return {solver, options, testing::under_side(0.55, 0.65, -0.04, 0.04, z)};
 }
 
 TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
   const DemOptions options = bed_options(20e3);
-  GrainSolver solver = bed(options, settled(options), true);
+  GrainSolver solver = solver_of(options, settled_bed(options), true);
   const double height = solver.accounts().height / solver.grains().count;
-  for (int k = 0; k < 4000; ++k) ASSERT_EQ(solver.step(options.step), -1);
+  run(solver, options.step, 4000);
   EXPECT_EQ(solver.accounts().active, 0);
   EXPECT_EQ(solver.accounts().kinetic, 0.0);
   EXPECT_NEAR(solver.accounts().height / solver.grains().count, height, 0.01 * options.radius);
@@ -110,8 +45,7 @@ TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
   few.options.periodic_x = true;
   few.gravity = kStandardGravity;
   few.activity = true;
-  const double load = grain_properties(few.options.radius, few.options.density).mass * kStandardGravity;
-  const double z = few.options.radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
+  const double z = few.resting_height();
   GrainSolver s = few.make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
   const double speed = 0.4 * kSleepMeanSpeed * std::sqrt(kStandardGravity * few.options.radius);
   for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));
@@ -134,8 +68,8 @@ int window(const DemOptions& options) {
 // The lowest shear mode of a layer on a floor, u ∝ sin(π z/2h): neighbours move together, so contacts damp it little.
 TEST(Activity, bed_that_only_sways_falls_asleep) {
   const DemOptions options = bed_options(40e3);
-  const Archive archive = settled(options);
-  GrainSolver solver = bed(options, archive, true), awake = bed(options, archive, false);
+  const Archive archive = settled_bed(options);
+  GrainSolver solver = solver_of(options, archive, true), awake = solver_of(options, archive, false);
   const double unit = std::sqrt(kStandardGravity * options.radius), height = solver.top();
   for (GrainSolver* s : {&solver, &awake})
     for (int g = 0; g < s->grains().count; ++g)
@@ -172,12 +106,11 @@ TEST(Activity, grains_that_drift_stay_awake_however_even_their_motion) {
 
 TEST(Activity, mean_contact_force_follows_the_load) {
   const DemOptions options = bed_options(20e3);
-  const Archive archive = settled(options);
-  GrainSolver asleep = bed(options, archive, true), awake = bed(options, archive, false);
-  for (int k = 0; k < 1500; ++k) asleep.step(options.step), awake.step(options.step);
-  const double before = asleep.mean_contact_force();
-  press(asleep, options, awake.top(), 0.1, 20, 100);
-  press(awake, options, awake.top(), 0.1, 20, 100);
+  const Archive bed = settled_bed(options);
+  GrainSolver asleep = solver_of(options, bed, true), awake = solver_of(options, bed, false);
+  for (GrainSolver* s : {&asleep, &awake}) run(*s, options.step, 1500);
+  const double before = asleep.mean_contact_force(), top = awake.top();
+  for (GrainSolver* s : {&asleep, &awake}) middle_plate(*s, options, top).move(Vec3(0, 0, -0.1), 2000);
   awake.step(options.step, true);
   const double all = awake.accounts().contact_force / static_cast<double>(awake.accounts().contacts);
   EXPECT_GT(all, 1.2 * before);
@@ -186,15 +119,9 @@ TEST(Activity, mean_contact_force_follows_the_load) {
 
 TEST(Activity, mean_contact_force_has_the_same_bits_after_a_restart_between_two_samples) {
   const DemOptions options = bed_options(20e3);
-  GrainSolver solver = bed(options, settled(options), true);
-  for (int k = 0; k < kSampleSteps + kSampleSteps / 2; ++k) solver.step(options.step);
-  Archive saved;
-  solver.save(saved);
-  SolverParams params = solver.params();
-  params.threads = 2;
-  GrainSolver again(params);
-  again.set_coefficients(solver.coefficients());
-  again.restore(saved);
+  GrainSolver solver = solver_of(options, settled_bed(options), true);
+  run(solver, options.step, kSampleSteps + kSampleSteps / 2);
+  GrainSolver again = restored(solver, 2);
   const double before = solver.mean_contact_force();
   for (int k = 0; k < 3 * kSampleSteps; ++k) {
     solver.step(options.step), again.step(options.step);
@@ -207,14 +134,10 @@ TEST(Activity, mean_contact_force_has_the_same_bits_after_a_restart_between_two_
 // Strips that sleep beside sleepers are not evaluated: what they count must be in the saved state.
 TEST(Activity, sums_have_the_same_bits_after_a_restart_of_a_bed_that_sleeps) {
   const DemOptions options = bed_options(5e3);
-  GrainSolver solver = bed(options, settled(options), true);
-  for (int k = 0; k < 4000; ++k) solver.step(options.step);
+  GrainSolver solver = solver_of(options, settled_bed(options), true);
+  run(solver, options.step, 4000);
   ASSERT_EQ(solver.accounts().active, 0);
-  Archive saved;
-  solver.save(saved);
-  GrainSolver again(solver.params());
-  again.set_coefficients(solver.coefficients());
-  again.restore(saved);
+  GrainSolver again = restored(solver);
   for (int k = 0; k < 2 * kSampleSteps; ++k) {
     solver.step(options.step), again.step(options.step);
     ASSERT_EQ(solver.accounts().contact_force, again.accounts().contact_force) << k;
@@ -226,31 +149,25 @@ TEST(Activity, sums_have_the_same_bits_after_a_restart_of_a_bed_that_sleeps) {
 TEST(Activity, pressed_sleeping_bed_pushes_back_like_one_that_is_all_awake) {
   for (double cohesion : {0.0, 40e3}) {
     const DemOptions options = bed_options(cohesion);
-    const Archive archive = settled(options);
-    GrainSolver asleep = bed(options, archive, true), awake = bed(options, archive, false);
+    const Archive bed = settled_bed(options);
+    GrainSolver asleep = solver_of(options, bed, true), awake = solver_of(options, bed, false);
     const int few = asleep.grains().count / 10;  // a grain without cohesion may roll for long
     for (int k = 0; k < 4000 || (k < 20000 && asleep.accounts().active >= few); ++k)
       asleep.step(options.step), awake.step(options.step);
     ASSERT_LT(asleep.accounts().active, few) << cohesion;
     const double from = awake.top();
-    const auto some = press(asleep, options, from, 0.1, 20, 100), all = press(awake, options, from, 0.1, 20, 100);
-    double most = 0.0, error = 0.0;
-    for (std::size_t n = 0; n < all.size(); ++n) {
-      most = std::max(most, all[n]);
-      error = std::max(error, std::abs(some[n] - all[n]));
-    }
+    Plate some = middle_plate(asleep, options, from), all = middle_plate(awake, options, from);
+    const auto [error, most] = difference_pressed(some, all);
     EXPECT_GT(most, 10.0);
-    std::string curve;
-    for (std::size_t n = 0; n < all.size(); ++n) curve += std::to_string(all[n]) + " " + std::to_string(some[n]) + "\n";
-    EXPECT_LT(error, 0.05 * most) << "cohesion " << cohesion << ", awake and asleep, N:\n" << curve;
+    EXPECT_LT(error, 0.05 * most) << "cohesion " << cohesion;
     EXPECT_LT(asleep.accounts().active, asleep.grains().count);
   }
 }
 
 TEST(Activity, falling_grain_wakes_what_it_hits) {
   const DemOptions options = bed_options(5e3);
-  GrainSolver solver = bed(options, settled(options), true);
-  for (int k = 0; k < 4000; ++k) solver.step(options.step);
+  GrainSolver solver = solver_of(options, settled_bed(options), true);
+  run(solver, options.step, 4000);
   ASSERT_EQ(solver.accounts().active, 0);
   // A grain of the top layer is thrown along the bed and comes down elsewhere.
   Grains& grains = solver.grains();

@@ -1,13 +1,9 @@
 // Beds put together of copies of a settled piece.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <random>
 
 #include "protocol/core/archive_hash.hpp"
@@ -23,11 +19,10 @@
 #include "terrain/dem/close_pairs.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "tests/refusal.hpp"
+#include "tests/terrain/bed_fixture.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The most grains that may stand together, by trying all.
 int most_by_trying(const Conflicts& conflicts, int second) {
@@ -90,33 +85,24 @@ TEST(BedLayers, layers_that_go_around_keep_their_distance_across_the_sides) {
   EXPECT_NEAR(static_cast<double>(s.size()), expected_layer_count(bin, r, true), 0.02 * static_cast<double>(s.size()));
 }
 
-class Tiled : public ::testing::Test {
+class Tiled : public SmallBeds {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("furrow_tiles_test_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-    options_.radius = 0.01;
-    options_.layers = 4;
+  Tiled() {
     options_.length = 0.9;
     options_.width = 0.42;
     options_.cohesion = 40e3;
-    options_.step = 6e-5;
     options_.tile = 0.45;
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::vector<Quad> positions(const PreparedBed& bed, const DemOptions& o) const {
     GrainSolver solver(solver_params(o));
     solver.restore(bed.bed);
     return positions_by_id(solver);
   }
+  /// Those of the piece that the bed is put together of.
+  std::vector<Quad> piece() const { return positions(prepare_bed(piece_of(options_), {}), piece_of(options_)); }
   BedStatistics statistics(const std::vector<Quad>& grains, const DemOptions& o) const {
     return bed_statistics(grains, solver_params(o).bin, o.radius);
   }
-
-  fs::path folder_;
-  DemOptions options_;
 };
 
 TEST_F(Tiled, bed_rests_and_is_as_dense_as_one_settled_whole) {
@@ -143,10 +129,9 @@ TEST_F(Tiled, bed_rests_and_is_as_dense_as_one_settled_whole) {
 TEST_F(Tiled, nobody_is_squeezed_in_where_pieces_are_joined_or_cut) {
   for (const double width : {0.42, 0.84}) {
     options_.width = width;
-    const DemOptions of_piece = piece_of(options_);
-    const std::vector<Quad> piece = positions(prepare_bed(of_piece, {}), of_piece);
-    const BedStatistics settled = statistics(piece, of_piece);
-    const std::vector<Quad> grains = tiled_positions(piece, options_);
+    const std::vector<Quad> settled_piece = piece();
+    const BedStatistics settled = statistics(settled_piece, piece_of(options_));
+    const std::vector<Quad> grains = tiled_positions(settled_piece, options_);
     EXPECT_GT(settled.max_overlap, 0.0);
     EXPECT_LE(statistics(grains, options_).max_overlap, settled.max_overlap * (1.0 + 1e-9));
     // The side walls that a piece was settled between press on it; all others are new to it.
@@ -162,10 +147,8 @@ TEST_F(Tiled, no_column_is_one_before_it_again) {
   options_.length = 1.8;
   for (const char* sides : {"walls", "periodic"}) {
     options_.sides = sides;
-    const DemOptions of_piece = piece_of(options_);
-    EXPECT_EQ(of_piece.sides, sides);  // one piece fills the width
-    const std::vector<Quad> piece = positions(prepare_bed(of_piece, {}), of_piece);
-    const std::vector<Quad> grains = tiled_positions(piece, options_);
+    EXPECT_EQ(piece_of(options_).sides, sides);  // one piece fills the width
+    const std::vector<Quad> grains = tiled_positions(piece(), options_);
     int again = 0;
     for (const Quad& p : grains)
       for (const Quad& q : grains) {
@@ -181,15 +164,13 @@ TEST_F(Tiled, no_column_is_one_before_it_again) {
 TEST_F(Tiled, periodic_sides_and_pieces_across_leave_no_joint_across) {
   options_.sides = "periodic";
   options_.width = 0.84;
-  const DemOptions of_piece = piece_of(options_);
-  const std::vector<Quad> piece = positions(prepare_bed(of_piece, {}), of_piece);
-  const std::vector<Quad> grains = tiled_positions(piece, options_);
+  const std::vector<Quad> one = piece(), grains = tiled_positions(one, options_);
   EXPECT_EQ(tiling_of(options_).across, 2);
   // Away from the seam and the end walls each grain of the piece stands there twice.
   const auto middle = [](const std::vector<Quad>& all, double from, double to) {
     return std::count_if(all.begin(), all.end(), [&](const Quad& p) { return p.x > from && p.x < to; });
   };
-  EXPECT_EQ(middle(grains, 0.05, 0.3), 2 * middle(piece, 0.05, 0.3));
+  EXPECT_EQ(middle(grains, 0.05, 0.3), 2 * middle(one, 0.05, 0.3));
 }
 
 TEST_F(Tiled, same_bits_for_any_threads_and_from_the_cache) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -14,87 +13,31 @@
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "tests/refusal.hpp"
+#include "tests/terrain/bed_fixture.hpp"
+#include "tests/terrain/pressed_terrain.hpp"
 
 namespace furrow::terrain {
 namespace {
 
-namespace fs = std::filesystem;
-
-class DemTerrain : public ::testing::Test {
+class DemTerrain : public dem::SmallBeds {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("furrow_bed_test_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-    options_.radius = 0.01;
-    options_.layers = 4;
-    options_.length = 0.3;
-    options_.width = 0.2;
-    options_.cohesion = 20e3;
-    options_.step = 6e-5;
+  DemTerrain() { options_.cohesion = 20e3; }
+  std::filesystem::path cached() const { return dem::bed_cache_file(dem::bed_digest(options_)); }
+  std::unique_ptr<Terrain> prepared() const {
+    auto terrain = make_dem_terrain(options_);
+    terrain->prepare({});
+    return terrain;
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path cached() const { return terrain::dem::bed_cache_file(terrain::dem::bed_digest(options_)); }
-
-  fs::path folder_;
-  dem::DemOptions options_;
-};
-
-std::uint64_t hash_of(const Terrain& terrain) {
-  Archive archive;
-  terrain.save(archive);
-  Hash hash;
-  for (const auto& [name, array] : archive.arrays()) {
-    hash.add(name);
-    std::visit([&](const auto& v) { hash.add(std::span(v)); }, array);
+  /// A square plate that presses down on the grains in the middle.
+  PressedSurface plate_on(Terrain& terrain, double above = 0.0, const ContactMaterial& material = kRubber) const {
+    const double z = terrain.gather_top_height(0.1, 0.2, -0.05, 0.05) + above;
+    PressedSurface plate{
+        testing::turned_down(testing::sheet(0.1, -0.05, 0.025, 4, 4, [=](double, double) { return z; }))};
+    terrain.attach(plate.shape.mesh, material, plate.state);
+    return plate;
   }
-  return hash.value();
-}
 
-/// A square plate of n × n cells, outside below, so that it presses down on grains.
-struct Plate {
-  SurfaceMesh mesh;
-  SurfaceState state;
-
-  Plate(double x0, double y0, double size, int n, double z) {
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; j <= n; ++j) state.position.emplace_back(x0 + size * i / n, y0 + size * j / n, z);
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) {
-        const int a = i * (n + 1) + j, b = a + n + 1;
-        mesh.triangles.push_back({a, b + 1, b});
-        mesh.triangles.push_back({a, a + 1, b + 1});
-      }
-    mesh.vertex_count = static_cast<int>(state.position.size());
-    state.velocity.assign(state.position.size(), Vec3::Zero());
-  }
-  void move(const Vec3& v, double dt) {
-    for (std::size_t a = 0; a < state.position.size(); ++a) {
-      state.position[a] += dt * state.velocity[a];
-      state.velocity[a] = v;
-    }
-  }
-};
-
-const ContactMaterial kRubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
-
-struct Press {
-  std::vector<NodalForces> forces{1};
-  std::vector<ContactSums> sums{1};
-  double work = 0.0;
-  Vec3 impulse = Vec3::Zero();
-
-  Outcome run(Terrain& terrain, Plate& plate, const Vec3& v, int steps, double dt, int substeps = 1) {
-    for (int k = 0; k < steps; ++k) {
-      plate.move(v, dt);
-      const Outcome status = terrain.advance({&plate.state, 1}, dt, substeps, forces, sums);
-      if (!status.ok) return status;
-      work += sums[0].work;
-      impulse += dt * sums[0].force;
-    }
-    return {};
-  }
+  static inline const ContactMaterial kRubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
 };
 
 TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
@@ -117,9 +60,8 @@ TEST_F(DemTerrain, bed_settles_and_stands_at_a_plausible_height) {
 }
 
 TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
-  const auto first = make_dem_terrain(options_);
-  first->prepare({});
-  ASSERT_TRUE(fs::exists(cached()));
+  const auto first = prepared();
+  ASSERT_TRUE(std::filesystem::exists(cached()));
   bool settled_again = false;
   const auto second = make_dem_terrain(options_);
   second->prepare([&](const std::string&, double) { settled_again = true; });
@@ -132,8 +74,7 @@ TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
   EXPECT_EQ(hash_of(*first), hash_of(*second));
 
   options_.bed = cached().string();
-  const auto named = make_dem_terrain(options_);
-  named->prepare({});
+  const auto named = prepared();
   for (int k = 0; k < 200; ++k) ASSERT_TRUE(named->advance({}, 6e-5, 1, {}, {}).ok);
   EXPECT_EQ(hash_of(*first), hash_of(*named));
   options_.radius = 0.011;
@@ -141,22 +82,22 @@ TEST_F(DemTerrain, run_from_cached_bed_equals_the_run_that_settled_it) {
 }
 
 TEST_F(DemTerrain, damaged_cache_is_made_anew) {
-  const auto first = make_dem_terrain(options_);
-  first->prepare({});
+  const auto first = prepared();
   {
     std::fstream file(cached(), std::ios::in | std::ios::out | std::ios::binary);
-    file.seekp(static_cast<std::streamoff>(fs::file_size(cached()) / 2));
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(cached()) / 2));
     const std::string damage(4096, 'd');  // longer than any gap between arrays
     file.write(damage.data(), static_cast<std::streamsize>(damage.size()));
   }
-  EXPECT_THROW(terrain::dem::read_bed(cached()), Error);
+  EXPECT_THROW(dem::read_bed(cached()), Error);
   bool settled_again = false;
   const auto second = make_dem_terrain(options_);
   second->prepare([&](const std::string&, double) { settled_again = true; });
   EXPECT_TRUE(settled_again);
   EXPECT_EQ(hash_of(*first), hash_of(*second));
-  EXPECT_NO_THROW(terrain::dem::read_bed(cached()));
-  for (const auto& entry : fs::directory_iterator(cached().parent_path())) EXPECT_EQ(entry.path().extension(), ".h5");
+  EXPECT_NO_THROW(dem::read_bed(cached()));
+  for (const auto& entry : std::filesystem::directory_iterator(cached().parent_path()))
+    EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
 /// Files of a cache that somebody has renamed.
@@ -164,11 +105,9 @@ TEST_F(DemTerrain, a_bed_under_the_name_of_another_is_made_anew) {
   dem::DemOptions other = options_;
   other.seed = 2;
   make_dem_terrain(other)->prepare({});
-  const auto first = make_dem_terrain(options_);
-  first->prepare({});
-  fs::rename(dem::bed_cache_file(dem::bed_digest(other)), cached());
-  const auto second = make_dem_terrain(options_);
-  second->prepare({});
+  const auto first = prepared();
+  std::filesystem::rename(dem::bed_cache_file(dem::bed_digest(other)), cached());
+  const auto second = prepared();
   EXPECT_EQ(hash_of(*first), hash_of(*second));
 }
 
@@ -221,42 +160,30 @@ TEST_F(DemTerrain, digest_does_not_know_of_keys_that_are_the_default) {
 TEST_F(DemTerrain, refuses_a_material_that_its_law_cannot_use_by_name) {
   const auto complaint = [&](const char* law, const ContactMaterial& material) {
     options_.law = law;
-    const auto terrain = make_dem_terrain(options_);
-    terrain->prepare({});
-    const Plate plate(0.1, -0.05, 0.1, 4, terrain->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
-    try {
-      terrain->attach(plate.mesh, material, plate.state);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input);
-      return std::string(error.what());
-    }
-    return std::string("attached");
+    const auto terrain = prepared();
+    return refusal(ExitCode::bad_input, [&] { plate_on(*terrain, 1e-4, material); });
   };
   ContactMaterial soft = kRubber;
   soft.young_modulus = 0.0;
   EXPECT_EQ(complaint("mindlin", soft),
             "surface 0: key 'contact.young_modulus': is 0, expected above 0 Pa for law 'mindlin'");
-  EXPECT_EQ(complaint("hertz_tanh", soft), "attached");
+  EXPECT_EQ(complaint("hertz_tanh", soft), "");
   ContactMaterial other = kRubber;
   other.normal_stiffness = 0.0;
   EXPECT_EQ(complaint("hertz_tanh", other),
             "surface 0: key 'contact.normal_stiffness': is 0, expected above 0 N/m^1.5 for law 'hertz_tanh'");
-  EXPECT_EQ(complaint("mindlin", other), "attached");
+  EXPECT_EQ(complaint("mindlin", other), "");
 }
 
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
   options_.activity = false;
   for (const char* law : {"mindlin", "hertz_tanh"}) {
     options_.law = law;
-    const auto terrain = make_dem_terrain(options_);
-    terrain->prepare({});
-    const double top = terrain->gather_top_height(0.1, 0.2, -0.05, 0.05);
-    Plate plate(0.1, -0.05, 0.1, 4, top + 1e-4);
-    terrain->attach(plate.mesh, kRubber, plate.state);
+    const auto terrain = prepared();
+    PressedSurface press = plate_on(*terrain, 1e-4);
     const TerrainState before = terrain->gather_state();
-    Press press;
     const double dt = 6e-5;
-    const Outcome status = press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2);
+    const Outcome status = press.move(*terrain, Vec3(0.1, 0.0, -0.2), 1000, dt, 2);
     ASSERT_TRUE(status.ok) << status.message("terrain");
     const TerrainState after = terrain->gather_state();
     const ContactSums& sums = press.sums[0];
@@ -295,14 +222,11 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
 
 TEST_F(DemTerrain, impulses_are_the_momentum_and_what_sleep_took) {
   options_.activity = true;
-  const auto terrain = make_dem_terrain(options_);
-  terrain->prepare({});
-  Plate plate(0.1, -0.05, 0.1, 4, terrain->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
-  terrain->attach(plate.mesh, kRubber, plate.state);
+  const auto terrain = prepared();
+  PressedSurface press = plate_on(*terrain, 1e-4);
   const TerrainState before = terrain->gather_state();
-  Press press;
   const double dt = 6e-5;
-  ASSERT_TRUE(press.run(*terrain, plate, Vec3(0.1, 0.0, -0.2), 1000, dt, 2).ok);
+  ASSERT_TRUE(press.move(*terrain, Vec3(0.1, 0.0, -0.2), 1000, dt, 2).ok);
   const TerrainState after = terrain->gather_state();
   ASSERT_GT((after.momenta.sleep_impulse - before.momenta.sleep_impulse).norm(), 0.0);
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(terrain->size());
@@ -322,70 +246,57 @@ TEST_F(DemTerrain, impulses_are_the_momentum_and_what_sleep_took) {
 
 TEST_F(DemTerrain, restored_terrain_with_a_tire_continues_bit_for_bit) {
   options_.rolling_friction = 0.1;
-  const auto a = make_dem_terrain(options_);
-  a->prepare({});
-  Plate plate(0.1, -0.05, 0.1, 4, a->gather_top_height(0.1, 0.2, -0.05, 0.05));
-  a->attach(plate.mesh, kRubber, plate.state);
-  Press press;
-  ASSERT_TRUE(press.run(*a, plate, Vec3(0.3, 0.0, -0.3), 300, 6e-5).ok);
+  const auto a = prepared();
+  PressedSurface press = plate_on(*a);
+  ASSERT_TRUE(press.move(*a, Vec3(0.3, 0.0, -0.3), 300, 6e-5).ok);
   Archive archive;
   a->save(archive);
   options_.threads = 2;
   const auto b = make_dem_terrain(options_);
   b->restore(archive);
-  Plate other = plate;
-  Press again;
-  ASSERT_TRUE(press.run(*a, plate, Vec3(0.3, 0.0, -0.1), 300, 6e-5).ok);
-  ASSERT_TRUE(again.run(*b, other, Vec3(0.3, 0.0, -0.1), 300, 6e-5).ok);
+  PressedSurface again = press;
+  ASSERT_TRUE(press.move(*a, Vec3(0.3, 0.0, -0.1), 300, 6e-5).ok);
+  ASSERT_TRUE(again.move(*b, Vec3(0.3, 0.0, -0.1), 300, 6e-5).ok);
   EXPECT_EQ(hash_of(*a), hash_of(*b));
-  ASSERT_EQ(press.forces[0].force.size(), again.forces[0].force.size());
-  for (std::size_t k = 0; k < press.forces[0].force.size(); ++k)
-    EXPECT_EQ(press.forces[0].force[k], again.forces[0].force[k]);
+  EXPECT_EQ(press.forces[0].force, again.forces[0].force);
 }
 
 TEST_F(DemTerrain, bed_after_a_plate_lies_until_it_rests_and_starts_another_run) {
-  const auto a = make_dem_terrain(options_);
-  a->prepare({});
+  const auto a = prepared();
   const double before = a->gather_mean_height(0.12, 0.18, -0.03, 0.03);
-  Plate plate(0.1, -0.05, 0.1, 4, a->gather_top_height(0.1, 0.2, -0.05, 0.05));
-  a->attach(plate.mesh, kRubber, plate.state);
-  Press press;
-  ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, -0.3), 1000, 6e-5).ok);
-  ASSERT_TRUE(press.run(*a, plate, Vec3(0.0, 0.0, 0.3), 500, 6e-5).ok);
+  PressedSurface press = plate_on(*a);
+  ASSERT_TRUE(press.move(*a, Vec3(0.0, 0.0, -0.3), 1000, 6e-5).ok);
+  ASSERT_TRUE(press.move(*a, Vec3(0.0, 0.0, 0.3), 500, 6e-5).ok);
   Archive run;
   a->save(run);
-  terrain::dem::SettleResult rest;
+  dem::SettleResult rest;
   int told = 0;
-  const Archive bed = terrain::dem::bed_after_run(
+  const Archive bed = dem::bed_after_run(
       run, options_, 0.02, [&](const std::string&, double) { ++told; }, rest);
   EXPECT_TRUE(rest.settled);
   EXPECT_GE(rest.time, 0.02);
-  EXPECT_LT(rest.force_ratio, terrain::dem::kSettledForceRatio);
-  EXPECT_LT(rest.speed, terrain::dem::kRestSpeed);
+  EXPECT_LT(rest.force_ratio, dem::kSettledForceRatio);
+  EXPECT_LT(rest.speed, dem::kRestSpeed);
   EXPECT_GT(told, 0);
-  options_.bed = (folder_ / "bed.h5").string();
-  terrain::dem::write_bed(options_.bed, bed);
-  const auto b = make_dem_terrain(options_);
-  b->prepare({});
+  options_.bed = (folder() / "bed.h5").string();
+  dem::write_bed(options_.bed, bed);
+  const auto b = prepared();
   EXPECT_EQ(b->size(), a->size());
   EXPECT_LT(b->gather_mean_height(0.12, 0.18, -0.03, 0.03), before - 2e-3) << "the plate's print is gone";
   struct Stop {};
-  EXPECT_THROW(terrain::dem::bed_after_run(
+  EXPECT_THROW(dem::bed_after_run(
                    run, options_, 0.02, [](const std::string&, double) { throw Stop{}; }, rest),
                Stop);
 }
 
 TEST_F(DemTerrain, tire_that_reaches_the_floor_stops_the_run_with_a_message) {
-  const auto terrain = make_dem_terrain(options_);
-  terrain->prepare({});
-  Plate plate(0.1, -0.05, 0.1, 2, 0.2);
-  terrain->attach(plate.mesh, kRubber, plate.state);
-  Press press;
-  const Outcome status = press.run(*terrain, plate, Vec3(0, 0, -4000), 1, 6e-5);
+  const auto terrain = prepared();
+  PressedSurface plate = plate_on(*terrain, 0.1);
+  const Outcome status = plate.move(*terrain, Vec3(0, 0, -4000), 1, 6e-5);
   EXPECT_FALSE(status.ok);
   EXPECT_TRUE(holds(status.detail, "floor"));
-  Plate outside(-0.05, -0.05, 0.1, 2, 0.2);
-  EXPECT_THROW(terrain->attach(outside.mesh, kRubber, outside.state), Error);
+  const testing::Surface outside = testing::under_side(-0.05, 0.05, -0.05, 0.05, 0.2);
+  EXPECT_THROW(terrain->attach(outside.mesh, kRubber, testing::at_rest(outside)), Error);
 }
 
 TEST_F(DemTerrain, unstable_step_is_refused_by_number_unless_allowed) {

@@ -2,21 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/constants.hpp"
+#include "tests/terrain/energy_residual.hpp"
 #include "tests/terrain/few_grains.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
-
-/// What the accounts leave over between two reports, J.
-double residual(const TerrainEnergies& from, const TerrainEnergies& to) {
-  return to.stored() - from.stored() + to.losses() - from.losses() - (to.surface_work - from.surface_work) -
-         (to.wall_work - from.wall_work);
-}
 
 /// Every step is a sample.
 FewGrains exact() {
@@ -25,17 +19,16 @@ FewGrains exact() {
   return few;
 }
 
-double mass_of(const FewGrains& few) { return grain_properties(few.options.radius, few.options.density).mass; }
-
-/// Height of the centre at which the floor carries the grain's weight, m.
-double resting_height(const FewGrains& few) {
-  return few.options.radius - std::pow(mass_of(few) * few.gravity / few.floor_stiffness(), 2.0 / 3.0);
+/// A grain that slides on the floor, not yet turning.
+GrainSolver sliding_grain(FewGrains& few, double speed) {
+  few.gravity = kStandardGravity;
+  GrainSolver s = few.make({{0.1, 0.0, few.resting_height(), 0.0}});
+  set_velocity(s, 0, Vec3(speed, 0, 0));
+  s.reset_accounts();
+  return s;
 }
 
-void run(GrainSolver& s, double step, double time) {
-  const auto steps = std::llround(time / step);
-  for (long long k = 0; k < steps; ++k) ASSERT_EQ(s.step(step), -1) << k;
-}
+void run_for(GrainSolver& s, double step, double time) { run(s, step, std::llround(time / step)); }
 
 // ---- one mechanism at a time ------------------------------------------------------------------------------------
 
@@ -47,7 +40,7 @@ TerrainEnergies after_impact(FewGrains few, double speed, double step) {
   set_velocity(s, 0, Vec3(0.5 * speed, 0, 0));
   set_velocity(s, 1, Vec3(-0.5 * speed, 0, 0));
   s.reset_accounts();
-  run(s, step, 4e-3);
+  run_for(s, step, 4e-3);
   EXPECT_EQ(s.accounts().contacts, 0);
   return s.reported_energies();
 }
@@ -59,7 +52,7 @@ TEST(EnergyAccounts, normal_damping_takes_what_the_restitution_leaves) {
       FewGrains few = exact();
       few.precision = precision;
       few.options.restitution = e;
-      const double expected = 0.25 * mass_of(few) * kSpeed * kSpeed * (1.0 - e * e);  // ½ m* v² (1 − e²)
+      const double expected = 0.25 * few.mass() * kSpeed * kSpeed * (1.0 - e * e);  // ½ m* v² (1 − e²)
       double error[2];
       for (const int k : {0, 1}) {
         const TerrainEnergies end = after_impact(few, kSpeed, k == 0 ? 4e-6 : 2e-6);
@@ -79,7 +72,7 @@ TEST(EnergyAccounts, a_clipped_normal_force_loses_what_its_spring_held) {
   few.options.normal_damping = 200.0;
   for (const double step : {2e-6, 1e-6}) {
     const TerrainEnergies end = after_impact(few, 0.5, step);
-    const double lost = 0.25 * mass_of(few) * 0.25 - end.kinetic;
+    const double lost = 0.25 * few.mass() * 0.25 - end.kinetic;
     EXPECT_GT(lost, 0.1 * end.kinetic);
     EXPECT_NEAR(end.normal_damping_loss / lost, 1.0, step / 2e-6 * 4e-3);
   }
@@ -88,14 +81,11 @@ TEST(EnergyAccounts, a_clipped_normal_force_loses_what_its_spring_held) {
 TEST(EnergyAccounts, a_sphere_that_slides_until_it_rolls_loses_two_sevenths_of_its_energy) {
   constexpr double kSpeed = 0.3;
   FewGrains few = exact();
-  few.gravity = kStandardGravity;
   few.options.friction = 0.4;
-  GrainSolver s = few.make({{0.1, 0.0, resting_height(few), 0.0}});
-  set_velocity(s, 0, Vec3(kSpeed, 0, 0));
-  s.reset_accounts();
-  run(s, 5e-6, 0.05);  // it rolls from 2 v/(7 μ g) = 22 ms on
+  GrainSolver s = sliding_grain(few, kSpeed);
+  run_for(s, 5e-6, 0.05);  // it rolls from 2 v/(7 μ g) = 22 ms on
   const TerrainEnergies end = s.reported_energies();
-  const double expected = mass_of(few) * kSpeed * kSpeed / 7.0;
+  const double expected = few.mass() * kSpeed * kSpeed / 7.0;
   EXPECT_NEAR(end.sliding_loss / expected, 1.0, 0.01);
   EXPECT_NEAR((end.sliding_loss + end.tangential_damping_loss + end.opening_loss) / expected, 1.0, 3e-3);
 }
@@ -103,33 +93,27 @@ TEST(EnergyAccounts, a_sphere_that_slides_until_it_rolls_loses_two_sevenths_of_i
 TEST(EnergyAccounts, friction_of_law_hertz_tanh_is_sliding) {
   constexpr double kSpeed = 0.3;
   FewGrains few = exact();
-  few.gravity = kStandardGravity;
   few.options.law = "hertz_tanh";
   few.options.step = 5e-6;
-  GrainSolver s = few.make({{0.1, 0.0, resting_height(few), 0.0}});
-  set_velocity(s, 0, Vec3(kSpeed, 0, 0));
-  s.reset_accounts();
-  run(s, 5e-6, 0.15);
+  GrainSolver s = sliding_grain(few, kSpeed);
+  run_for(s, 5e-6, 0.15);
   const TerrainEnergies end = s.reported_energies();
-  EXPECT_NEAR(end.sliding_loss / (mass_of(few) * kSpeed * kSpeed / 7.0), 1.0, 0.02);
+  EXPECT_NEAR(end.sliding_loss / (few.mass() * kSpeed * kSpeed / 7.0), 1.0, 0.02);
   EXPECT_EQ(end.tangential_damping_loss + end.opening_loss + end.elastic_tangential, 0.0);
 }
 
 TEST(EnergyAccounts, rolling_resistance_takes_its_couple_times_the_way) {
   constexpr double kSpeed = 0.3;
   FewGrains few = exact();
-  few.gravity = kStandardGravity;
   few.options.rolling_friction = 0.05;
-  const double z = resting_height(few);
-  GrainSolver s = few.make({{0.1, 0.0, z, 0.0}});
-  set_velocity(s, 0, Vec3(kSpeed, 0, 0));
-  set_spin(s, 0, Vec3(0, kSpeed / z, 0));
+  GrainSolver s = sliding_grain(few, kSpeed);
+  set_spin(s, 0, Vec3(0, kSpeed / few.resting_height(), 0));
   s.reset_accounts();
-  run(s, 1e-5, 0.1);
+  run_for(s, 1e-5, 0.1);
   const double way = position(s, 0).x() - 0.1;
   EXPECT_NEAR(way, 0.1 * kSpeed, 0.1 * kSpeed * 0.1);
   const TerrainEnergies end = s.reported_energies();
-  const double expected = few.options.rolling_friction * mass_of(few) * few.gravity * way;
+  const double expected = few.options.rolling_friction * few.mass() * few.gravity * way;
   EXPECT_NEAR((end.rolling_loss + end.elastic_tangential) / expected, 1.0, 0.01);
   EXPECT_LT(end.sliding_loss + end.tangential_damping_loss, 0.02 * expected);
 }
@@ -137,12 +121,9 @@ TEST(EnergyAccounts, rolling_resistance_takes_its_couple_times_the_way) {
 TEST(EnergyAccounts, a_contact_that_sticks_loses_by_tangential_damping_alone) {
   constexpr double kSpeed = 0.01;
   FewGrains few = exact();
-  few.gravity = kStandardGravity;
   few.options.friction = 10.0;
-  GrainSolver s = few.make({{0.1, 0.0, resting_height(few), 0.0}});
-  set_velocity(s, 0, Vec3(kSpeed, 0, 0));
-  s.reset_accounts();
-  const double expected = mass_of(few) * kSpeed * kSpeed / 7.0;  // ½ (2/7 m) v²: the rest continues rolling
+  GrainSolver s = sliding_grain(few, kSpeed);
+  const double expected = few.mass() * kSpeed * kSpeed / 7.0;  // ½ (2/7 m) v²: the rest continues rolling
   double most = 0.0;
   for (int k = 0; k < 25000; ++k) {
     ASSERT_EQ(s.step(2e-6), -1);
@@ -170,7 +151,7 @@ TEST(EnergyAccounts, pulling_off_costs_what_cohesion_stored_and_loses_nothing) {
   const TerrainEnergies begin = s.reported_energies();
   EXPECT_NEAR(begin.cohesion / (-c.cohesion_force * overlap), 1.0, 1e-9);
   EXPECT_NEAR(begin.elastic_normal / (0.4 * c.cohesion_force * overlap), 1.0, 1e-9);
-  run(s, 1e-7, 1e-3);
+  run_for(s, 1e-7, 1e-3);
   const TerrainEnergies end = s.reported_energies();
   EXPECT_EQ(s.accounts().contacts, 0);
   EXPECT_EQ(end.losses(), 0.0);
@@ -189,7 +170,7 @@ TEST(EnergyAccounts, a_contact_that_ends_gives_up_its_spring) {
   set_velocity(s, 1, Vec3(-0.25, -0.05, 0));
   s.reset_accounts();
   const TerrainEnergies begin = s.reported_energies();
-  run(s, step, 4e-3);
+  run_for(s, step, 4e-3);
   const TerrainEnergies end = s.reported_energies();
   ASSERT_EQ(s.accounts().contacts, 0);
   EXPECT_EQ(end.elastic_tangential, 0.0);
@@ -221,8 +202,7 @@ GrainSolver crowd(const Crowd& which, FewGrains& few) {
   few.gravity = kStandardGravity;
   const double r = few.options.radius;
   if (which.spread > 0.0) few.smallest = r * (1.0 - which.spread), few.largest = r * (1.0 + which.spread);
-  std::mt19937_64 bits(7);
-  const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
+  Uniform uniform(7);
   std::vector<Quad> at;
   for (int k = 0; k < 6 * 6 * 8; ++k)
     at.push_back({0.0075 + 2.45 * r * (k % 6), -0.0375 + 2.45 * r * (k / 6 % 6), 0.008 + 2.45 * r * (k / 36),
@@ -245,7 +225,7 @@ Balance balance(const Crowd& which, double step, double time) {
   few.options.step = step;
   GrainSolver s = crowd(which, few);
   const TerrainEnergies begin = s.reported_energies();
-  run(s, step, time);
+  run_for(s, step, time);
   return {begin, s.reported_energies()};
 }
 
@@ -289,8 +269,8 @@ TEST(EnergyAccounts, samples_change_no_bit_of_the_motion_and_estimate_their_own_
   FewGrains all = exact(), some = exact();
   some.sample_every = 7;
   GrainSolver a = crowd(which, all), b = crowd(which, some);
-  run(a, 2e-5, 0.15);
-  run(b, 2e-5, 0.15);
+  run_for(a, 2e-5, 0.15);
+  run_for(b, 2e-5, 0.15);
   EXPECT_EQ(hash_of(a), hash_of(b));
   const TerrainEnergies each = a.reported_energies(), sampled = b.reported_energies();
   EXPECT_LT(std::abs(sampled.losses() - each.losses()), 3.0 * sampled.sample_error);
@@ -302,15 +282,11 @@ TEST(EnergyAccounts, same_bits_for_any_threads_and_after_a_restart) {
     FewGrains few;
     GrainSolver one = crowd({law, Precision::mixed, true}, few), two = crowd({law, Precision::mixed, true}, few);
     two.set_threads(2);
-    run(one, 2e-5, 0.01);
-    Archive archive;
-    one.save(archive);
-    GrainSolver again(one.params());
-    again.set_coefficients(one.coefficients());
-    again.restore(archive);
-    run(one, 2e-5, 0.0107);
-    run(again, 2e-5, 0.0107);
-    run(two, 2e-5, 0.0207);
+    run_for(one, 2e-5, 0.01);
+    GrainSolver again = restored(one);
+    run_for(one, 2e-5, 0.0107);
+    run_for(again, 2e-5, 0.0107);
+    run_for(two, 2e-5, 0.0207);
     const auto numbers = [](const GrainSolver& s) {
       Archive out;
       save_fields(out, "", s.reported_energies());
@@ -329,7 +305,7 @@ TEST(EnergyAccounts, begin_with_what_contacts_hold) {
                              Crowd{"hertz_tanh", Precision::mixed}}) {
     FewGrains few = exact();
     GrainSolver s = crowd(which, few);
-    run(s, 2e-5, 0.25);
+    run_for(s, 2e-5, 0.25);
     const TerrainEnergies before = s.reported_energies();
     s.reset_accounts();
     const TerrainEnergies begun = s.reported_energies();

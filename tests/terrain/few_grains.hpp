@@ -1,7 +1,10 @@
 // A handful of grains in a bin, for tests of laws and solver.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -51,6 +54,10 @@ struct FewGrains {
     const ContactCoefficients wall = mix(material, material, Partner::surface, grain, options);
     return {mix(material, material, Partner::grain, grain, options), wall, wall};
   }
+  double mass() const { return grain_properties(options.radius, options.density).mass; }
+  /// Height of the centre at which the floor carries a grain's weight, m.
+  double resting_height() const { return options.radius - resting_overlap(); }
+  double resting_overlap() const { return std::pow(mass() * gravity * std::cos(slope) / floor_stiffness(), 2.0 / 3.0); }
   /// The same as the law itself takes them. @pre options.law is its name
   template <class Law>
   typename Law::template Coefficients<double> pair() const {
@@ -76,6 +83,69 @@ inline std::uint64_t hash_of(const GrainSolver& s) {
   return hash.value();
 }
 
+/// Even numbers from −1 to 1.
+class Uniform {
+ public:
+  explicit Uniform(std::uint64_t seed) : bits_(seed) {}
+  double operator()() { return static_cast<double>(bits_() >> 11) * 0x1p-52 - 1.0; }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+inline void run(GrainSolver& s, double step, std::int64_t count) {
+  for (std::int64_t k = 0; k < count; ++k) ASSERT_EQ(s.step(step), -1) << k;
+}
+/// A solver that continues from what `s` saves.
+inline GrainSolver restored(const GrainSolver& s, int threads = 1) {
+  Archive archive;
+  s.save(archive);
+  SolverParams params = s.params();
+  params.threads = threads;
+  GrainSolver again(params);
+  again.set_coefficients(s.coefficients());
+  again.restore(archive);
+  return again;
+}
+/// One thread and two take the same steps, and so does a solver restored half-way.
+template <class Make>
+void expect_same_bits(Make make, double step, int steps) {
+  GrainSolver one = make(), two = make();
+  two.set_threads(2);
+  run(one, step, steps), run(two, step, steps);
+  EXPECT_EQ(hash_of(one), hash_of(two));
+  EXPECT_EQ(one.accounts().contact_work, two.accounts().contact_work);
+  GrainSolver again = restored(one);
+  const auto rebuilds = one.rebuilds();
+  EXPECT_GT(rebuilds, 1);
+  run(one, step, steps), run(again, step, steps);
+  EXPECT_GT(one.rebuilds(), rebuilds);
+  EXPECT_EQ(one.rebuilds(), again.rebuilds());
+  EXPECT_EQ(hash_of(one), hash_of(again));
+  EXPECT_EQ(one.accounts().contact_work, again.accounts().contact_work);
+}
+/// Momentum changes by what the walls give, and the account of energy closes, from new accounts on.
+inline void expect_books_close(GrainSolver& s, double step, int steps, double tolerance) {
+  const Vec3 p0 = s.accounts().velocity;
+  const double k0 = s.accounts().kinetic, m = s.params().grain.mass;
+  run(s, step, steps);
+  const Accounts& a = s.accounts();
+  EXPECT_LT((m * (a.velocity - p0) - a.wall_impulse).norm(), tolerance * m * s.grains().count);
+  const double dissipation = -a.contact_work - (a.elastic - a.elastic_start);
+  EXPECT_NEAR(a.kinetic + a.elastic - a.elastic_start + dissipation, k0, 1e-9 * k0);
+  EXPECT_GT(dissipation, 0.05 * k0);
+}
+/// Steps until grains have touched and parted. @returns whether they have
+inline bool step_until_parted(GrainSolver& s, double step, int most) {
+  bool touched = false;
+  for (int k = 0; k < most; ++k) {
+    s.step(step);
+    const bool now = s.accounts().contacts > 0;
+    if (touched && !now) return true;
+    touched = now;
+  }
+  return false;
+}
 inline Vec3 vec(const Quad& q) { return {q.x, q.y, q.z}; }
 inline Quad quad(const Vec3& v) { return {v.x(), v.y(), v.z(), 0.0}; }
 inline Vec3 position(const GrainSolver& s, int id) { return vec(s.grains().position[s.index_of(id)]); }

@@ -10,6 +10,7 @@
 #include "protocol/core/error.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "tests/refusal.hpp"
+#include "tests/saved.hpp"
 #include "tests/terrain/ground_push.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
@@ -81,12 +82,10 @@ TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {
   GroundOptions plane, curb;
   curb.profile = {{2.0, 0.3}, {2.0, 0.5}};
   const Vec3 up(0.0, 0.0, 0.3);
-  const auto a = make_rigid_ground(plane), b = make_rigid_ground(curb);
   const Vec3 velocity(0.5, 0.1, -0.01);
   const SurfaceState low = placed(wheel, {0.3, 0.0, 0.398}, velocity),
                      high = placed(wheel, Vec3(0.3, 0.0, 0.398) + up, velocity);
-  a->attach(wheel.mesh, rubber(0.8), low);
-  b->attach(wheel.mesh, rubber(0.8), high);
+  const auto a = ground_under(wheel, low, plane), b = ground_under(wheel, high, curb);
   const Push on_plane = push(*a, low, 1e-5), on_curb = push(*b, high, 1e-5);
   // Damping goes with the speed along facets that stand at up to 6°.
   EXPECT_NEAR(on_curb.sums.force.z() / on_plane.sums.force.z(), 1.0, 2e-3);
@@ -100,15 +99,13 @@ TEST(GroundProfile, contact_without_friction_and_damping_gives_back_what_it_took
   options.profile = kCurb;
   options.ground_damping = 0.0;
   options.ground_stiffness = 1e7;
-  testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 1);
-  const auto ground = make_rigid_ground(options);
+  const testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 1);
   const auto at = [](double phase) {  // the wheel's centre: in contact with face, edge and top in turn
     const double angle = 2.0 * M_PI * phase;
     return Vec3(0.75 + 0.03 * (1.0 - std::cos(angle)), 0.0, 0.52 - 0.03 * std::sin(angle));
   };
   const int steps = 4000;
-  SurfaceState state = placed(wheel, at(0.0), Vec3::Zero());
-  ground->attach(wheel.mesh, rubber(0.0), state);
+  const auto ground = ground_under(wheel, placed(wheel, at(0.0), Vec3::Zero()), options, 0.0);
   const double duration = 1e-3;
   double work = 0.0, taken = 0.0, most = 0.0, worst = 0.0;
   const double first = ground->gather_state().elastic_energy;
@@ -130,9 +127,8 @@ TEST(GroundProfile, friction_lies_along_the_face_that_is_touched) {
   GroundOptions options;
   options.profile = kCurb;
   const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.0, 0.05, 0.1});
-  const auto ground = make_rigid_ground(options);
   const SurfaceState start = placed(block, {1.0004, 0.0, 0.05}, Vec3(0.0, 0.0, 3.0));
-  ground->attach(block.mesh, rubber(0.5), start);
+  const auto ground = ground_under(block, start, options, 0.5);
   Push one;
   SurfaceState now = start;
   for (int k = 0; k < 100; ++k) {
@@ -147,9 +143,8 @@ TEST(GroundProfile, a_restored_ground_continues_bit_for_bit) {
   GroundOptions options;
   options.profile = kCurb;
   const testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 1);
-  const auto one = make_rigid_ground(options);
   SurfaceState state = placed(wheel, {0.62, 0.0, 0.3995}, Vec3(0.4, 0.1, 0.02));
-  one->attach(wheel.mesh, rubber(0.5), state);
+  const auto one = ground_under(wheel, state, options, 0.5);
   const auto go = [&](Terrain& ground, int count) {
     Push last;
     for (int k = 0; k < count; ++k) {
@@ -159,10 +154,8 @@ TEST(GroundProfile, a_restored_ground_continues_bit_for_bit) {
     return last;
   };
   go(*one, 100);
-  Archive archive;
-  one->save(archive);
   const auto other = make_rigid_ground(options);
-  other->restore(archive);
+  other->restore(testing::saved(*one));
   const SurfaceState kept = state;
   const Push a = go(*one, 100);
   state = kept;

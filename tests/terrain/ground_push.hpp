@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "terrain/terrain.hpp"
+#include <memory>
+
+#include "terrain/rigid/rigid_ground.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {
@@ -18,6 +20,14 @@ struct Push {
   NodalForces forces;
   ContactSums sums;
 };
+
+/// Ground with a surface on it.
+inline std::unique_ptr<Terrain> ground_under(const testing::Surface& surface, const SurfaceState& start,
+                                             const GroundOptions& options = {}, double friction = 0.8) {
+  auto ground = make_rigid_ground(options);
+  ground->attach(surface.mesh, rubber(friction), start);
+  return ground;
+}
 
 /// One interval of a surface that moves with constant velocity and begins at `start`.
 inline Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {

@@ -7,12 +7,9 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
-#include "terrain/dem/beds/bed_layers.hpp"
-#include "terrain/dem/beds/bed_settling.hpp"
-#include "terrain/dem/solver_setup.hpp"
 #include "terrain/dem/solver_state_check.hpp"
 #include "tests/refusal.hpp"
-#include "tests/terrain/few_grains.hpp"
+#include "tests/terrain/pressed_bed.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -28,105 +25,29 @@ DemOptions wide_options() {
   return options;
 }
 
-const Archive& settled() {
-  static const Archive kBed = [] {
-    const DemOptions options = wide_options();
-    GrainSolver solver(settling_params(options));
-    solver.place(bed_layers(solver.params().bin, options.radius, options.layers, 1));
-    settle(solver, options, {});
-    Archive archive;
-    solver.save(archive);
-    return archive;
-  }();
-  return kBed;
+GrainSolver bed(bool activity) {
+  static const Archive kBed = settled_bed(wide_options());
+  return solver_of(wide_options(), kBed, activity);
 }
 
-GrainSolver bed(bool activity, const Archive& archive = settled()) {
-  const DemOptions options = wide_options();
-  SolverParams params = solver_params(options);
-  params.activity = activity;
-  GrainSolver solver(params);
-  solver.restore(archive);
-  solver.set_coefficients(run_coefficients(options, options.step));
-  return solver;
+Plate plate_over(GrainSolver& solver, double x0, double x1, double y0, double y1, double z) {
+  return {solver, wide_options(), testing::under_side(x0, x1, y0, y1, z)};
 }
-
-/// A horizontal plate, its lower side rough as rubber.
-class Plate {
- public:
-  Plate(GrainSolver& solver, double x0, double x1, double y0, double y1, double z) : solver_(solver) {
-    const DemOptions options = wide_options();
-    SurfaceMesh mesh;
-    mesh.vertex_count = 4;
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    state_.position = {{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}};
-    state_.velocity.assign(4, Vec3::Zero());
-    const ContactMaterial rubber{2e7, 0.4, 0.9, 0.2, 2e6, 13.0, 0.0};
-    solver.surfaces().attach(
-        mesh, rubber, mix(grain_material(options), rubber, Partner::surface, solver.params().grain, options), state_);
-    solver.surfaces().restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, solver.top() + 0.1)});
-  }
-
-  /// That of a solver which was saved, in the one that was restored from it.
-  Plate(GrainSolver& restored, const Plate& saved) : solver_(restored), state_(saved.state_) {
-    const DemOptions options = wide_options();
-    SurfaceContacts& surfaces = restored.surfaces();
-    surfaces.set_coefficients(
-        0, mix(grain_material(options), surfaces.material(0), Partner::surface, restored.params().grain, options));
-    surfaces.restrict_to({Vec3(-1, -2, -1), Vec3(2, 2, restored.top() + 0.1)});
-  }
-
-  /// Steps with the plate moving; the mean force on it, N.
-  Vec3 move(const Vec3& velocity, int steps) {
-    const double dt = wide_options().step;
-    std::vector<NodalForces> nodal(1);
-    std::vector<ContactSums> sums(1);
-    Vec3 mean = Vec3::Zero();
-    for (int k = 0; k < steps; ++k) {
-      for (Vec3& v : state_.velocity) v = velocity;
-      solver_.surfaces().set_targets({&state_, 1}, dt);
-      solver_.surfaces().move_to(0.0);
-      EXPECT_EQ(solver_.step(dt), -1);
-      solver_.surfaces().move_to(1.0);
-      solver_.surfaces().finish(dt, nodal, sums);
-      for (Vec3& x : state_.position) x += dt * velocity;
-      mean += sums[0].force / steps;
-      work += sums[0].work;
-    }
-    return mean;
-  }
-
-  double work = 0.0;  // of the terrain on it, J
-
- private:
-  GrainSolver& solver_;
-  SurfaceState state_;
-};
-
 /// A plate over a corner of the bed, a little above it.
-Plate corner_plate(GrainSolver& solver, double z) { return {solver, 0.1, 0.2, -0.6, -0.5, z}; }
+Plate corner_plate(GrainSolver& solver, double z) { return plate_over(solver, 0.1, 0.2, -0.6, -0.5, z); }
 Plate corner_plate(GrainSolver& solver) { return corner_plate(solver, solver.top()); }
 
-std::int64_t asleep_beyond(const GrainSolver& s, double y) {
+/// Grains of the parcels that lie beyond y, or of those that sleep.
+std::int64_t grains_beyond(const GrainSolver& s, double y, bool asleep = false) {
   std::int64_t count = 0;
   for (int k = 0; k < s.strips().count(); ++k)
     for (int p = 0; p < s.strips().across(); ++p)
-      if (s.strips()[k].parcels[p].asleep && s.strips().parcel_between(p, y, 1e300))
+      if ((s.strips()[k].parcels[p].asleep || !asleep) && s.strips().parcel_between(p, y, 1e300))
         count += s.strips()[k].parcels[p].part.grains();
   return count;
 }
 
-std::int64_t grains_beyond(const GrainSolver& s, double y) {
-  std::int64_t count = 0;
-  for (int k = 0; k < s.strips().count(); ++k)
-    for (int p = 0; p < s.strips().across(); ++p)
-      if (s.strips().parcel_between(p, y, 1e300)) count += s.strips()[k].parcels[p].part.grains();
-  return count;
-}
-
-void rest(GrainSolver& s, int steps) {
-  for (int k = 0; k < steps; ++k) ASSERT_EQ(s.step(wide_options().step), -1);
-}
+void rest(GrainSolver& s, int steps) { run(s, wide_options().step, steps); }
 
 TEST(Parcels, narrow_strips_are_whole_and_wide_ones_are_cut) {
   EXPECT_EQ(parcels_across(1), 1);
@@ -160,8 +81,8 @@ TEST(Parcels, awake_bed_has_the_bits_that_it_has_uncut) {
   // A plate that hovers over all of it keeps every parcel awake: calm ones are evaluated alone whenever they might fall
   // asleep.
   GrainSolver cut = bed(true), whole = bed(false);
-  Plate over_cut(cut, 0.01, 0.29, -0.64, 0.64, cut.top() + 1e-3),
-      over_whole(whole, 0.01, 0.29, -0.64, 0.64, whole.top() + 1e-3);
+  Plate over_cut = plate_over(cut, 0.01, 0.29, -0.64, 0.64, cut.top() + 1e-3);
+  Plate over_whole = plate_over(whole, 0.01, 0.29, -0.64, 0.64, whole.top() + 1e-3);
   over_cut.move(Vec3::Zero(), 3 * kCalmSteps);
   over_whole.move(Vec3::Zero(), 3 * kCalmSteps);
   EXPECT_EQ(cut.accounts().active, cut.grains().count);
@@ -188,7 +109,7 @@ TEST(Parcels, wheel_on_one_side_leaves_the_other_asleep) {
   EXPECT_GT(solver.accounts().active, solver.grains().count / 50);
   EXPECT_LT(solver.accounts().active, solver.grains().count / 2);
   // Strips under the plate are awake there and asleep elsewhere.
-  EXPECT_GT(asleep_beyond(solver, 0.0), 95 * grains_beyond(solver, 0.0) / 100);
+  EXPECT_GT(grains_beyond(solver, 0.0, true), 95 * grains_beyond(solver, 0.0) / 100);
 }
 
 TEST(Parcels, disturbance_wakes_across_one_parcel_per_step) {
@@ -221,12 +142,7 @@ TEST(Parcels, sleeping_bed_feels_the_same_pressure) {
   rest(all, 3000);
   const double from = all.top();
   Plate on_some = corner_plate(some, from), on_all = corner_plate(all, from);
-  double most = 0.0, error = 0.0;
-  for (int n = 0; n < 20; ++n) {
-    const double a = on_some.move(Vec3(0, 0, -0.1), 100).z(), b = on_all.move(Vec3(0, 0, -0.1), 100).z();
-    most = std::max(most, b);
-    error = std::max(error, std::abs(a - b));
-  }
+  const auto [error, most] = difference_pressed(on_some, on_all);
   EXPECT_GT(most, 10.0);
   EXPECT_LT(error, 0.05 * most);
   EXPECT_LT(some.accounts().active, some.grains().count / 2);
@@ -265,9 +181,7 @@ TEST(Parcels, same_bits_for_one_and_two_threads_and_after_a_restart_with_some_as
   ASSERT_GT(one.accounts().active, 0);
   ASSERT_LT(one.accounts().active, one.grains().count);
   EXPECT_EQ(hash_of(one), hash_of(two));
-  Archive middle;
-  one.save(middle);
-  GrainSolver again = bed(true, middle);
+  GrainSolver again = restored(one);
   Plate third(again, first);
   for (int k = 0; k < 600; ++k) {
     for (Plate* plate : {&first, &third}) plate->move(Vec3(0, -0.2, 0.02), 1);
@@ -294,8 +208,7 @@ TEST(Parcels, grain_that_is_sorted_into_another_sleeping_parcel_is_counted_once)
   few.gravity = kStandardGravity;
   few.activity = true;
   const double radius = few.options.radius;
-  const double load = grain_properties(radius, few.options.density).mass * kStandardGravity;
-  const double z = radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
+  const double z = few.resting_height();
   const int columns = static_cast<int>(few.options.width / (2.6 * radius)), across = parcels_across(columns);
   ASSERT_GT(across, 1);
   const double side = -0.5 * few.options.width + few.options.width / columns * (3 * columns / across);
@@ -330,7 +243,7 @@ TEST(Parcels, bed_that_slept_by_other_parcels_wakes_and_a_run_is_refused) {
   EXPECT_EQ(saved_across(saved), asleep.strips().across());
   EXPECT_NO_THROW(require_same_parcels(saved, asleep.strips()));
 
-  GrainSolver never = bed(false, saved);  // its grains may not sleep
+  GrainSolver never = solver_of(wide_options(), saved, false);  // its grains may not sleep
   EXPECT_EQ(hash_of(never), hash_of(asleep));
   rest(never, 1);
   EXPECT_EQ(never.accounts().active, never.grains().count);
@@ -357,13 +270,12 @@ TEST(Parcels, periodic_sides_sleep_and_wake_around_the_seam) {
   GrainSolver cut = few.make(row);
   few.activity = false;
   GrainSolver whole = few.make(row);
-  for (GrainSolver* s : {&cut, &whole})
-    for (int k = 0; k < 4000; ++k) ASSERT_EQ(s->step(few.options.step), -1);
+  for (GrainSolver* s : {&cut, &whole}) run(*s, few.options.step, 4000);
   EXPECT_EQ(cut.accounts().active, 0);
   for (GrainSolver* s : {&cut, &whole}) {
     set_velocity(*s, 0, Vec3(0.0, -1.0, 0.0));  // over the seam
     s->wake(s->index_of(0));
-    for (int k = 0; k < 2000; ++k) ASSERT_EQ(s->step(few.options.step), -1);
+    run(*s, few.options.step, 2000);
   }
   for (const int id : {0, 1, n - 2, n - 1})
     EXPECT_NEAR((position(cut, id) - position(whole, id)).norm(), 0.0, 1e-4) << id;

@@ -8,6 +8,8 @@
 
 #include "protocol/core/constants.hpp"
 #include "tests/refusal.hpp"
+#include "tests/saved.hpp"
+#include "tests/terrain/energy_residual.hpp"
 #include "tests/terrain/ground_push.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
@@ -17,6 +19,8 @@ namespace {
 using testing::box;
 using testing::Surface;
 using testing::wheel;
+
+const testing::Surface kBlock = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
 
 /// The push on a surface that has slid with constant velocity for as long as the layer's shear takes to settle.
 Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3, int intervals = 500) {
@@ -30,10 +34,8 @@ Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3,
 
 TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
   GroundOptions options;
-  const auto ground = make_rigid_ground(options);
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
-  const SurfaceState start = placed(block, {3.0, 0.0, -4e-4}, Vec3::Zero());
-  ground->attach(block.mesh, rubber(), start);
+  const SurfaceState start = placed(kBlock, {3.0, 0.0, -4e-4}, Vec3::Zero());
+  const auto ground = ground_under(kBlock, start, options);
   const Push one = push(*ground, start);
   EXPECT_NEAR(one.sums.force.z() / (options.ground_stiffness * 4e-4 * 0.02), 1.0, 1e-12);
   EXPECT_NEAR(one.sums.tangential.norm(), 0.0, 1e-12);
@@ -44,12 +46,11 @@ TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
 
 TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
   GroundOptions options;
-  const auto ground = make_rigid_ground(options);
   // Bottom face tilted about y, its low edge 1 mm deep, its high edge above: a wedge of pressure of length L.
   const double tilt = 0.01, depth = 1e-3, length = depth / std::tan(tilt);
   const testing::Surface block = testing::box({0.0, -0.05, 0.0}, {0.2, 0.05, 0.1});
   const SurfaceState start = placed(block, {0.0, 0.0, -depth}, Vec3::Zero(), -tilt);
-  ground->attach(block.mesh, rubber(), start);
+  const auto ground = ground_under(block, start, options);
   const Push one = push(*ground, start);
   const double expected = options.ground_stiffness * 0.1 * 0.5 * depth * length;
   EXPECT_NEAR(one.sums.force.z() / expected, 1.0,
@@ -58,15 +59,13 @@ TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
 }
 
 TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
-  const auto coarse_ground = make_rigid_ground({}), fine_ground = make_rigid_ground({});
   const testing::Surface coarse = testing::sheet(-0.1, -0.1, 0.2, 1, 1, [](double, double) { return 0.0; });
   const testing::Surface fine = testing::sheet(-0.1, -0.1, 0.02, 10, 10, [](double, double) { return 0.0; });
   const double tilt = 4e-3;
   const Vec3 velocity(0.3, 0.1, 0.0);
   const SurfaceState a = placed(coarse, {0.0, 0.0, -1e-4}, velocity, tilt);
   const SurfaceState b = placed(fine, {0.0, 0.0, -1e-4}, velocity, tilt);
-  coarse_ground->attach(coarse.mesh, rubber(), a);
-  fine_ground->attach(fine.mesh, rubber(), b);
+  const auto coarse_ground = ground_under(coarse, a), fine_ground = ground_under(fine, b);
   const Push from_coarse = slide_steadily(*coarse_ground, a), from_fine = slide_steadily(*fine_ground, b);
   // Exact but for the rounding of velocities, which come from differences of positions.
   EXPECT_LT((from_coarse.sums.force - from_fine.sums.force).norm() / from_fine.sums.force.norm(), 1e-10);
@@ -79,11 +78,9 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
       GroundOptions options;
       options.friction = 0.7;
       options.friction_velocity_scale = scale;
-      const auto ground = make_rigid_ground(options);
-      const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
       const Vec3 direction = Vec3(0.6, -0.8, 0.0);
-      const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, speed * direction);
-      ground->attach(block.mesh, rubber(0.9), start);  // the smaller coefficient rules
+      const SurfaceState start = placed(kBlock, {0.0, 0.0, -4e-4}, speed * direction);
+      const auto ground = ground_under(kBlock, start, options, 0.9);  // the smaller coefficient rules
       const Push one = slide_steadily(*ground, start);
       const Vec3 expected = -0.7 * one.sums.normal.z() * std::tanh(scale * speed) * direction;
       EXPECT_LT((one.sums.tangential - expected).norm(), 1e-11 * one.sums.normal.norm()) << scale << ' ' << speed;
@@ -99,10 +96,8 @@ TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
   options.friction = 0.7;
   options.friction_velocity_scale = 1e6;
   options.ground_damping = 0.0;
-  const auto ground = make_rigid_ground(options);
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
-  const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {1e-2, 0.0, 0.0});
-  ground->attach(block.mesh, rubber(), start);
+  const SurfaceState start = placed(kBlock, {0.0, 0.0, -4e-4}, {1e-2, 0.0, 0.0});
+  const auto ground = ground_under(kBlock, start, options);
   const double at_rest = ground->gather_state().elastic_energy;
   const Push one = push(*ground, start, 1e-2, 1000);  // 0.1 mm; it would slide from 1.1 mm on
   const double stiffness = options.ground_shear_stiffness * 0.02;
@@ -120,12 +115,11 @@ TEST(RigidGround, shears_what_it_touches_from_then_on) {
   options.friction = 10.0;
   const double slope = 0.01, c = 4.0, v = 0.02, width = 0.06, dt = 1e-5;
   for (const double cell : {0.03, 0.01}) {
-    const auto ground = make_rigid_ground(options);
     const int across = static_cast<int>(std::lround(width / cell));
     const testing::Surface tread =
         testing::sheet(0.0, 0.0, cell, 4 * across, across, [&](double x, double) { return slope * x; });
     SurfaceState state = placed(tread, Vec3::Zero(), {0.0, v, -slope * c});
-    ground->attach(tread.mesh, rubber(10.0), state);
+    const auto ground = ground_under(tread, state, options, 10.0);
     Push one;
     const int steps = 3000;
     for (int i = 0; i < steps; ++i) {
@@ -148,12 +142,11 @@ TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
     GroundOptions options;
     options.friction = 0.7;
     options.friction_velocity_scale = scale;
-    const auto ground = make_rigid_ground(options);
-    testing::Surface patch = testing::box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
+    const testing::Surface patch = testing::box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
     const double mass = 2e-3, h = 4e-5, drive = 1e5, speed = 0.02;
     Vec3 position(0.0, 0.0, -50.0 / (options.ground_stiffness * 1e-3)), velocity = Vec3::Zero();
     double pulled = 0.0, force = 0.0, last = 0.0, swing = 0.0, mean = 0.0;
-    ground->attach(patch.mesh, rubber(), placed(patch, position, velocity));
+    const auto ground = ground_under(patch, placed(patch, position, velocity), options);
     for (int i = 0; i < 20000; ++i) {
       const Push one = push(*ground, placed(patch, position, velocity), h);
       pulled += h * speed;
@@ -174,11 +167,9 @@ TEST(RigidGround, does_not_let_a_light_vertex_chatter) {
 
 TEST(RigidGround, gives_no_tractive_effort_without_friction) {
   for (double friction : {0.0, 0.5}) {
-    GroundOptions options;
-    const auto ground = make_rigid_ground(options);
     const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
     const SurfaceState start = placed(round, {0.0, 0.0, 0.4673 - 1e-3}, {2.0, 0.0, 0.0}, 0.02, 8.56);
-    ground->attach(round.mesh, rubber(friction), start);
+    const auto ground = ground_under(round, start, {}, friction);
     const Push first = push(*ground, start, 4e-4, 40);
     SurfaceState later = start;
     for (std::size_t v = 0; v < later.position.size(); ++v) later.position[v] += 4e-4 * start.velocity[v];
@@ -210,10 +201,8 @@ TEST(RigidGround, mirrors_what_is_mirrored) {
 TEST(RigidGround, never_pulls) {
   GroundOptions options;
   options.ground_damping = 1e7;
-  const auto ground = make_rigid_ground(options);
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
-  const SurfaceState start = placed(block, {0.0, 0.0, -4e-4}, {0.0, 0.0, 1.0});
-  ground->attach(block.mesh, rubber(), start);
+  const SurfaceState start = placed(kBlock, {0.0, 0.0, -4e-4}, {0.0, 0.0, 1.0});
+  const auto ground = ground_under(kBlock, start, options);
   const Push one = push(*ground, start);
   EXPECT_EQ(one.sums.force.norm(), 0.0);
   EXPECT_TRUE(one.forces.vertex.empty());
@@ -223,10 +212,8 @@ TEST(RigidGround, evens_out_the_facets_of_a_rolling_wheel) {
   // 60 facets: a vertex stands 0.64 mm farther out than a facet's middle; rigid contact would lift the wheel by that.
   const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
   auto load = [&](double height, double turn) {
-    const auto ground = make_rigid_ground({});
     const SurfaceState start = placed(round, {0.0, 0.0, height}, Vec3::Zero(), turn);
-    ground->attach(round.mesh, rubber(), start);
-    return push(*ground, start).sums.force.z();
+    return push(*ground_under(round, start), start).sums.force.z();
   };
   double lowest = 1e9, highest = 0.0;
   for (int i = 0; i <= 30; ++i) {
@@ -247,7 +234,7 @@ TEST(RigidGround, evens_out_the_facets_of_a_rolling_wheel) {
 /// A block of mass m that falls on the ground, stepped as a partner of the co-simulation: the force of an interval
 /// acts on it during the next.
 struct Faller {
-  testing::Surface surface = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
+  testing::Surface surface = kBlock;
   double mass = 50.0;             // kg
   double load = 0.0;              // on top of its weight, N
   Vec3 position{0.0, 0.0, 2e-3};  // m
@@ -269,9 +256,8 @@ struct Faller {
 TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
   GroundOptions options;
   options.ground_damping = 1e6;
-  const auto ground = make_rigid_ground(options);
   Faller block;
-  ground->attach(block.surface.mesh, rubber(), block.state());
+  const auto ground = ground_under(block.surface, block.state(), options);
   const double h = 4e-5;
   for (int i = 0; i < 20000; ++i) block.advance(*ground, h);
   const double weight = block.mass * kStandardGravity;
@@ -291,10 +277,9 @@ TEST(RigidGround, brings_a_dropped_block_to_rest_with_its_weight_balanced) {
 TEST(RigidGround, damps_bouncing_as_a_linear_oscillator_would) {
   GroundOptions options;
   options.ground_damping = 2e5;
-  const auto ground = make_rigid_ground(options);
   Faller block;
   block.position.z() = -0.5 * block.mass * kStandardGravity / (options.ground_stiffness * 0.02);
-  ground->attach(block.surface.mesh, rubber(), block.state());
+  const auto ground = ground_under(block.surface, block.state(), options);
   const double omega = std::sqrt(options.ground_stiffness * 0.02 / block.mass);
   const double zeta = 0.5 * options.ground_damping * omega / options.ground_stiffness;
   const double h = 1e-6, rest = -block.mass * kStandardGravity / (options.ground_stiffness * 0.02);
@@ -308,13 +293,12 @@ TEST(RigidGround, holds_a_light_vertex_at_the_usual_step) {
   // A tread vertex of 2.8 g that carries 10 cm² at 240 kPa, without any damping of its own: the force that comes one
   // interval late acts as −k H, the ground's damping has to outweigh it. (Larger steps lean on the tire's damping.)
   for (double h : {1e-5, 2e-5, 4e-5}) {
-    const auto ground = make_rigid_ground({});
     Faller vertex;
     vertex.surface = testing::box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
     vertex.mass = 2.8e-3;
     vertex.load = 240.0;
     vertex.position.z() = -5e-4;
-    ground->attach(vertex.surface.mesh, rubber(), vertex.state());
+    const auto ground = ground_under(vertex.surface, vertex.state());
     for (int i = 0; i < 2000; ++i) vertex.advance(*ground, h);
     EXPECT_NEAR(vertex.position.z(), -(240.0 + vertex.mass * kStandardGravity) / 4e5, 1e-9) << h;
   }
@@ -324,32 +308,22 @@ TEST(RigidGround, work_of_its_spring_is_its_elastic_energy) {
   GroundOptions options;
   options.ground_damping = 0.0;
   options.friction = 0.0;
-  const auto ground = make_rigid_ground(options);
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
-  ground->attach(block.mesh, rubber(), placed(block, {0.0, 0.0, 0.0}, Vec3::Zero()));
+  const auto ground = ground_under(kBlock, testing::at_rest(kBlock), options);
   double work = 0.0;
   for (int i = 0; i < 10; ++i)
-    work += push(*ground, placed(block, {0.0, 0.0, -1e-4 * i}, {0.0, 0.0, -0.1}), 1e-3, 3).sums.work;
+    work += push(*ground, placed(kBlock, {0.0, 0.0, -1e-4 * i}, {0.0, 0.0, -0.1}), 1e-3, 3).sums.work;
   const TerrainState state = ground->gather_state();
   EXPECT_NEAR(-work / state.elastic_energy, 1.0, 1e-12);
   EXPECT_NEAR(state.energies.losses() / state.elastic_energy, 0.0, 1e-12);
-}
-
-/// What the accounts leave over between two reports, J.
-double residual(const TerrainEnergies& from, const TerrainEnergies& to) {
-  return to.stored() - from.stored() + to.losses() - from.losses() - (to.surface_work - from.surface_work) -
-         (to.wall_work - from.wall_work);
 }
 
 TEST(RigidGround, books_each_loss_where_it_belongs) {
   // Steady sliding under a constant depth: μ N tanh(c v) v t is lost by sliding, nothing else happens.
   GroundOptions options;
   options.friction = 0.5;
-  const auto ground = make_rigid_ground(options);
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   const double speed = 0.2, load = options.ground_stiffness * 4e-4 * 0.02;
-  SurfaceState state = placed(block, {0.0, 0.0, -4e-4}, {speed, 0.0, 0.0});
-  ground->attach(block.mesh, rubber(), state);
+  SurfaceState state = placed(kBlock, {0.0, 0.0, -4e-4}, {speed, 0.0, 0.0});
+  const auto ground = ground_under(kBlock, state, options);
   const TerrainEnergies start = ground->gather_state().energies;
   slide_steadily(*ground, state, 1e-4, 2000);
   const TerrainEnergies begin = ground->gather_state().energies;
@@ -375,15 +349,13 @@ TEST(RigidGround, books_each_loss_where_it_belongs) {
 
 TEST(RigidGround, accounts_of_its_shear_close_at_any_step) {
   // A block that begins to slide at constant depth: all work goes into shear and friction.
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   GroundOptions options;
   options.ground_shear_stiffness = 1.6e7;
   options.ground_damping = 1e4;
   options.friction_velocity_scale = 50.0;
   for (const double h : {1e-3, 1e-4}) {
-    const auto ground = make_rigid_ground(options);
-    const SurfaceState state = placed(block, {0.0, 0.0, -4e-4}, Vec3(0.3, -0.2, 0.0));
-    ground->attach(block.mesh, rubber(), state);
+    const SurfaceState state = placed(kBlock, {0.0, 0.0, -4e-4}, Vec3(0.3, -0.2, 0.0));
+    const auto ground = ground_under(kBlock, state, options);
     const TerrainEnergies begin = ground->gather_state().energies;
     slide_steadily(*ground, state, h, static_cast<int>(std::lround(0.03 / h)));
     const TerrainEnergies end = ground->gather_state().energies;
@@ -399,13 +371,12 @@ TEST(RigidGround, residual_of_a_rolling_wheel_shrinks_with_the_step) {
   for (const int k : {0, 1, 2}) {
     GroundOptions options;
     options.ground_damping = 1e6;
-    const auto ground = make_rigid_ground(options);
     const double h = 4e-5 / (1 << k), spin = 8.56, speed = 0.9 * spin * 0.4673;
     const auto at = [&](double t) {
       const double z = 0.4673 - 4e-4 + 6e-4 * std::cos(300.0 * t), v_z = -6e-4 * 300.0 * std::sin(300.0 * t);
       return placed(round, {speed * t, 0.0, z}, {speed, 0.0, v_z}, spin * t, spin);
     };
-    ground->attach(round.mesh, rubber(), at(0.0));
+    const auto ground = ground_under(round, at(0.0), options);
     const TerrainEnergies begin = ground->gather_state().energies;
     const int steps = 2500 * (1 << k);
     for (int i = 0; i < steps; ++i) push(*ground, at(h * i), h);
@@ -424,11 +395,10 @@ TEST(RigidGround, residual_of_a_rolling_wheel_shrinks_with_the_step) {
 
 TEST(RigidGround, carries_several_surfaces_each_with_its_own_force) {
   const auto ground = make_rigid_ground({});
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
   std::vector<SurfaceState> state;
   for (int k = 0; k < 4; ++k) {
-    state.push_back(placed(block, {1.0 * k, 0.0, -1e-4 * (k + 1)}, Vec3::Zero()));
-    ground->attach(block.mesh, rubber(), state.back());
+    state.push_back(placed(kBlock, {1.0 * k, 0.0, -1e-4 * (k + 1)}, Vec3::Zero()));
+    ground->attach(kBlock.mesh, rubber(), state.back());
   }
   std::vector<NodalForces> forces(4);
   std::vector<ContactSums> sums(4);
@@ -437,15 +407,12 @@ TEST(RigidGround, carries_several_surfaces_each_with_its_own_force) {
 }
 
 TEST(RigidGround, continues_a_saved_state_bit_for_bit) {
-  const auto ground = make_rigid_ground({});
   const testing::Surface round = testing::wheel(0.4673, 0.2, 60, 4);
   auto at = [&](int i) { return placed(round, {1.2e-4 * i, 0.0, 0.4673 - 8e-4}, {3.0, 0.0, -0.01}, 3.4e-4 * i, 8.56); };
-  ground->attach(round.mesh, rubber(), at(0));
+  const auto ground = ground_under(round, at(0));
   for (int i = 0; i < 5; ++i) push(*ground, at(i), 4e-5, 2);
-  Archive archive;
-  ground->save(archive);
   const auto again = make_rigid_ground({});
-  again->restore(archive);
+  again->restore(testing::saved(*ground));
   EXPECT_EQ(again->gather_state().energies.losses(), ground->gather_state().energies.losses());
   for (int i = 5; i < 10; ++i) {
     const Push a = push(*ground, at(i), 4e-5, 2), b = push(*again, at(i), 4e-5, 2);
@@ -466,10 +433,9 @@ TEST(RigidGround, refuses_bad_options_and_surfaces) {
   options.friction = std::nan("");
   EXPECT_THROW(make_rigid_ground(options), Error);
   const auto ground = make_rigid_ground({});
-  const testing::Surface block = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
-  EXPECT_THROW(ground->attach(block.mesh, rubber(), placed(block, {0.0, 0.0, -0.02}, Vec3::Zero())), Error);
-  ground->attach(block.mesh, rubber(), placed(block, Vec3::Zero(), Vec3::Zero()));
-  SurfaceState broken = placed(block, Vec3::Zero(), Vec3::Zero());
+  EXPECT_THROW(ground->attach(kBlock.mesh, rubber(), placed(kBlock, {0.0, 0.0, -0.02}, Vec3::Zero())), Error);
+  ground->attach(kBlock.mesh, rubber(), testing::at_rest(kBlock));
+  SurfaceState broken = testing::at_rest(kBlock);
   broken.position[3].x() = std::nan("");
   NodalForces forces;
   ContactSums sums;

@@ -1,6 +1,5 @@
 // Roads: heights of ISO 8608 against the density of their class, and measured roads read from CSV and OpenCRG.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -18,6 +17,7 @@
 #include "terrain/rigid/roads/open_crg.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -77,25 +77,17 @@ TEST(IsoRoad, begins_and_ends_level_and_is_drawn_by_its_seed) {
 
 class RoadFile : public ::testing::Test {
  protected:
-  ~RoadFile() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path put(const std::string& name, const std::string& bytes) {
-    std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return folder_ / name;
+    std::ofstream(folder_.path() / name, std::ios::binary) << bytes;
+    return folder_.path() / name;
   }
-  template <class F>
-  std::string refusal(F&& f) {
-    try {
-      f();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
-      return error.what();
-    }
-    return "accepted";
+  /// Reading is refused with these words.
+  template <class Read>
+  static void expect_told(const std::string& words, Read read) {
+    expect_refused(ExitCode::bad_input, {words}, read);
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("furrow_road_" + std::to_string(::getpid()));
+  testing::TemporaryFolder folder_;
 };
 
 const std::string kRoad =
@@ -134,12 +126,12 @@ TEST_F(RoadFile, the_four_formats_hold_the_same_road) {
     EXPECT_EQ(road.v, (std::vector<double>{-0.5, 0.0, 0.5}));
     ASSERT_EQ(road.count(), 3U);
     EXPECT_TRUE(std::isnan(road.heights[2]));
-    const ProfilePoints middle = read_road(folder_ / "road.crg", 0.0);
+    const ProfilePoints middle = read_road(folder_.path() / "road.crg", 0.0);
     ASSERT_EQ(middle.size(), 3U);
     EXPECT_EQ(middle[0][0], 2.0);
     EXPECT_EQ(middle[2][0], 4.0);
     EXPECT_NEAR(middle[1][1], -0.03, 1e-8);
-    EXPECT_NEAR(read_road(folder_ / "road.crg", -0.25)[2][1], 0.055, 1e-8);
+    EXPECT_NEAR(read_road(folder_.path() / "road.crg", -0.25)[2][1], 0.055, 1e-8);
   }
 }
 
@@ -219,16 +211,16 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
        "holds 8 numbers, expected 9: the file is cut short"}};
   for (const auto& [bytes, words] : wrong) {
     const std::filesystem::path file = put("wrong.crg", bytes);
-    EXPECT_TRUE(holds(refusal([&] { read_open_crg(file); }), words)) << refusal([&] { read_open_crg(file); }) << "\n"
-                                                                     << bytes;
+    SCOPED_TRACE(bytes);
+    expect_told(words, [&] { read_open_crg(file); });
   }
   const std::filesystem::path file =
       put("road.crg", kRoad + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
-  EXPECT_TRUE(holds(refusal([&] { read_road(file, 0.75); }), "expected terrain.profile_v from -0.5 to 0.5 m"));
-  EXPECT_TRUE(holds(refusal([&] { read_road(file, -0.2); }), "has no height at u = 2 m, v = -0.2 m"));
+  expect_told("expected terrain.profile_v from -0.5 to 0.5 m", [&] { read_road(file, 0.75); });
+  expect_told("has no height at u = 2 m, v = -0.2 m", [&] { read_road(file, -0.2); });
   const std::filesystem::path high =
       put("high.crg", kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
-  EXPECT_TRUE(holds(refusal([&] { read_road(high, 0.0); }), "has the height 9e+08 m at u = 3 m, v = 0 m"));
+  expect_told("has the height 9e+08 m at u = 3 m, v = 0 m", [&] { read_road(high, 0.0); });
 }
 
 TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
@@ -245,8 +237,7 @@ TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
       {"x_m,z_m\n1\n", "line 2': has 1 values, expected 2"}};
   for (const auto& [text, words] : wrong) {
     const std::filesystem::path file = put("wrong.csv", text);
-    const std::string told = refusal([&] { read_road(file, 0.0); });
-    EXPECT_TRUE(holds(told, words));
+    expect_told(words, [&] { read_road(file, 0.0); });
   }
 }
 

@@ -46,9 +46,7 @@ FewGrains wide_grains() {
 }
 Archive saved_asleep() {
   const FewGrains few = wide_grains();
-  const double radius = few.options.radius;
-  const double load = grain_properties(radius, few.options.density).mass * few.gravity;
-  const double z = radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
+  const double z = few.resting_height();
   std::vector<Quad> positions;
   for (int j = 0; j < 60; ++j)
     for (int i = 0; i < 2; ++i) positions.push_back({0.1 + 0.041 * i, -1.2 + 0.041 * j, z, 0.0});

@@ -3,16 +3,15 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 
-#include "protocol/core/archive_hash.hpp"
 #include "protocol/core/no_step_helps.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/refinement/step_refinement.hpp"
 #include "terrain/dem/solver_setup.hpp"
 #include "tests/refusal.hpp"
+#include "tests/terrain/bed_fixture.hpp"
 #include "tests/terrain/few_grains.hpp"
+#include "tests/terrain/pressed_terrain.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -120,95 +119,58 @@ TEST(StepRefinement, limits_are_where_the_parts_are_just_stable) {
   EXPECT_THROW(none.limit(0), std::out_of_range);
 }
 
+const ContactMaterial kSteel{2e11, 0.3, 0.5, 0.2, 1e9, 10.0, 0.0};
+
 /// Grains pressed ever harder by a plate, then let go.
-class Pressed : public ::testing::Test {
+class Pressed : public dem::SmallBeds {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("furrow_refined_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-    options_.radius = 0.01;
-    options_.layers = 4;
-    options_.length = 0.3;
-    options_.width = 0.2;
+  Pressed() {
     options_.young_modulus = 2e6;
     options_.restitution = 0.5;
     options_.activity = false;  // sleep takes momentum, to 1e-3 of the weight's
     options_.step = 0.95 * dem::stable_at(options_, dem::stated_overlap(options_)).step;
   }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  struct Plate {
-    SurfaceMesh mesh;
-    SurfaceState state;
-    explicit Plate(double z) {
-      state.position = {{0.1, -0.05, z}, {0.2, -0.05, z}, {0.2, 0.05, z}, {0.1, 0.05, z}};
-      state.velocity.assign(4, Vec3::Zero());
-      mesh.vertex_count = 4;
-      mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
-    }
-  };
   std::unique_ptr<Terrain> terrain(int threads) {
     options_.threads = threads;
     return make_dem_terrain(options_);
   }
+  PressedSurface plate_on(Terrain& terrain) const {
+    const double z = terrain.gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4;
+    PressedSurface plate{testing::under_side(0.1, 0.2, -0.05, 0.05, z)};
+    terrain.attach(plate.shape.mesh, kSteel, plate.state);
+    return plate;
+  }
+  double interval() const { return 2.0 * options_.step; }
   /// Intervals of two steps each. @returns the first failure
-  Outcome press(Terrain& terrain, Plate& plate, double speed, int intervals) {
-    std::vector<NodalForces> forces(1);
-    std::vector<ContactSums> sums(1);
-    const double interval = 2.0 * options_.step;
-    for (int k = 0; k < intervals; ++k) {
-      for (Vec3& v : plate.state.velocity) v = Vec3(0.0, 0.0, -speed);
-      if (Outcome outcome = terrain.advance({&plate.state, 1}, interval, 2, forces, sums); !outcome.ok) return outcome;
-      for (Vec3& x : plate.state.position) x.z() -= interval * speed;
-      force_ = sums[0].force.z();
-      hardest_ = std::max(hardest_, force_);
-      elapsed_ += interval;
-    }
-    return {};
+  Outcome press(Terrain& terrain, PressedSurface& plate, double speed, int intervals) const {
+    return plate.move(terrain, Vec3(0.0, 0.0, -speed), intervals, interval(), 2);
   }
-  static std::uint64_t hash(const Terrain& terrain) {
-    Archive archive;
-    terrain.save(archive);
-    return archive_hash(archive).value();
-  }
-
-  fs::path folder_;
-  dem::DemOptions options_;
-  double force_ = 0.0, hardest_ = 0.0;  // N
-  double elapsed_ = 0.0;                // of all terrains, s
 };
-
-const ContactMaterial kSteel{2e11, 0.3, 0.5, 0.2, 1e9, 10.0, 0.0};
 
 TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_restart_and_end) {
   const auto a = terrain(1);
   a->prepare({});
-  Plate plate(a->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
-  a->attach(plate.mesh, kSteel, plate.state);
+  PressedSurface plate = plate_on(*a);
   const TerrainState before = a->gather_state();
-  const double length = 2.0 * options_.step;
   // Down by 14 mm, in two stretches: the first ends while steps are taken in parts.
-  const int way = static_cast<int>(0.014 / 0.5 / length);
+  const int way = static_cast<int>(0.014 / 0.5 / interval());
   int pressed = 0;
   Outcome outcome;
   while (outcome.ok && a->gather_state().most_parts == 1 && pressed < way)
     outcome = press(*a, plate, 0.5, 1), ++pressed;
   ASSERT_TRUE(outcome.ok) << outcome.message("terrain");
-  ASSERT_GT(a->gather_state().substeps_added, 0) << "pressed by " << hardest_ << " N";
+  ASSERT_GT(a->gather_state().substeps_added, 0) << "pressed by " << plate.hardest << " N";
   Archive saved;
   a->save(saved);
   const auto b = terrain(2);
   b->restore(saved);
-  EXPECT_EQ(hash(*a), hash(*b));
-  Plate other = plate;
+  EXPECT_EQ(hash_of(*a), hash_of(*b));
+  PressedSurface other = plate;
   const int more = 120;
   outcome = press(*a, plate, 0.05, more);
   ASSERT_TRUE(outcome.ok) << outcome.message("terrain");
-  const double until_here = elapsed_;
   ASSERT_TRUE(press(*b, other, 0.05, more).ok);
-  elapsed_ = until_here;
-  EXPECT_EQ(hash(*a), hash(*b));
+  EXPECT_EQ(hash_of(*a), hash_of(*b));
   EXPECT_GT(a->gather_state().refined_time, 0.0);
   EXPECT_GE(a->gather_state().most_parts, 2);
 
@@ -221,7 +183,7 @@ TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_res
   // What was given and taken is the momentum, to round-off, whatever the steps were.
   const TerrainState after = a->gather_state();
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(a->size());
-  const Vec3 weight = mass * elapsed_ * standard_gravity();
+  const Vec3 weight = mass * plate.elapsed * standard_gravity();
   const auto given = [](const TerrainState& s) -> Vec3 {
     return s.momenta.wall_impulse + s.momenta.surface_impulse + s.momenta.sleep_impulse - s.momenta.grains;
   };
@@ -231,8 +193,7 @@ TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_res
 TEST_F(Pressed, a_contact_that_no_step_can_hold_ends_with_where_and_what_to_change) {
   const auto a = terrain(1);
   a->prepare({});
-  Plate plate(a->gather_top_height(0.1, 0.2, -0.05, 0.05) + 1e-4);
-  a->attach(plate.mesh, kSteel, plate.state);
+  PressedSurface plate = plate_on(*a);
   const Outcome outcome = press(*a, plate, 2.0, 100000);
   ASSERT_FALSE(outcome.ok);
   const std::string said = outcome.message("terrain");

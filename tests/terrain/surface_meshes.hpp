@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/surface.hpp"
@@ -36,6 +37,10 @@ inline SurfaceState placed(const Surface& surface, const Vec3& shift, const Vec3
   return state;
 }
 
+inline SurfaceState at_rest(const Surface& surface) {
+  return {surface.vertex, std::vector<Vec3>(surface.vertex.size(), Vec3::Zero())};
+}
+
 /// nx × ny quads over [x0, x0 + nx h] × [y0, y0 + ny h] lifted to z = height(x, y), outside up, each quad cut along a
 /// diagonal that alternates.
 inline Surface sheet(double x0, double y0, double h, int nx, int ny,
@@ -54,6 +59,22 @@ inline Surface sheet(double x0, double y0, double h, int nx, int ny,
         s.add(id(i, j), id(i + 1, j), id(i, j + 1));
         s.add(id(i + 1, j), id(i + 1, j + 1), id(i, j + 1));
       }
+  return s;
+}
+
+/// The same with its outside down.
+inline Surface turned_down(Surface s) {
+  for (auto& t : s.mesh.triangles) std::swap(t[1], t[2]);
+  return s;
+}
+
+/// A rectangle at a height that looks down.
+inline Surface under_side(double x0, double x1, double y0, double y1, double z) {
+  Surface s;
+  s.vertex = {{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}};
+  s.mesh.vertex_count = 4;
+  s.add(0, 1, 2);
+  s.add(0, 2, 3);
   return s;
 }
 

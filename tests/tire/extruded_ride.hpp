@@ -9,8 +9,9 @@
 #include <limits>
 #include <string>
 
-#include "protocol/core/mean_turn.hpp"
 #include "tests/refusal.hpp"
+#include "tests/saved.hpp"
+#include "tests/tire/led_tire.hpp"
 #include "tire/outward.hpp"
 #include "tire/tires.hpp"
 
@@ -67,14 +68,11 @@ struct Ride {
       const Wrench spindle = tire->spindle_wrench();
       Vec3 impulse = step * (tire->mass_properties().mass * tire->gravity() - spindle.force);
       double size = impulse.norm();
-      for (std::size_t i = 0; i < f.vertex.size(); ++i) {
-        impulse += step * f.force[i], size += step * f.force[i].norm();
-        terrain_work += f.force[i].dot(after.position[f.vertex[i]] - before.position[f.vertex[i]]);
-      }
+      for (const Vec3& force : f.force) impulse += step * force, size += step * force.norm();
+      terrain_work += test::surface_work(f, before, after);
       const double off = (tire->diagnostics().momentum - momentum - impulse).norm() / size;
       worst_force = std::max(worst_force, off);
-      rim_work -= spindle.force.dot(rim.end().position - rim.start().position) +
-                  spindle.moment.dot(mean_turn(rim.start().orientation, rim.end().orientation));
+      rim_work += test::rim_work(*tire, rim);
     }
     last = tire->diagnostics();
     work = std::abs(rim_work) + std::abs(terrain_work);
@@ -95,9 +93,7 @@ inline void expect_exact_continuation(const TireOptions& options, double step) {
     }
   };
   go(*one, rim, 0, 333);
-  Archive archive;
-  one->save(archive);
-  other->restore(archive);
+  other->restore(testing::saved(*one));
   RimTrajectory copy = rim;
   go(*one, rim, 333, 700);
   go(*other, copy, 333, 700);

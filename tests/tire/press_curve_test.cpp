@@ -2,14 +2,13 @@
 #include "tire/press/press_curve.hpp"
 #include "tests/refusal.hpp"
 
-#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 
 #include "protocol/core/error.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tests/nodes/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tire/press/press.hpp"
 #include "tire/tires.hpp"
 
@@ -18,12 +17,8 @@ using namespace furrow::testing;
 
 namespace {
 
-/// A cache of its own for each test.
 class PressCurveTest : public ::testing::Test {
  protected:
-  PressCurveTest() { setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
-  ~PressCurveTest() override { unsetenv("XDG_CACHE_HOME"); }
-
   std::unique_ptr<tire::TireSpec> coarse(double pressure = 0.0) const {
     tire::TireOptions options;
     options.file = TIRE_DATA "/hmmwv_lumped.json";
@@ -38,7 +33,7 @@ class PressCurveTest : public ::testing::Test {
       files.push_back(entry.path());
     return files;
   }
-  TemporaryFolder folder_;
+  OwnCache folder_;
 };
 
 TEST_F(PressCurveTest, is_that_of_the_static_test_and_is_kept) {

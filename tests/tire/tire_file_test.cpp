@@ -1,5 +1,6 @@
 // Tire files: what is read, and that every mistake names file, key and what is allowed.
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tire/read_tire_file.hpp"
 
 #include <gtest/gtest.h>
@@ -19,36 +20,19 @@ using nlohmann::json;
 
 class TireFileTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("furrow_tire_file_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-    std::ifstream in(TIRE_DATA "/hmmwv_layered.json");
-    good_ = json::parse(in);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& text) {
-    const auto file = folder_ / "tire.json";
+    const auto file = folder_.path() / "tire.json";
     std::ofstream(file) << text;
     return file.string();
   }
   /// The error that reading this text gives, without the file's name.
   std::string complaint(const std::string& text) {
     const std::string file = write(text);
-    try {
-      read_tire_file(file);
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::bad_input);
-      const std::string what = e.what();
-      EXPECT_TRUE(what.starts_with(file + ":")) << what;
-      const bool placed = what.at(file.size() + 1) != ' ';  // line and column follow the file's name
-      return what.substr(file.size() + (placed ? 1 : 2));
-    }
-    return "no error";
+    return without_file(refusal(ExitCode::bad_input, [&] { read_tire_file(file); }), file);
   }
 
-  std::filesystem::path folder_;
-  json good_;
+  testing::TemporaryFolder folder_;
+  const json good_ = json::parse(std::ifstream(TIRE_DATA "/hmmwv_layered.json"));
 };
 
 TEST_F(TireFileTest, layered_hmmwv_holds_the_reference_layup) {
@@ -153,7 +137,7 @@ TEST_F(TireFileTest, a_meridian_that_crosses_itself_is_refused_where_it_does) {
   EXPECT_EQ(with_loop(0.6),
             "key 'profile': crosses itself at x = 0.08 m, y = 0 m, between t = 0.11 and t = 0.89, "
             "expected a meridian without a loop");
-  EXPECT_EQ(with_loop(-0.6), "no error");
+  EXPECT_EQ(with_loop(-0.6), "");
   json many = good_;
   many["profile"] = json(std::vector<json>(2001, {0.0, 0.0, 0.0}));
   for (std::size_t k = 0; k < 2001; ++k) many["profile"][k][0] = static_cast<double>(k) / 2000.0;
@@ -175,8 +159,8 @@ TEST_F(TireFileTest, files_that_are_not_json_objects_are_refused) {
   EXPECT_EQ(complaint("\xff\xfe\""), "1:1: byte 0xff is not UTF-8, expected a tire file in JSON in UTF-8");
   EXPECT_EQ(complaint("[1, 2]"), "is not an object, expected a tire file in JSON");
   EXPECT_EQ(complaint("{\"radius\": 1, \"radius\": 2}"), "key 'radius': is given twice, expected once");
-  EXPECT_THROW(read_tire_file(folder_), Error);
-  EXPECT_THROW(read_tire_file(folder_ / "none.json"), Error);
+  EXPECT_THROW(read_tire_file(folder_.path()), Error);
+  EXPECT_THROW(read_tire_file(folder_.path() / "none.json"), Error);
 }
 
 /// The layered tire in the public layout.
@@ -237,7 +221,7 @@ TEST_F(TireFileTest, public_layout_mistakes_name_their_key) {
     change(changed);
     return complaint(changed.dump());
   };
-  EXPECT_EQ(with([](json&) {}), "no error");
+  EXPECT_EQ(with([](json&) {}), "");
   EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }), "key 'Tire Radios': is unknown, expected 'Tire Radius'?");
   EXPECT_EQ(with([](json& j) { j["Template"] = "FialaTire"; }),
             "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire");

@@ -1,6 +1,7 @@
 // The table of tire models: what reads a tire file, and that descriptions are true of the tires that are made.
 #include "tire/tires.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,15 +25,9 @@ json file_text(const std::string& name) { return json::parse(std::ifstream(TIRE_
 
 class TiresTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("furrow_tires_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   TireOptions written(const json& file) {
     TireOptions options;
-    options.file = folder_ / "tire.json";
+    options.file = folder_.path() / "tire.json";
     std::ofstream(options.file) << file;
     options.elements_circumference = 20;
     options.elements_width = 8;
@@ -40,16 +35,10 @@ class TiresTest : public ::testing::Test {
   }
   std::string complaint(const json& file) {
     const TireOptions options = written(file);
-    try {
-      read_tire(options);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input);
-      return std::string(error.what()).substr(options.file.string().size() + 2);
-    }
-    return "no error";
+    return without_file(refusal(ExitCode::bad_input, [&] { read_tire(options); }), options.file);
   }
 
-  std::filesystem::path folder_;
+  testing::TemporaryFolder folder_;
 };
 
 TEST_F(TiresTest, a_file_without_a_model_is_a_shell) {

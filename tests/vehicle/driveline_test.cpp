@@ -5,6 +5,7 @@
 
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
+#include "tests/saved.hpp"
 #include "tests/vehicle/rate_controls.hpp"
 #include "tests/verification/record.hpp"
 #include "vehicle/driveline/engine.hpp"
@@ -15,7 +16,8 @@
 #include "vehicle/driveline/torque_converter.hpp"
 
 using namespace furrow;
-using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of, furrow::testing::torque;
+using furrow::testing::held, furrow::testing::member_count, furrow::testing::names_of, furrow::testing::saved,
+    furrow::testing::torque;
 using vehicle::Gearbox, vehicle::kGround, vehicle::Table;
 
 namespace {
@@ -64,9 +66,8 @@ TEST(Engine, governor_keeps_the_engine_idling_at_closed_throttle) {
   for (int i = 0; i < 30000; ++i) ASSERT_TRUE(system.step(1e-3).ok);
   EXPECT_GT(system.shaft(crank).state.speed, 780 * kRpm);
   EXPECT_LT(system.shaft(crank).state.speed, 800 * kRpm);
-  Archive archive;
   engine.set_throttle(0.3);
-  engine.save(archive);
+  const Archive archive = saved(engine);
   engine.set_throttle(0.0);
   engine.restore(archive);
   EXPECT_EQ(engine.throttle(), 0.3);
@@ -234,19 +235,12 @@ TEST(Gearbox, resumed_in_the_middle_of_each_phase_continues_bit_for_bit) {
     ASSERT_TRUE(original.gearbox.shift(original.system, 1).ok);
     original.run(steps);
     ASSERT_TRUE(original.gearbox.shifting());
-    Archive archive;
-    original.system.save(archive);
-    original.gearbox.save(archive);
+    const Archive archive = saved(original.system, original.gearbox);
     copy.system.restore(archive);
     copy.gearbox.restore(archive);
     original.run(400);
     copy.run(400);
-    Archive a, b;
-    original.system.save(a);
-    original.gearbox.save(a);
-    copy.system.save(b);
-    copy.gearbox.save(b);
-    EXPECT_EQ(a.arrays(), b.arrays());
+    EXPECT_EQ(saved(copy.system, copy.gearbox).arrays(), saved(original.system, original.gearbox).arrays());
     EXPECT_FALSE(copy.gearbox.shifting());
   }
   EXPECT_EQ(names_of<vehicle::GearboxState>().size(), member_count<vehicle::GearboxState>());

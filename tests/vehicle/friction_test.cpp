@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/core/constants.hpp"
+#include "tests/saved.hpp"
 #include "tests/vehicle/planar.hpp"
 #include "tests/vehicle/rate_controls.hpp"
 #include "vehicle/driveline/friction_coupling.hpp"
@@ -48,15 +49,10 @@ TEST(Brake, holds_a_weight_for_ten_seconds_without_creep_and_alike_at_two_steps)
 TEST(Brake, hold_that_is_resumed_continues_bit_for_bit) {
   HeldArm original(250.0), copy(250.0);
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(original.system.step(1e-3).ok);
-  Archive archive;
-  original.system.save(archive);
   copy.brake.engage(copy.system, 0.0);  // the saved state holds how far it is engaged
-  copy.system.restore(archive);
+  copy.system.restore(saved(original.system));
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(original.system.step(1e-3).ok && copy.system.step(1e-3).ok);
-  Archive a, b;
-  original.system.save(a);
-  copy.system.save(b);
-  EXPECT_EQ(a.arrays(), b.arrays());
+  EXPECT_EQ(saved(copy.system).arrays(), saved(original.system).arrays());
   EXPECT_TRUE(copy.brake.holds(copy.system));
 }
 

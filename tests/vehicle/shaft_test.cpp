@@ -4,6 +4,7 @@
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
+#include "tests/saved.hpp"
 #include "tests/vehicle/planar.hpp"
 #include "tests/vehicle/rate_controls.hpp"
 #include "tests/verification/record.hpp"
@@ -220,14 +221,9 @@ TEST(Shaft, restored_shafts_continue_bit_for_bit) {
   build(copy);
   for (int i = 0; i < 60; ++i) ASSERT_TRUE(original.step(1e-3).ok);
   original.set_rate_factor(0, 1, -0.9);
-  Archive archive;
-  original.save(archive);
-  copy.restore(archive);
+  copy.restore(saved(original));
   for (int i = 0; i < 400; ++i) ASSERT_TRUE(original.step(1e-3).ok && copy.step(1e-3).ok);
-  Archive a, b;
-  original.save(a);
-  copy.save(b);
-  EXPECT_EQ(a.arrays(), b.arrays());
+  EXPECT_EQ(saved(copy).arrays(), saved(original).arrays());
   EXPECT_EQ(names_of<vehicle::ShaftState>().size(), member_count<vehicle::ShaftState>());
   EXPECT_EQ(names_of<RateControl>().size(), member_count<RateControl>());
   EXPECT_EQ(names_of<vehicle::RateState>().size(), member_count<vehicle::RateState>());

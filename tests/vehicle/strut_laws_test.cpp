@@ -69,14 +69,7 @@ TEST(Table, monotone_curve_rises_with_its_points_and_has_no_overshoot_at_a_plate
 }
 
 TEST(Table, wrong_tables_are_refused_with_what_was_expected) {
-  const auto text_of = [](const auto& make) {
-    try {
-      make();
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
+  const auto text_of = [](const auto& make) { return refusal(ExitCode::physics, make); };
   EXPECT_TRUE(holds(text_of([] { Table("map", {{0, 1}}); }), "two points"));
   EXPECT_TRUE(holds(text_of([] { Table("map", {{0, 1}, {2, 1}, {2, 3}}); }), "expected rising"));
   EXPECT_TRUE(holds(text_of([] { Table("map", {{0, 1}, {2, std::nan("")}}); }), "finite"));

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "protocol/core/error.hpp"
 #include "tests/protocol/fields_of.hpp"
+#include "tests/saved.hpp"
 
 using namespace furrow;
+using namespace furrow::testing;
 
 namespace {
 
@@ -66,31 +67,18 @@ TEST(System, imposed_motion_is_met_in_position_and_speed_at_every_step) {
 TEST(System, restored_system_continues_bit_for_bit) {
   Swing original, copy;
   for (int i = 0; i < 137; ++i) EXPECT_TRUE(original.system.step(1e-3).ok);
-  Archive archive;
-  original.system.save(archive);
-  copy.system.restore(archive);
+  copy.system.restore(saved(original.system));
   for (int i = 0; i < 100; ++i) {
     EXPECT_TRUE(original.system.step(1e-3).ok);
     EXPECT_TRUE(copy.system.step(1e-3).ok);
   }
-  Archive a, b;
-  original.system.save(a);
-  copy.system.save(b);
-  ASSERT_EQ(a.arrays().size(), b.arrays().size());
-  for (const char* name : {"bodies/state/position", "bodies/state/orientation", "bodies/state/velocity",
-                           "bodies/state/angular_velocity", "bodies/angular_momentum", "reactions/force",
-                           "reactions/moment", "motor_forces", "element_forces", "start_time", "step"}) {
-    const auto &x = a.get<double>(name), &y = b.get<double>(name);
-    ASSERT_EQ(x.size(), y.size());
-    EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << name;
-  }
+  EXPECT_EQ(saved(copy.system).arrays(), saved(original.system).arrays());
 }
 
 TEST(System, a_saved_state_that_counts_no_steps_is_refused) {
   Swing swing;
   EXPECT_TRUE(swing.system.step(1e-3).ok);
-  Archive good;
-  swing.system.save(good);
+  const Archive good = saved(swing.system);
   const auto restored = [&](const char* name, auto value) {
     Archive archive = good;
     archive.put(name, value);
@@ -105,7 +93,6 @@ TEST(System, a_saved_state_that_counts_no_steps_is_refused) {
 }
 
 TEST(System, the_lists_of_what_is_saved_forget_no_member) {
-  using furrow::testing::member_count, furrow::testing::names_of;
   EXPECT_EQ(names_of<vehicle::BodyState>().size(), member_count<vehicle::BodyState>());
   EXPECT_EQ(names_of<vehicle::Reaction>().size(), member_count<vehicle::Reaction>());
 }

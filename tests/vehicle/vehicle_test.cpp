@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/saved.hpp"
 #include "tests/vehicle/shipped.hpp"
 #include "tests/vehicle/verification/simple_ground.hpp"
 #include "vehicle/driveline/gearbox.hpp"
@@ -240,14 +241,9 @@ TEST(Vehicle, resumed_during_a_shift_continues_bit_for_bit) {
   while (!original.drive().gearbox()->shifting() && steps++ < 8000) drive(original, 1, 0.4673, 3e5);
   ASSERT_TRUE(original.drive().gearbox()->shifting());
   drive(original, 50, 0.4673, 3e5);
-  Archive archive;
-  original.save(archive);
-  copy.restore(archive);
+  copy.restore(saved(original));
   drive(original, 500, 0.4673, 3e5);
   drive(copy, 500, 0.4673, 3e5);
-  Archive a, b;
-  original.save(a);
-  copy.save(b);
-  EXPECT_EQ(a.arrays(), b.arrays());
+  EXPECT_EQ(saved(copy).arrays(), saved(original).arrays());
   EXPECT_EQ(copy.drive().gearbox()->gear(), 1);
 }

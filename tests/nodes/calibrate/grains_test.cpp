@@ -12,6 +12,7 @@
 #include "protocol/core/error.hpp"
 #include "terrain/soil/soil_tests.hpp"
 #include "tests/nodes/calibrate/examples.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow::calibrate {
 namespace {
@@ -96,7 +97,7 @@ TEST_F(CalibrateGrains, wrong_studies_are_refused_with_file_and_key) {
   // The keys are those of this kind alone.
   for (const char* key : {"set", "tests", "evaluations"}) {
     json study{{"calibrate", "ring"}, {key, 1}};
-    EXPECT_NE(complaint(study).find(std::string("key '") + key + "': is unknown"), std::string::npos) << key;
+    EXPECT_TRUE(holds(complaint(study), std::string("key '") + key + "': is unknown")) << key;
   }
 }
 
@@ -105,16 +106,14 @@ TEST_F(CalibrateGrains, a_K_below_what_grains_of_the_size_have_is_told_and_not_f
   study["targets"].push_back({{"quantity", "janosi_K_m"}, {"value", 2e-3}, {"sigma", 1e-3}});
   const Calibration c = load(study);
   ASSERT_EQ(c.model->notes().size(), 1u);
-  EXPECT_NE(c.model->notes()[0].find("janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"),
-            std::string::npos);
+  EXPECT_TRUE(holds(c.model->notes()[0], "janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"));
   EXPECT_EQ(c.model->targets(TargetSet::fitted).size(), 2u);
   EXPECT_EQ(c.model->targets(TargetSet::held_out).size(), 1u);
   // Where too few are left, it is told why.
   json few = study;
   few["targets"].erase(std::size_t{0});
-  EXPECT_NE(complaint(few).find("has 1 points, expected as many as there are parameters, 2; janosi_K_m of 2 mm cannot"),
-            std::string::npos)
-      << complaint(few);
+  EXPECT_TRUE(
+      holds(complaint(few), "has 1 points, expected as many as there are parameters, 2; janosi_K_m of 2 mm cannot"));
   // Where the size is a parameter, it can follow.
   study["parameters"]["radius"] = {{"lower", 1e-3}, {"upper", 0.012}, {"start", 0.01}};
   EXPECT_TRUE(load(study).model->notes().empty());

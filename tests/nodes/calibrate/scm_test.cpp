@@ -13,6 +13,7 @@
 #include "protocol/core/error.hpp"
 #include "terrain/soil/fits.hpp"
 #include "tests/nodes/calibrate/examples.hpp"
+#include "tests/refusal.hpp"
 
 namespace furrow::calibrate {
 namespace {
@@ -77,9 +78,8 @@ TEST_F(CalibrateScm, parameters_of_exact_curves_are_found_from_far) {
 }
 
 TEST_F(CalibrateScm, the_fitted_soil_says_nothing_of_the_start_s_grains) {
-  write(
-      "soil.json",
-      R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8,
+  write("soil.json",
+        R"({"format_version": 1, "terrain": {"law": "mindlin", "friction": 0.5, "unloading_stiffness": 1e8,
            "bekker_n": 0.5},
                          "measured": {"grain_radius_m": 0.01}})");
   const Calibration c = load(good());
@@ -123,8 +123,8 @@ TEST_F(CalibrateScm, one_plate_does_not_tell_k_c_from_k_phi) {
   const CalibrationResults results = calibrated(c);
   ASSERT_EQ(results.confidence.undetermined.size(), 1u);
   const std::string text = combination_text(c.parameters, results.confidence.undetermined[0].direction);
-  EXPECT_NE(text.find("bekker_k_c"), std::string::npos) << text;
-  EXPECT_NE(text.find("bekker_k_phi"), std::string::npos) << text;
+  EXPECT_TRUE(holds(text, "bekker_k_c"));
+  EXPECT_TRUE(holds(text, "bekker_k_phi"));
   EXPECT_TRUE(results.confidence.estimates[2].standard_error);
 }
 
@@ -151,7 +151,7 @@ TEST_F(CalibrateScm, wrong_targets_are_refused) {
   json one = good();
   one["targets"] = {{{"data", "no_width.csv"}, {"on", "plate"}, {"width", 0.05}}};
   one["parameters"] = {{"bekker_k_c", json::object()}};
-  EXPECT_NE(complaint(one).find("key 'parameters.bekker_k_c': has no 'start'"), std::string::npos) << complaint(one);
+  EXPECT_TRUE(holds(complaint(one), "key 'parameters.bekker_k_c': has no 'start'"));
 }
 
 }  // namespace

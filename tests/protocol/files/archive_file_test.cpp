@@ -10,8 +10,8 @@
 
 #include "protocol/files/archive_file.hpp"
 #include "protocol/files/hdf5_file.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

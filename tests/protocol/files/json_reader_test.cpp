@@ -1,5 +1,6 @@
 // Objects of JSON files, key by key: every complaint names file, key, value and what is expected.
 #include "protocol/files/json_reader.hpp"
+#include "tests/refusal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,17 +12,13 @@ using nlohmann::json;
 /// What reading the object throws, without the file's name; empty when it does not.
 template <class Read>
 std::string complaint(const json& object, const Read& read) {
-  try {
-    JsonReader reader(object, "f.json");
-    read(reader);
-    reader.finish();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    const std::string text = error.what();
-    EXPECT_TRUE(text.starts_with("f.json: ")) << text;
-    return text.substr(8);
-  }
-  return "";
+  return without_file(refusal(ExitCode::bad_input,
+                              [&] {
+                                JsonReader reader(object, "f.json");
+                                read(reader);
+                                reader.finish();
+                              }),
+                      "f.json");
 }
 
 TEST(JsonReader, values_are_read_by_type_and_optional_ones_have_a_default) {

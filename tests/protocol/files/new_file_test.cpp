@@ -15,8 +15,8 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/hdf5_file.hpp"
 #include "protocol/files/text_file.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "protocol/core/error.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow {
 namespace {
@@ -51,14 +51,8 @@ TEST(TextFile, what_cannot_be_read_is_an_error_naming_the_file) {
 TEST(TextFile, a_user_s_text_is_a_regular_file_of_a_readable_size) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "large";
-  const auto refusal = [](const std::filesystem::path& path) -> std::string {
-    try {
-      read_text_file(path, "a text");
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::bad_input);
-      return std::string(error.what()).substr(path.string().size() + 2);
-    }
-    return "";
+  const auto refusal = [](const std::filesystem::path& path) {
+    return without_file(furrow::refusal(ExitCode::bad_input, [&] { read_text_file(path, "a text"); }), path);
   };
   std::ofstream(file) << "x";
   std::filesystem::resize_file(file, (16 << 20) + 1);

@@ -8,8 +8,8 @@
 #include "protocol/core/error.hpp"
 #include "terrain/soil/bekker_wong.hpp"
 #include "terrain/soil/soil_estimate.hpp"
-#include "tests/nodes/temporary_folder.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace furrow::terrain::soil {
 namespace {

@@ -82,16 +82,13 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
     for (const double share : {0.995, 1.005, 3.0}) {
       EngineGrains few = cohesive(law);
       few.gravity = kStandardGravity;
-      const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
+      const double weight = few.mass() * few.gravity;
       few.options.cohesion = share * weight / (M_PI * kRadius * kRadius);
       const terrain::dem::ContactCoefficients k = few.coefficients().floor;
       const double overlap = rest_overlap(few.floor_stiffness(), std::max(share - 1.0, 0.005) * weight);
       terrain::dem::GrainSolver s = few.make({{0.3, 0.0, 0.3 - kRadius + overlap}});
-      testing::Surface ceiling = testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [](double, double) { return 0.3; });
-      for (auto& t : ceiling.mesh.triangles) std::swap(t[1], t[2]);  // outside down
-      SurfaceState start{ceiling.vertex, std::vector<Vec3>(ceiling.vertex.size(), Vec3::Zero())};
-      s.surfaces().attach(ceiling.mesh, {}, k, start);
-      s.surfaces().move_to(0.0);
+      attach(s, testing::turned_down(testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [](double, double) { return 0.3; })),
+             k);
       for (int step = 0; step < 20000; ++step) s.step(kStep);
       const double depth = terrain::dem::position(s, 0).z() + kRadius - 0.3;
       if (share < 1.0) {

@@ -20,8 +20,8 @@ constexpr double kSpacing = 0.0124;  // m, of the grid that grains start from
 terrain::dem::GrainSolver clump(EngineGrains few, int count, double speed) {
   few.options.length = few.options.width = 1.2;
   const int side = static_cast<int>(std::ceil(std::cbrt(count)));
-  std::mt19937_64 bits(11);
-  const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
+  terrain::dem::Uniform even(11);
+  const auto uniform = [&] { return even(); };
   std::vector<terrain::dem::Quad> at;
   for (int k = 0; k < count; ++k)
     at.push_back({0.6 + kSpacing * (k % side - 0.5 * side) + 1e-4 * uniform(),
@@ -97,14 +97,7 @@ TEST(Conservation, elastic_collision_keeps_its_energy) {
     terrain::dem::set_spin(s, 0, {3.0, 2.0, 1.0});
     const auto& g = s.params().grain;
     const double before = 0.5 * g.mass + 0.5 * g.inertia * 14.0;
-    bool touched = false;
-    for (int step = 0; step < 200000; ++step) {
-      s.step(2e-7);
-      const bool now = s.accounts().contacts > 0;
-      if (touched && !now) break;
-      touched = now;
-    }
-    EXPECT_TRUE(touched);
+    EXPECT_TRUE(step_until_parted(s, 2e-7, 200000));
     EXPECT_GT(terrain::dem::velocity(s, 1).norm(), 0.1);
     worst.add(s.accounts().kinetic, before, 0.0, brief(offset) + " m");
   }
@@ -126,13 +119,7 @@ TEST(Conservation, no_collision_creates_energy) {
         terrain::dem::set_spin(s, 0, {0.0, 0.0, spin});
         const auto& g = s.params().grain;
         const double before = 0.5 * g.mass + 0.5 * g.inertia * spin * spin;
-        bool touched = false;
-        for (int step = 0; step < 200000; ++step) {
-          s.step(1e-6);
-          const bool now = s.accounts().contacts > 0;
-          if (touched && !now) break;
-          touched = now;
-        }
+        step_until_parted(s, 1e-6, 200000);
         worst.add(std::max(s.accounts().kinetic / before, 1.0), 1.0, 0.0, "mu = " + brief(friction));
       }
 }

@@ -38,12 +38,11 @@ EngineGrains carried() {
 std::vector<Vec3> forces_along(const testing::Surface& surface, const std::function<Vec3(double)>& path, int steps) {
   const EngineGrains few = carried();
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, dt = 1e-5;
+  const double mass = few.mass(), dt = 1e-5;
   terrain::dem::GrainSolver s = few.make({terrain::dem::quad(kPlace + path(0.0))});
-  SurfaceState start{surface.vertex, std::vector<Vec3>(surface.vertex.size(), Vec3::Zero())};
-  for (Vec3& x : start.position) x += kPlace;
-  s.surfaces().attach(surface.mesh, {}, k, start);
-  s.surfaces().move_to(0.0);
+  testing::Surface here = surface;
+  for (Vec3& x : here.vertex) x += kPlace;
+  attach(s, here, k);
   const double plane = few.floor_stiffness() * std::pow(kOverlap, 1.5);
   std::vector<Vec3> forces;
   for (int step = 0; step < steps; ++step) {
@@ -121,8 +120,7 @@ TEST(Creases, force_over_creases_warped_quads_and_fans_is_continuous) {
     }
   }
   {
-    std::mt19937_64 bits(17);
-    const auto any = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
+    terrain::dem::Uniform any(17);
     Worst worst("warped quads, mindlin", "jump of the force, of the plane's", 2e-3, source);
     for (const double rough : {1e-5, 5e-5}) {
       const testing::Surface warped =
@@ -156,8 +154,7 @@ TEST(Creases, force_over_warped_quads_tends_to_the_planes) {
   Worst worst("warped quads, mindlin", "force off the plane's, by 3/2 roughness/overlap", 1.5,
               "linear in the roughness");
   for (const double rough : {1e-8, 1e-7, 1e-6}) {
-    std::mt19937_64 bits(23);
-    const auto any = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
+    terrain::dem::Uniform any(23);
     const testing::Surface warped =
         testing::sheet(-0.05, -0.05, 0.01, 10, 10, [&](double, double) { return rough * any(); });
     const auto forces = forces_along(

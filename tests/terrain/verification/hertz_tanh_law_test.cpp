@@ -24,24 +24,14 @@ EngineGrains hertz_tanh() {
   return few;
 }
 
-double mass_of(const EngineGrains& few) {
-  return terrain::dem::grain_properties(few.options.radius, few.options.density).mass;
-}
-
 /// Head-on collision of two grains; ratio of relative speeds after and before.
 double solver_restitution(const EngineGrains& few, double speed, int steps) {
   terrain::dem::GrainSolver s = few.make({{0.3 - kRadius, 0, 0.3}, {0.3 + kRadius, 0, 0.3}});
   terrain::dem::set_velocity(s, 0, {0.5 * speed, 0, 0});
   terrain::dem::set_velocity(s, 1, {-0.5 * speed, 0, 0});
-  const double k = few.options.normal_stiffness, m = 0.5 * mass_of(few);
+  const double k = few.options.normal_stiffness, m = 0.5 * few.mass();
   const double dt = 2.94 * std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4) / speed / steps;
-  bool touched = false;
-  for (int step = 0; step < 40 * steps; ++step) {
-    s.step(dt);
-    const bool now = s.accounts().contacts > 0;
-    if (touched && !now) break;
-    touched = now;
-  }
+  step_until_parted(s, dt, 40 * steps);
   return (terrain::dem::velocity(s, 1) - terrain::dem::velocity(s, 0)).x() / speed;
 }
 
@@ -69,7 +59,7 @@ TEST(HertzTanhLaw, restitution_falls_with_speed_as_the_integrated_equation_says)
   double before = 1.0;
   for (const double speed : {0.001, 0.01, 0.1, 0.3, 1.0, 3.0}) {
     const EngineGrains few = hertz_tanh();
-    const double truth = integrated_restitution(1e6, 60.0, 0.5 * mass_of(few), speed);
+    const double truth = integrated_restitution(1e6, 60.0, 0.5 * few.mass(), speed);
     worst.add(solver_restitution(few, speed, 10000), truth, 0.0, brief(speed) + " m/s");
     EXPECT_LT(truth, before);
     before = truth;
@@ -85,7 +75,7 @@ TEST(HertzTanhLaw, weak_damping_matches_kuwabara_kono_1987_and_ramirez_1999) {
   for (const double speed : {0.01, 0.1, 1.0}) {
     EngineGrains few = hertz_tanh();
     few.options.normal_damping = 3.0;
-    const double k = few.options.normal_stiffness, m = 0.5 * mass_of(few);
+    const double k = few.options.normal_stiffness, m = 0.5 * few.mass();
     const double depth = std::pow(5.0 * m * speed * speed / (4.0 * k), 0.6);  // δ_m^{3/2}
     const double zeta = 0.8 * std::beta(0.6, 1.5) * few.options.normal_damping * depth / (m * speed);
     const double loss = 1.0 - solver_restitution(few, speed, 20000);
@@ -104,16 +94,14 @@ TEST(HertzTanhLaw, block_creeps_down_an_inclined_mesh_at_the_closed_form_rate) {
       few.gravity = kStandardGravity;
       const double angle = degrees * M_PI / 180.0;
       const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-      const double load = mass_of(few) * few.gravity * std::cos(angle);
+      const double load = few.mass() * few.gravity * std::cos(angle);
       const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));  // +x runs downhill
       const Vec3 foot(0.2, 0.0, 0.3);
       const double rest = kRadius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
       terrain::dem::GrainSolver s = few.make({terrain::dem::quad(foot + turn * Vec3(0.0, 0.0, rest))});
       testing::Surface slope = testing::sheet(-0.0931, -0.0172, 0.02, 20, 2, [](double, double) { return 0.0; });
       for (Vec3& x : slope.vertex) x = foot + turn * x;
-      SurfaceState start{slope.vertex, std::vector<Vec3>(slope.vertex.size(), Vec3::Zero())};
-      s.surfaces().attach(slope.mesh, {}, k, start);
-      s.surfaces().move_to(0.0);
+      attach(s, slope, k);
       const double creep = std::atanh(std::tan(angle) / few.options.friction) / scale;
       // Relaxation time of dv/dt = g sin α − μ g cos α tanh(c v) at its fixed point.
       const double cosh = std::cosh(scale * creep);
@@ -136,8 +124,7 @@ TEST(HertzTanhLaw, sliding_sphere_follows_its_closed_form_to_five_sevenths) {
   few.options.friction = 0.3;
   few.gravity = kStandardGravity;
   const double speed = 0.4, c = few.options.friction_velocity_scale;
-  const double load = mass_of(few) * few.gravity;
-  terrain::dem::GrainSolver s = few.make({{0.1, 0, kRadius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0)}});
+  terrain::dem::GrainSolver s = few.make({{0.1, 0, few.resting_height()}});
   terrain::dem::set_velocity(s, 0, {speed, 0, 0});
   // The arm is r − δ; δ/r is 1.3e-3.
   Worst path("hertz_tanh, sliding sphere", "speed along the way", 1e-3, "sinh(c v_s) = sinh(c u0) exp(-7/2 mu g c t)");

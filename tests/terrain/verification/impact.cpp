@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/terrain/few_grains.hpp"
-#include "tests/terrain/surface_meshes.hpp"
+#include "tests/terrain/verification/engine_grains.hpp"
 
 namespace furrow::verification {
 namespace {
@@ -130,11 +129,7 @@ Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground gro
   if (mesh) {
     testing::Surface sheet = testing::sheet(-4.3 * r, -3.83 * r, 2.0 * r, 4, 4, [](double, double) { return 0.0; });
     for (Vec3& x : sheet.vertex) x = foot + turn * x;
-    SurfaceState start;
-    start.position = sheet.vertex;
-    start.velocity.assign(sheet.vertex.size(), Vec3::Zero());
-    solver.surfaces().attach(sheet.mesh, {}, k, start);
-    solver.surfaces().move_to(0.0);
+    attach(solver, sheet, k);
   }
   solver.grains().velocity[0] = terrain::dem::quad(turn * Vec3(before.tangential, 0.0, -before.normal));
   solver.grains().spin[0] = terrain::dem::quad(turn * Vec3(0.0, before.spin, 0.0));

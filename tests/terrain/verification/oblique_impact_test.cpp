@@ -214,13 +214,7 @@ Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double
   terrain::dem::set_spin(solver, 1, {0.0, spin_2, 0.0});
   const double dt =
       hertz_impact(k.of<terrain::dem::MindlinLaw>().stiffness, 0.5 * params.grain.mass, 2.0 * speed).duration / steps;
-  bool touched = false;
-  for (int step = 0; step < 20 * steps; ++step) {
-    solver.step(dt);
-    const bool now = solver.accounts().contacts > 0;
-    if (touched && !now) break;
-    touched = now;
-  }
+  step_until_parted(solver, dt, 20 * steps);
   const Vec3 v = terrain::dem::velocity(solver, 0);
   return {-v.x(), v.z(), terrain::dem::spin(solver, 0).y()};
 }

@@ -28,8 +28,8 @@ terrain::dem::GrainSolver column(EngineGrains& few) {
   few.options.width = kWidth;
   few.options.step = kStep;
   few.gravity = kStandardGravity;
-  std::mt19937_64 bits(7);
-  const auto any = [&] { return 2e-4 * (static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0); };
+  terrain::dem::Uniform even(7);
+  const auto any = [&] { return 2e-4 * even(); };
   std::vector<terrain::dem::Quad> at;
   for (int k = 0; k < kUp; ++k)
     for (int i = 0; i < kAlong; ++i)
@@ -45,10 +45,7 @@ terrain::dem::GrainSolver column(EngineGrains& few) {
   return s;
 }
 
-void run(terrain::dem::GrainSolver& s, double time) {
-  const int steps = static_cast<int>(std::lround(time / kStep));
-  for (int step = 0; step < steps; ++step) ASSERT_EQ(s.step(kStep), -1);
-}
+void run(terrain::dem::GrainSolver& s, double time) { terrain::dem::run(s, kStep, std::lround(time / kStep)); }
 
 /// Slope of the line through the highest grains of vertical slices, from 15 to 85 % of the heap's height, degrees.
 double angle_of(const terrain::dem::GrainSolver& s) {

@@ -23,12 +23,6 @@ testing::Surface plane_at(const Vec3& foot, const Quat& turn) {
   return s;
 }
 
-void attach(terrain::dem::GrainSolver& s, const testing::Surface& surface, const terrain::dem::ContactCoefficients& k) {
-  const SurfaceState start{surface.vertex, std::vector<Vec3>(surface.vertex.size(), Vec3::Zero())};
-  s.surfaces().attach(surface.mesh, {}, k, start);
-  s.surfaces().move_to(0.0);
-}
-
 /// Nine grains moved as one rigid block: only its height is free, under its weight.
 TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
   EngineGrains few;
@@ -36,7 +30,7 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
   few.options.restitution = 0.3;
   few.options.length = 1.0;
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
+  const double mass = few.mass();
   constexpr int kGrains = 9;
   const double weight = kGrains * mass * kStandardGravity, speed = 0.5, dt = 2e-5, height = 0.05;
   const double rest = kRadius - std::pow(weight / kGrains / few.floor_stiffness(), 2.0 / 3.0);
@@ -75,7 +69,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   few.options.length = 1.0;
   few.gravity = kStandardGravity;
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-  const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass, angle = 0.2, dt = 1e-5;
+  const double mass = few.mass(), angle = 0.2, dt = 1e-5;
   const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   const Vec3 foot(0.1, 0.0, 0.3), down = turn * Vec3::UnitX(), up = turn * Vec3::UnitZ();
   const double load = mass * few.gravity * std::cos(angle);
@@ -112,7 +106,7 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
     few.options.restitution = 1.0;
     few.options.density = 2.5e12;
     const terrain::dem::ContactCoefficients k = few.coefficients().floor;
-    const double mass = terrain::dem::grain_properties(kRadius, few.options.density).mass;
+    const double mass = few.mass();
     const double overlap = 1e-4, speed = 0.02, dt = 1e-5, height = 0.05;
     // Cells of 10 mm: the way of 16 mm crosses diagonals and two cell borders, or runs through vertices.
     terrain::dem::GrainSolver s = few.make({{0.296, through_vertex ? 0.0 : 0.0037, height + kRadius - overlap}});

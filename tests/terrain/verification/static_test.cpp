@@ -19,13 +19,6 @@ using terrain::dem::GrainSolver;
 constexpr double kRadius = 0.006;  // m
 constexpr double kStep = 2e-5;     // s
 
-void attach_ground(terrain::dem::GrainSolver& s, const terrain::dem::ContactCoefficients& k, double height) {
-  const testing::Surface ground = testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [=](double, double) { return height; });
-  const SurfaceState start{ground.vertex, std::vector<Vec3>(ground.vertex.size(), Vec3::Zero())};
-  s.surfaces().attach(ground.mesh, {}, k, start);
-  s.surfaces().move_to(0.0);
-}
-
 /// Overlap k of a column counted from below carries the grains above it: K δ^{3/2} = n m g + F_c.
 TEST(Static, column_stands_on_its_exact_overlaps) {
   constexpr int kCount = 12;
@@ -39,7 +32,7 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         few.gravity = kStandardGravity;
         const terrain::dem::SolverCoefficients k = few.coefficients();
         const double bottom = ground == Ground::mesh ? 0.2 : 0.0;
-        const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
+        const double weight = few.mass() * few.gravity;
         std::vector<double> overlap(kCount);
         for (int n = 0; n < kCount; ++n) {
           const double stiffness = n == 0 ? few.floor_stiffness() : few.pair_stiffness();
@@ -53,7 +46,8 @@ TEST(Static, column_stands_on_its_exact_overlaps) {
         }
         at.front().z -= 1e-7;
         terrain::dem::GrainSolver s = few.make(at);
-        if (ground == Ground::mesh) attach_ground(s, k.floor, bottom);
+        if (ground == Ground::mesh)
+          attach(s, testing::sheet(0.2531, -0.0372, 0.02, 4, 4, [=](double, double) { return bottom; }), k.floor);
         s.set_drag(30.0);
         for (int step = 0; step < 40000; ++step) {
           s.step(kStep);
@@ -89,7 +83,7 @@ TEST(Static, tetrahedron_shares_its_weight_by_symmetry) {
   few.options.step = kStep;
   few.gravity = kStandardGravity;
   const double a = 2.0 * kRadius, height = a * std::sqrt(2.0 / 3.0);
-  const double weight = terrain::dem::grain_properties(kRadius, few.options.density).mass * few.gravity;
+  const double weight = few.mass() * few.gravity;
   std::vector<terrain::dem::Quad> at;
   for (int n = 0; n < 3; ++n) {
     const double phi = 2.0 * M_PI * n / 3.0 + 0.2;

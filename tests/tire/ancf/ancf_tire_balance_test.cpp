@@ -10,7 +10,7 @@
 namespace furrow::test {
 namespace {
 
-constexpr double kStep = 1e-4, kSpeed = 8.0, kDepth = 0.008;
+constexpr double kStep = 1e-4, kSpeed = 8.0;
 
 /// M (0, 0, −g): consistent, so directors have a share.
 tire::Field consistent_weight(const tire::AncfTire& tire) {
@@ -24,26 +24,22 @@ tire::Field consistent_weight(const tire::AncfTire& tire) {
 }
 
 TEST(AncfTireBalance, momentum_and_angular_momentum_change_by_contact_gravity_and_spindle_impulse_to_round_off) {
-  tire::AncfTire tire(small_file());
+  Rolling rolling(small_file());
+  const tire::AncfTire& tire = rolling.tire;
+  const tire::RimTrajectory& t = rolling.path;
   const tire::ShellLayout& layout = tire.integrator().layout();
   const tire::Field weight = consistent_weight(tire);
-  const RimState rim = rolling_rim(0, tire.radius(), kSpeed, kDepth);
-  tire.place(rim);
-  tire::RimTrajectory t(rim);
-  SurfaceState start, end;
   for (int n = 0; n < 250; ++n) {
     const auto [p, l] = momenta(tire);
     const tire::Field before = tire.integrator().q();
-    tire.surface(start);
+    const SurfaceState start = rolling.surface();
     NodalForces f = ground_forces(tire);
     if (n % 7 == 0) {  // something on a bead disc too
       f.vertex.push_back(tire.mesh().vertex_count - 1);
       f.force.push_back(Vec3(3, -20, 8));
     }
-    t.extend(rolling_rim(n * kStep, tire.radius(), kSpeed, kDepth), kStep);
-    const Outcome status = tire.advance(t, f, 1);
-    ASSERT_TRUE(status.ok) << status.message("tire");
-    tire.surface(end);
+    rolling.go(rolling.at(n), kStep, f);
+    const SurfaceState end = rolling.surface();
     const tire::Field& after = tire.integrator().q();
     const Wrench spindle = tire.spindle_wrench();
     const Vec3 centre = 0.5 * (t.start().position + t.end().position);
@@ -74,25 +70,17 @@ struct RolledEnergy {
   double stored = 0.0;  // J
   tire::TireDiagnostics end;
   explicit RolledEnergy(double h) {
-    tire::AncfTire tire(small_file());
-    const RimState rim = rolling_rim(0, tire.radius(), kSpeed, kDepth);
-    tire.place(rim);
-    tire::RimTrajectory t(rim);
+    Rolling rolling(small_file());
+    rolling.step = h;
+    const tire::AncfTire& tire = rolling.tire;
     const tire::TireDiagnostics start = tire.diagnostics();
     double dissipation = 0.0;
-    SurfaceState before, after;
     const int steps = static_cast<int>(std::lround(0.04 / h));
     for (int n = 0; n < steps; ++n) {
       const NodalForces f = ground_forces(tire);
-      tire.surface(before);
-      t.extend(rolling_rim(n * h, tire.radius(), kSpeed, kDepth), h);
-      EXPECT_TRUE(tire.advance(t, f, 1).ok);
-      tire.surface(after);
-      for (std::size_t k = 0; k < f.vertex.size(); ++k)
-        work += f.force[k].dot(after.position[f.vertex[k]] - before.position[f.vertex[k]]);
-      const Wrench w = tire.spindle_wrench();
-      work -= w.force.dot(t.end().position - t.start().position) +
-              w.moment.dot(mean_turn(t.start().orientation, t.end().orientation));
+      const SurfaceState before = rolling.surface();
+      rolling.go(rolling.at(n), h, f);
+      work += surface_work(f, before, rolling.surface()) + rim_work(tire, rolling.path);
       EXPECT_GE(tire.diagnostics().dissipation, dissipation);
       dissipation = tire.diagnostics().dissipation;
     }
@@ -119,21 +107,19 @@ TEST(AncfTireBalance, energy_closes_to_second_order_of_the_step_with_the_numeric
 TEST(AncfTireBalance, steady_spin_loses_nothing_to_the_time_integration) {
   tire::ShellIntegratorParams weightless;
   weightless.gravity.setZero();
-  tire::AncfTire tire(small_file(), weightless);
   const auto rim_at = [&](double t) {
     RimState rim;
     rim.angular_velocity = Vec3(0.0, kSpeed, 0.0);
     rim.orientation = Quat(Eigen::AngleAxisd(kSpeed * t, Vec3::UnitY()));
     return rim;
   };
-  tire.place(rim_at(0.0));
-  tire::RimTrajectory t(rim_at(0.0));
+  LedTire led(rim_at(0.0), small_file(), weightless);
+  const tire::AncfTire& tire = led.tire;
   double before = 0.0;
   const int settling = 2000, steps = 500;
   for (int n = 0; n < settling + steps; ++n) {
     if (n == settling) before = tire.diagnostics().numerical_loss;
-    t.extend(rim_at(n * kStep), kStep);
-    ASSERT_TRUE(tire.advance(t, {}, 1).ok);
+    led.go(rim_at(n * kStep), kStep);
   }
   const double change = kSpeed * kStep, inertia = tire.mass_properties().inertia(1, 1);
   const double of_free_nodes = 0.5 * inertia * kSpeed * kSpeed * change * change * steps;

@@ -111,18 +111,13 @@ double rolling_loss(const std::vector<tire::MaxwellBranch>& prony) {
   tire::TireFile file = small_file();
   file.structural_damping = 0.002;
   file.prony = prony;
-  tire::AncfTire tire(file);
-  const double h = 1e-4, speed = 8.0, depth = 0.008;
-  tire::RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
-  tire.place(t.start());
+  Rolling rolling(file);
   double before = 0.0;
   for (int n = 0; n < 1000; ++n) {
-    if (n == 400) before = tire.diagnostics().dissipation;
-    t.extend(rolling_rim(n * h, tire.radius(), speed, depth), h);
-    const Outcome status = tire.advance(t, ground_forces(tire), 1);
-    EXPECT_TRUE(status.ok) << status.message("tire");
+    if (n == 400) before = rolling.tire.diagnostics().dissipation;
+    rolling.interval(n);
   }
-  return (tire.diagnostics().dissipation - before) / (600 * h);
+  return (rolling.tire.diagnostics().dissipation - before) / (600 * rolling.step);
 }
 
 TEST(Prony, branches_raise_the_rolling_loss_the_more_the_stiffer_they_are) {
@@ -135,8 +130,7 @@ TEST(Prony, branches_raise_the_rolling_loss_the_more_the_stiffer_they_are) {
 TEST(Prony, restored_tire_with_branches_and_a_changing_pressure_continues_bit_for_bit) {
   tire::TireFile file = small_file();
   file.prony = kTwo;
-  tire::AncfTire tire(file), other(file);
-  expect_restart_bit_for_bit(tire, other, [](tire::AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
+  expect_restart_bit_for_bit(file, [](tire::AncfTire& which, int n) { which.set_pressure(2e5 - 400.0 * n); });
 }
 
 }  // namespace

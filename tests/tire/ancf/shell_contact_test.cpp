@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "small_tire.hpp"
+#include "tests/saved.hpp"
 
 namespace furrow::test {
 namespace {
@@ -55,18 +56,16 @@ tire::TireFile limp_file() {
 /// Presses a tire on springs and holds it. @returns the largest change of the spindle's force from one interval to the
 /// next over the last quarter, N; infinite if it did not converge
 double unrest(bool tangents, double h, double& load, double time = 0.04) {
-  tire::AncfTire tire(limp_file());
-  const double depth = 0.010;
-  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 0.0, depth));
-  tire.place(t.start());
+  Rolling rolling(limp_file(), {}, 0.0, 0.010);
+  rolling.step = h;
+  const tire::AncfTire& tire = rolling.tire;
   Springs springs(tire);
   NodalForces f;
   double most = 0.0;
   const int steps = static_cast<int>(time / h);
   for (int n = 0; n < steps; ++n) {
     const NodalForces next = springs.forces(tire, h, tangents);
-    t.extend(rolling_rim(n * h, tire.radius(), 0.0, depth), h);
-    if (!tire.advance(t, f, 1).ok) return INFINITY;
+    if (!rolling.advance(rolling.at(n), h, f).ok) return INFINITY;
     f = next;
     const double force = tire.spindle_wrench().force.z();
     if (n >= 3 * steps / 4) most = std::max(most, std::abs(force - load));
@@ -91,33 +90,27 @@ TEST(ShellContact, comes_to_the_load_of_small_steps_without_it) {
 }
 
 TEST(ShellContact, never_pulls_and_keeps_what_acted) {
-  tire::AncfTire tire(small_file());
-  RimState rim;
-  tire.place(rim);
-  tire::RimTrajectory t(rim);
-  const int vertex = tire.integrator().layout().rows / 2;  // lies still
+  LedTire led({}, small_file());
+  const int vertex = led.tire.integrator().layout().rows / 2;  // lies still
   NodalForces f{{vertex}, {Vec3(0, 0, 100.0)}, {{}}};
-  SurfaceState s;
-  tire.surface(s);
+  const SurfaceState s = led.surface();
   f.tangent[0].stiffness = 1e5 * Mat3::Identity();
   for (const double deeper : {0.0, -0.5e-3, 2e-3, 1.0}) {
     f.tangent[0].position = s.position[vertex] - Vec3(0, 0, deeper);
-    t = tire::RimTrajectory(rim);
-    tire.place(rim);
-    t.extend(rim, 1e-6);
+    led.path = tire::RimTrajectory();
+    led.tire.place({});
     NodalForces acted = f;
-    ASSERT_TRUE(tire.advance(t, acted, 1).ok);
-    tire.acted(acted);
+    led.go({}, 1e-6, acted);
+    led.tire.acted(acted);
     EXPECT_NEAR(acted.force[0].z(), std::max(0.0, 100.0 - 1e5 * deeper), 0.1) << deeper;
     EXPECT_NEAR(acted.force[0].head<2>().norm(), 0.0, 0.1);
   }
 }
 
 TEST(ShellContact, momentum_of_the_tire_changes_by_what_acted) {
-  tire::AncfTire tire(small_file());
-  const double h = 2e-4, depth = 0.008;
-  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 8.0, depth));
-  tire.place(t.start());
+  Rolling rolling(small_file());
+  const double h = rolling.step = 2e-4;
+  const tire::AncfTire& tire = rolling.tire;
   Springs springs(tire);
   NodalForces f;
   const double mass = tire.mass_properties().mass;
@@ -125,8 +118,7 @@ TEST(ShellContact, momentum_of_the_tire_changes_by_what_acted) {
   for (int n = 0; n < 150; ++n) {
     const NodalForces next = springs.forces(tire, h, true);
     const Vec3 before = momenta(tire).first;
-    t.extend(rolling_rim(n * h, tire.radius(), 8.0, depth), h);
-    ASSERT_TRUE(tire.advance(t, f, 2).ok);
+    rolling.go(rolling.at(n), h, f, 2);
     tire.acted(f);
     Vec3 impulse = h * (Vec3(0, 0, -9.81 * mass) - tire.spindle_wrench().force);
     for (const Vec3& force : f.force) impulse += h * force, pushed += h * force.z();
@@ -137,34 +129,27 @@ TEST(ShellContact, momentum_of_the_tire_changes_by_what_acted) {
 }
 
 TEST(ShellContact, a_restored_tire_continues_bit_for_bit) {
-  tire::AncfTire tire(small_file()), other(small_file());
-  const double h = 2e-4, depth = 0.008;
-  tire::RimTrajectory t(rolling_rim(0, tire.radius(), 8.0, depth));
-  tire.place(t.start());
-  Springs springs(tire);
-  NodalForces f;
-  const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, Springs& ground, NodalForces& forces,
-                           int n) {
-    const NodalForces next = ground.forces(which, h, true);
-    path.extend(rolling_rim(n * h, which.radius(), 8.0, depth), h);
-    ASSERT_TRUE(which.advance(path, forces, 1).ok);
-    forces = next;
+  struct Ride : Rolling {
+    Springs springs{tire};
+    NodalForces forces;
+    using Rolling::Rolling;
+    void advance(int n) {
+      const NodalForces next = springs.forces(tire, step, true);
+      go(at(n), step, forces);
+      forces = next;
+    }
   };
-  for (int n = 0; n < 100; ++n) advance(tire, t, springs, f, n);
-  Archive archive;
-  tire.save(archive);
+  Ride one(small_file()), other(small_file());
+  one.step = other.step = 2e-4;
+  for (int n = 0; n < 100; ++n) one.advance(n);
+  const Archive archive = testing::saved(one.tire);
   EXPECT_TRUE(archive.has("ancf/factor/contact"));
-  other.restore(archive);
-  tire::RimTrajectory again = t;
-  Springs ground = springs;
-  NodalForces g = f;
-  for (int n = 100; n < 160; ++n) {
-    advance(tire, t, springs, f, n);
-    advance(other, again, ground, g, n);
-  }
-  EXPECT_EQ(tire.integrator().q(), other.integrator().q());
-  EXPECT_EQ(tire.integrator().v(), other.integrator().v());
-  EXPECT_EQ(tire.figures().of("newton_iterations"), other.figures().of("newton_iterations"));
+  other.tire.restore(archive);
+  other.path = one.path, other.springs = one.springs, other.forces = one.forces;
+  for (int n = 100; n < 160; ++n) one.advance(n), other.advance(n);
+  EXPECT_EQ(one.tire.integrator().q(), other.tire.integrator().q());
+  EXPECT_EQ(one.tire.integrator().v(), other.tire.integrator().v());
+  EXPECT_EQ(one.tire.figures().of("newton_iterations"), other.tire.figures().of("newton_iterations"));
 }
 
 }  // namespace

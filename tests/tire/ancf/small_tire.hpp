@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/saved.hpp"
+#include "tests/tire/led_tire.hpp"
 #include "tire/ancf/ancf_tire.hpp"
 #include "tire/read_tire_file.hpp"
 
@@ -41,6 +43,25 @@ inline RimState rolling_rim(double time, double radius, double speed, double dep
   return r;
 }
 
+using LedTire = Led<tire::AncfTire>;
+
+/// A tire that rolls into a ground.
+struct Rolling : LedTire {
+  double step = 1e-4, speed = 8.0, depth = 0.008;  // s, rad/s, m
+
+  explicit Rolling(const tire::TireFile& file, const tire::ShellIntegratorParams& params = {}, double spin = 8.0,
+                   double sinks = 0.008)
+      : Led({}, file, params), speed(spin), depth(sinks) {
+    path = tire::RimTrajectory(at(0));
+    tire.place(path.start());
+  }
+  RimState at(int n) const { return rolling_rim(n * step, tire.radius(), speed, depth); }
+  void interval(int n, int substeps = 1) { go(at(n), step, ground_forces(tire), substeps); }
+  void intervals(int count) {
+    for (int n = 0; n < count; ++n) interval(n);
+  }
+};
+
 /// Momentum and angular momentum about the origin by the consistent mass.
 inline std::pair<Vec3, Vec3> momenta(const tire::AncfTire& tire) {
   const tire::ShellLayout& layout = tire.integrator().layout();
@@ -56,37 +77,29 @@ inline std::pair<Vec3, Vec3> momenta(const tire::AncfTire& tire) {
   return {linear, angular};
 }
 
-/// Rolls 120 intervals, saves, and continues for 80 with the tire and with `other`, restored: the same bits.
+/// Rolls 120 intervals, saves, and continues for 80 with the tire and with another, restored: the same bits.
 /// @param prepare called with a tire and the interval's number before each interval
 template <class Prepare>
-void expect_restart_bit_for_bit(tire::AncfTire& tire, tire::AncfTire& other, Prepare prepare) {
-  const double h = 1e-4, speed = 8.0, depth = 0.008;
-  tire::RimTrajectory t(rolling_rim(0, tire.radius(), speed, depth));
-  tire.place(t.start());
-  const auto advance = [&](tire::AncfTire& which, tire::RimTrajectory& path, int n) {
-    prepare(which, n);
-    path.extend(rolling_rim(n * h, which.radius(), speed, depth), h);
-    ASSERT_TRUE(which.advance(path, ground_forces(which), 2).ok);
+void expect_restart_bit_for_bit(const tire::TireFile& file, Prepare prepare) {
+  Rolling one(file), other(file);
+  const auto advance = [&](Rolling& which, int n) {
+    prepare(which.tire, n);
+    which.interval(n, 2);
   };
-  for (int n = 0; n < 120; ++n) advance(tire, t, n);
-  Archive archive;
-  tire.save(archive);
-  tire::RimTrajectory again = t;
-  other.restore(archive);
-  for (int n = 120; n < 200; ++n) {
-    advance(tire, t, n);
-    advance(other, again, n);
-  }
-  EXPECT_EQ(tire.integrator().q(), other.integrator().q());
-  EXPECT_EQ(tire.integrator().v(), other.integrator().v());
-  EXPECT_EQ(tire.spindle_wrench().moment, other.spindle_wrench().moment);
-  const tire::TireDiagnostics a = tire.diagnostics(), b = other.diagnostics();
-  for (const tire::NamedValue& figure : tire.figures())
-    EXPECT_EQ(figure.value, other.figures().of(figure.name)) << figure.name;
+  for (int n = 0; n < 120; ++n) advance(one, n);
+  other.tire.restore(testing::saved(one.tire));
+  other.path = one.path;
+  for (int n = 120; n < 200; ++n) advance(one, n), advance(other, n);
+  EXPECT_EQ(one.tire.integrator().q(), other.tire.integrator().q());
+  EXPECT_EQ(one.tire.integrator().v(), other.tire.integrator().v());
+  EXPECT_EQ(one.tire.spindle_wrench().moment, other.tire.spindle_wrench().moment);
+  const tire::TireDiagnostics a = one.tire.diagnostics(), b = other.tire.diagnostics();
+  for (const tire::NamedValue& figure : one.tire.figures())
+    EXPECT_EQ(figure.value, other.tire.figures().of(figure.name)) << figure.name;
   EXPECT_EQ(a.losses(), b.losses());
   EXPECT_EQ(a.momentum, b.momentum);
   EXPECT_EQ(a.strain_energy(), b.strain_energy());
-  EXPECT_GT(tire.figures().of("factorizations"), 0);
+  EXPECT_GT(one.tire.figures().of("factorizations"), 0);
 }
 
 }  // namespace furrow::test

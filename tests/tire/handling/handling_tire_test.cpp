@@ -15,6 +15,7 @@
 
 #include "protocol/core/error.hpp"
 #include "protocol/core/mean_turn.hpp"
+#include "tests/saved.hpp"
 #include "tests/tire/handling/example_tire.hpp"
 #include "tests/tire/tire_file_checks.hpp"
 #include "tire/cylinder.hpp"
@@ -222,11 +223,9 @@ TEST(HandlingTire, restored_tire_continues_bit_for_bit) {
   HandlingTire tire = make();
   Rolling run(tire, rolling(0.018, 10.0, 30.0, 0.05, 0.02));
   for (int n = 0; n < 100; ++n) run.step();
-  Archive saved;
-  tire.save(saved);
   HandlingTire other = make();
   other.place(RimState());
-  other.restore(saved);
+  other.restore(testing::saved(tire));
   const StatedContact &a = *tire.stated_contact(), &b = *other.stated_contact();
   EXPECT_EQ(a.forces.vertex, b.forces.vertex);
   EXPECT_EQ(a.forces.force, b.forces.force);

@@ -27,13 +27,7 @@ std::filesystem::path written(const std::string& text) {
 }
 
 std::string complaint(const std::string& text) {
-  try {
-    read_sweep_table(written(text));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "no error";
+  return refusal(ExitCode::bad_input, [&] { read_sweep_table(written(text)); });
 }
 
 const std::string kRows =

@@ -30,13 +30,7 @@ std::string without(const std::string& section) {
 }
 
 std::string complaint(const std::string& text) {
-  try {
-    parse_tir(text, "a.tir");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::bad_input);
-    return error.what();
-  }
-  return "no error";
+  return refusal(ExitCode::bad_input, [&] { parse_tir(text, "a.tir"); });
 }
 
 TEST(TirFile, reads_back_what_it_wrote_bit_for_bit) {
@@ -135,7 +129,8 @@ TEST(TirFile, survives_damage) {
         damaged[at] = odd[random() % odd.size()];
       if (damaged.empty()) break;
     }
-    EXPECT_FALSE(complaint(damaged).empty());
+    const std::string said = complaint(damaged);
+    EXPECT_TRUE(said.empty() || said.starts_with("a.tir")) << said;
   }
 }
 

@@ -1,6 +1,7 @@
 // The flexible ring as a tire: its file, what is wrong with files, and what furrow press finds.
 #include "tire/ring/ring_spec.hpp"
 #include "tests/refusal.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -130,8 +131,8 @@ TEST(RingSpec, what_lies_beyond_the_model_is_refused) {
 }
 
 TEST(PressProfile, is_read_from_csv_and_mistakes_name_their_line) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("furrow_profile_" + std::to_string(::getpid()) + ".csv");
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "profile.csv";
   const auto read = [&](const std::string& text) {
     std::ofstream(file) << text;
     return read_press_profile(file);
@@ -145,10 +146,7 @@ TEST(PressProfile, is_read_from_csv_and_mistakes_name_their_line) {
                                                        {"x_m,z_m\n0,nan\n", "line 2: expected two numbers"},
                                                        {"x_m,z_m\n0,0\n0,1\n", "line 3: x is 0 m, expected more"},
                                                        {"x_m,z_m\n0,0\n", "has 1 points, expected two at least"}};
-  for (const auto& [text, words] : wrong) {
-    expect_refused(ExitCode::bad_input, {words}, [&] { read(text); });
-  }
-  std::filesystem::remove(file);
+  for (const auto& [text, words] : wrong) expect_refused(ExitCode::bad_input, {words}, [&] { read(text); });
 }
 
 }  // namespace

@@ -146,21 +146,5 @@ TEST(RingTension, without_a_share_nothing_is_added) {
   EXPECT_EQ(none.stiffest(), 0.0);
 }
 
-// σ = 1 and a sidewall without stiffness but for what holds the ring: the belt alone holds the pressure, and grows
-// nowhere.
-TEST(RingTension, the_inflated_belt_is_in_balance_and_its_sidewall_holds_the_rest) {
-  for (const double share : {0.0, 0.4, 1.0}) {
-    RingParams p = truck_ring(48);
-    p.tension_share = share;
-    RingMechanics ring(p);
-    RingField force = ring.zero();
-    ring.gradient(ring.zero(), force);
-    EXPECT_EQ(largest(force), 0.0);
-    EXPECT_EQ(ring.energy(ring.zero()), 0.0);
-    const double q = ring.draw(), load = (1.0 - share) * p.pressure * p.radius * p.width;
-    EXPECT_NEAR(q * (p.sidewall_1 + q * (p.sidewall_2 + q * p.sidewall_3)), load, 1e-13 * load + 1e-15);
-  }
-}
-
 }  // namespace
 }  // namespace furrow::tire

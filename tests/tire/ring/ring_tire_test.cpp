@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/refusal.hpp"
+#include "tests/saved.hpp"
 #include "tests/tire/extruded_ride.hpp"
 #include "tire/tires.hpp"
 
@@ -51,11 +52,8 @@ TEST(RingTire, its_moment_is_that_of_the_forces_on_a_rim_at_rest) {
     ASSERT_TRUE(tire->advance(motion, loads(surface, rim, 0.0), 1).ok);
   }
   const NodalForces f = loads(surface, rim, 0.0);
-  Vec3 force = tire->mass_properties().mass * tire->gravity(), moment = Vec3::Zero();
-  for (std::size_t k = 0; k < f.vertex.size(); ++k) {
-    force += f.force[k];
-    moment += (surface.position[f.vertex[k]] - rim.position).cross(f.force[k]);
-  }
+  const Vec3 force = tire->mass_properties().mass * tire->gravity() + test::sum(f);
+  const Vec3 moment = test::moment_about(rim.position, f, surface);
   // The belt sags under its own weight: what is left of the moment is that of its first moment of mass.
   EXPECT_LT((tire->spindle_wrench().force - force).norm(), 1e-4 * force.norm());
   EXPECT_LT((tire->spindle_wrench().moment - moment).norm(), 1e-3 * moment.norm());
@@ -78,9 +76,7 @@ TEST(RingTire, a_restored_tire_continues_bit_for_bit) {
     }
   };
   go(*one, rim);
-  Archive archive;
-  one->save(archive);
-  other->restore(archive);
+  other->restore(testing::saved(*one));
   RimTrajectory copy = rim;
   go(*one, rim), go(*other, copy);
   Hash a, b;

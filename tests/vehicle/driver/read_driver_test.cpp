@@ -12,7 +12,7 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "protocol/files/json_text.hpp"
-#include "tests/nodes/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 #include "vehicle/driver/driver.hpp"
 #include "vehicle/driver/lane_change.hpp"
 

@@ -28,4 +28,11 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// One that is also the cache of the program while it lives.
+class OwnCache : public TemporaryFolder {
+ public:
+  OwnCache() { setenv("XDG_CACHE_HOME", path().c_str(), 1); }
+  ~OwnCache() { unsetenv("XDG_CACHE_HOME"); }
+};
+
 }  // namespace furrow::testing

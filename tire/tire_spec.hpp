@@ -26,12 +26,19 @@ struct TireOptions {
   std::filesystem::path file;        // resolved
   PressureSchedule pressure;         // gauge, Pa; empty: the file's, constant
   double friction = -1.0;            // contact friction; negative: the file's
+  double rolling_friction = -1.0;    // of grains on the tread; negative: as among grains
   int elements_circumference = 0;    // 0: the file's
   int elements_width = 0;            // 0: the file's; split over the sections in the file's proportions
   double structural_damping = -1.0;  // s; negative: the file's
   bool rigid = false;                // same surface, no deformation
   bool contact_tangent = false;      // contact forces answer to the tire's motion within the step
   int substeps = 1;                  // of the tire in one communication step
+
+  /// Sets what is said of the contact.
+  void apply_to(ContactMaterial& contact) const {
+    if (friction >= 0.0) contact.friction = contact.pair_friction = friction;
+    contact.rolling_friction = rolling_friction;
+  }
 };
 
 void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
@@ -50,8 +57,13 @@ void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
             "Inflation pressure above the atmosphere. A list of [t, p] in s and Pa makes it a function of time: "
             "straight between the entries, constant before the first and after the last. Rigid tires ignore it. null: "
             "as in the tire file."));
-  visit(s.friction,
-        key("friction", "-", from(0, 10).or_null(), "Coulomb coefficient of the tread. null: as in the tire file."));
+  visit(s.friction, key("friction", "-", from(0, 10).or_null(),
+                        "Coulomb coefficient of the tread; between grains and tread it holds as it stands. null: as in "
+                        "the tire file, or as among grains where that is less."));
+  visit(s.rolling_friction,
+        key("rolling_friction", "-", from(0, 10).or_null(),
+            "Coefficient of rolling friction of grains on the tread: limit of the couple over "
+            "normal force × radius of the grain. Engines dem and liggghts. null: as among grains."));
   visit(s.elements_circumference, key("elements_circumference", "", from(8, 10000).or_null(),
                                       "Shell elements around the tire. null: as in the tire file."));
   visit(s.elements_width, key("elements_width", "", from(6, 1000).multiple_of(2).or_null(),

@@ -99,14 +99,16 @@ void visit_fields(FieldsOf<MassProperties> auto& s, auto&& visit) {
 
 /// Elastic and frictional properties of a surface for contact with grains or ground.
 struct ContactMaterial {
-  double young_modulus = 0.0;     // Pa
-  double poisson_ratio = 0.0;     // -
-  double friction = 0.0;          // Coulomb coefficient, -
-  double restitution = 0.0;       // -, law mindlin
-  double normal_stiffness = 0.0;  // N/m^1.5, law hertz_tanh
-  double normal_damping = 0.0;    // N s/m^1.5, law hertz_tanh
-  double cohesion = 0.0;          // Pa; the tire's is zero
-  double area_density = 0.0;      // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
+  double young_modulus = 0.0;      // Pa
+  double poisson_ratio = 0.0;      // -
+  double friction = 0.0;           // Coulomb coefficient, -
+  double restitution = 0.0;        // -, law mindlin
+  double normal_stiffness = 0.0;   // N/m^1.5, law hertz_tanh
+  double normal_damping = 0.0;     // N s/m^1.5, law hertz_tanh
+  double cohesion = 0.0;           // Pa; the tire's is zero
+  double pair_friction = -1.0;     // of this surface with grains, -; negative: the smaller friction of the two
+  double rolling_friction = -1.0;  // of grains on this surface, -; negative: as among grains
+  double area_density = 0.0;       // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
 };
 void visit_fields(FieldsOf<ContactMaterial> auto& s, auto&& visit) {
   visit(s.young_modulus, Field{"young_modulus", "Pa"});
@@ -116,6 +118,8 @@ void visit_fields(FieldsOf<ContactMaterial> auto& s, auto&& visit) {
   visit(s.normal_stiffness, Field{"normal_stiffness", "N/m^1.5"});
   visit(s.normal_damping, Field{"normal_damping", "N s/m^1.5"});
   visit(s.cohesion, Field{"cohesion", "Pa"});
+  visit(s.pair_friction, Field{"pair_friction"});
+  visit(s.rolling_friction, Field{"rolling_friction"});
   visit(s.area_density, Field{"area_density", "kg/m²"});
 }
 

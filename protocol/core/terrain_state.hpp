@@ -19,6 +19,7 @@ struct ContactSums {
   double transfer_moment_residual = 0.0;  // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
   double work = 0.0;                      // this interval: Σ_substeps f·Δx̃ of the vertices, J
   std::int64_t contacts = 0;              // of the last substep
+  std::int64_t sliding = 0;               // of those, at the limit of friction; engine dem
 };
 void visit_fields(FieldsOf<ContactSums> auto& s, auto&& visit) {
   visit(s.force, Field{"force", "N"});
@@ -29,6 +30,7 @@ void visit_fields(FieldsOf<ContactSums> auto& s, auto&& visit) {
   visit(s.transfer_moment_residual, Field{"transfer_moment_residual"});
   visit(s.work, Field{"work", "J"});
   visit(s.contacts, Field{"contacts"});
+  visit(s.sliding, Field{"sliding"});
 }
 
 /// Energy of a terrain by where it is and by which mechanism it left, each integrated on its own: none is the

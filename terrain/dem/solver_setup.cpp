@@ -54,7 +54,6 @@ SolverCoefficients run_coefficients(const DemOptions& options, double step) {
 ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material, double step) {
   DemOptions at_step = options;
   at_step.step = step;
-  at_step.rolling_friction = 0.0;  // a couple could not be handed to vertices
   return mix(grain_material(options), material, Partner::surface, grain_properties(options.radius, options.density),
              at_step);
 }

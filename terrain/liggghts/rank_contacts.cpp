@@ -78,6 +78,7 @@ void RankContacts::attach(const SurfaceMesh& mesh, const ContactMaterial& materi
   tires_.emplace_back(mesh, params_.largest_radius() + look_room(), options_.contact_tangents, params_.grain, material,
                       start);
   tires_.back().coefficients = dem::surface_coefficients(options_, material, options_.step);
+  tires_roll_ |= material.rolling_friction > 0.0;
 }
 
 void RankContacts::begin_interval(std::span<const SurfaceState> targets, double duration, int steps) {
@@ -138,7 +139,7 @@ void RankContacts::forget_grains() {
 
 void RankContacts::add_forces(const OwnGrains& grains, int first, int last, bool losses) {
   if (first == 0) look(grains);
-  dem::with_law(params_.law, params_.rolling, params_.sizes(), [&](auto law, auto rolling, auto sizes) {
+  dem::with_law(params_.law, params_.rolling || tires_roll_, params_.sizes(), [&](auto law, auto rolling, auto sizes) {
     add_forces_of<decltype(law), rolling, sizes>(grains, last, losses);
   });
 }
@@ -280,7 +281,7 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (const SurfaceHit& hit : hits) {
     const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
-    const dem::ContactMotion<double> motion = dem::motion_at(tire.collider, hit, arm, v, w);
+    const dem::ContactMotion<double> motion = dem::motion_at(tire.collider, kRolling ? &tire.sum.patches() : nullptr, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     double cosine = dem::kSameNormal;
     int nearest = -1;
@@ -296,7 +297,8 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
     const auto [push, drag, torque] = dem::facet_loads(f, motion.normal, arm, hit.share);
     add(grains.force[g], push + drag);
     add(grains.torque[g], torque);
-    tire.forces.push_back({hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}});
+    tire.forces.push_back({hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}, -hit.share * dem::vec(f.rolling),
+                           dem::slides(c, f)});
     if (options_.contact_tangents) tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
     on_grains_ += dem::vec(push + drag);
     now_.elastic += hit.share * f.energy;

@@ -138,6 +138,7 @@ class RankContacts final : public StepWork {
   dem::SolverParams params_;
   dem::SolverCoefficients coefficients_;
   std::vector<Tire> tires_;
+  bool tires_roll_ = false;  // some tire resists the rolling of grains, whether or not grains do
   StepTimes times_;
   int steps_ = 1, step_ = 0;  // of the interval
   dem::EnergyAccounts energies_;

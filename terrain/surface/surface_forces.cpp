@@ -1,6 +1,7 @@
 #include "terrain/surface/surface_forces.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "protocol/core/assert.hpp"
 
@@ -12,8 +13,9 @@ constexpr double kArmFloor = 1e-3;
 
 }  // namespace
 
-NodalForceSum::NodalForceSum(int vertex_count, bool tangents)
-    : impulse_(vertex_count, Vec3::Zero()),
+NodalForceSum::NodalForceSum(int vertex_count, bool tangents, SurfacePatches patches)
+    : patches_(std::move(patches)),
+      impulse_(vertex_count, Vec3::Zero()),
       touched_(vertex_count, 0),
       substep_force_(vertex_count, Vec3::Zero()),
       substep_touched_(vertex_count, 0),
@@ -32,6 +34,15 @@ void NodalForceSum::add_tangents(std::span<const SurfaceContactForce> contacts, 
       ContactTangent& t = tangent_[surface.triangles[contact.triangle][k]];
       t.stiffness += contact.weight[k] * stiffness;
       t.damping += contact.weight[k] * damping;
+    }
+    if (contact.tangent.k_r == 0.0 && contact.tangent.c_r == 0.0) continue;
+    const PatchTurn patch(patches_.of(contact.triangle), surface.position);
+    const Vec3& n = contact.tangent.normal;
+    const Mat3 across = dt * (Mat3::Identity() - n * n.transpose());
+    for (const int v : patches_.of(contact.triangle)) {
+      const Mat3 resists = patch.resistance(v, across);
+      tangent_[v].stiffness += contact.tangent.k_r * resists;
+      tangent_[v].damping += contact.tangent.c_r * resists;
     }
   }
 }
@@ -53,6 +64,7 @@ void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, c
   FURROW_ASSERT(surface.position.size() == impulse_.size(), surface.position.size(), impulse_.size());
   FURROW_ASSERT(surface.velocity.size() == impulse_.size(), surface.velocity.size(), impulse_.size());
   sums_.contacts = static_cast<std::int64_t>(contacts.size());
+  sums_.sliding = std::count_if(contacts.begin(), contacts.end(), [](const auto& contact) { return contact.slides; });
   if (!tangent_.empty()) add_tangents(contacts, surface, advance);
   if (contacts.empty()) return;
   const auto& [triangles, position, velocity] = surface;
@@ -64,24 +76,25 @@ void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, c
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double force_scale = 0.0, moment_scale = 0.0;
+  const auto add = [&](int v, const Vec3& f) {
+    if (!substep_touched_[v]) {
+      substep_touched_[v] = 1;
+      substep_list_.push_back(v);
+    }
+    substep_force_[v] += f;
+  };
   for (const auto& contact : contacts) {
     const Vec3 total = contact.normal + contact.tangential;
     const Vec3 arm = contact.point - mean;
     const Vec3 turn = arm.cross(total);
     force += total;
-    moment += turn;
+    moment += turn + contact.couple;
     force_scale += total.norm();
-    moment_scale += std::max(turn.norm(), kArmFloor * arm.norm() * total.norm());
+    moment_scale += std::max(turn.norm(), kArmFloor * arm.norm() * total.norm()) + contact.couple.norm();
     sums_.normal += dt * contact.normal;
     sums_.tangential += dt * contact.tangential;
-    for (int k = 0; k < 3; ++k) {
-      const int v = triangles[contact.triangle][k];
-      if (!substep_touched_[v]) {
-        substep_touched_[v] = 1;
-        substep_list_.push_back(v);
-      }
-      substep_force_[v] += contact.weight[k] * total;
-    }
+    for (int k = 0; k < 3; ++k) add(triangles[contact.triangle][k], contact.weight[k] * total);
+    if (!contact.couple.isZero(0.0)) PatchTurn(patches_.of(contact.triangle), position).each_force(contact.couple, add);
   }
   Vec3 nodal_force = Vec3::Zero(), nodal_moment = Vec3::Zero();
   for (int v : substep_list_) {

@@ -1,17 +1,20 @@
 // From contact forces on a surface to forces on its vertices, and their sums over one communication interval.
 //
 // A force f at p = Σ w_a x_a of a triangle goes to its vertices as w_a f. Then Σ w_a f = f and Σ x_a × w_a f = p × f:
-// force and moment are handed over exactly in the configuration in which f was evaluated.
+// force and moment are handed over exactly in the configuration in which f was evaluated. A couple acts on the patch of
+// its triangle (surface_patches.hpp).
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/surface.hpp"
 #include "protocol/core/terrain_state.hpp"
 #include "terrain/surface/surface_collider.hpp"
+#include "terrain/surface/surface_patches.hpp"
 
 namespace furrow::terrain {
 
@@ -21,6 +24,7 @@ struct SurfaceContactTangent {
   Vec3 normal = Vec3::Zero();   // n, unit, W
   double k_n = 0.0, k_t = 0.0;  // N/m
   double c_n = 0.0, c_t = 0.0;  // N s/m
+  double k_r = 0.0, c_r = 0.0;  // of the couple: dM = −(k_r dθ + c_r dω) across n, N m, N m s
 
   Mat3 stiffness() const { return k_t * Mat3::Identity() + (k_n - k_t) * normal * normal.transpose(); }
   Mat3 damping() const { return c_t * Mat3::Identity() + (c_n - c_t) * normal * normal.transpose(); }
@@ -34,6 +38,8 @@ struct SurfaceContactForce {
   Vec3 normal = Vec3::Zero();      // N, W
   Vec3 tangential = Vec3::Zero();  // N, W
   SurfaceContactTangent tangent;   // read only where tangents are wanted
+  Vec3 couple = Vec3::Zero();      // N m, W, beside the force at the point
+  bool slides = false;             // its friction is at the limit
 };
 
 /// A surface as it is in one substep.
@@ -47,7 +53,12 @@ class NodalForceSum {
  public:
   /// @param tangents whether the vertices' tangents are summed as well: each contact's by the weights of its point,
   /// so that they are exact for a motion that the three vertices share
-  explicit NodalForceSum(int vertex_count, bool tangents = false);
+  /// @param patches on which couples act; without them there may be no couples
+  explicit NodalForceSum(int vertex_count, bool tangents = false, SurfacePatches patches = {});
+
+  const SurfacePatches& patches() const { return patches_; }
+  /// Those of a saved state.
+  void set_patches(SurfacePatches patches) { patches_ = std::move(patches); }
 
   /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
   /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
@@ -75,6 +86,7 @@ class NodalForceSum {
   void add_tangents(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt);
   void finish_tangents(double duration, NodalForces& forces);
 
+  SurfacePatches patches_;
   std::vector<Vec3> impulse_;  // per vertex, N s
   std::vector<std::uint8_t> touched_;
   std::vector<int> touched_list_;    // in order of first touch

@@ -24,13 +24,13 @@ struct LinearLaw {
   };
 
   template <class Pair, class Options>
-  static Coefficients<double> mix(const Pair& pair, const Options& options) {
+  static Coefficients<double> mix(const Pair& pair, const Options&) {
     Coefficients<double> c;
     c.stiffness = 0.5 * (pair.a.normal_stiffness + pair.b.normal_stiffness);
     c.damping = 0.5 * (pair.a.normal_damping + pair.b.normal_damping);
-    c.friction = smaller(pair.a.friction, pair.b.friction);
+    c.friction = pair.friction;
     c.cohesion_force = pair.cohesion_force();
-    c.rolling_arm = options.rolling_friction * pair.reduced_radius;
+    c.rolling_arm = pair.rolling * pair.reduced_radius;
     c.rolling_radius = pair.reduced_radius;
     return c;
   }

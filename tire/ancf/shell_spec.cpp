@@ -91,7 +91,7 @@ TireDescription ShellSpec::describe() const {
 
 TireFile tire_file_of(const TireOptions& options, TireFile file) {
   if (!options.pressure.empty()) file.pressure = options.pressure.at(0.0);
-  if (options.friction >= 0.0) file.contact.friction = options.friction;
+  options.apply_to(file.contact);
   if (options.structural_damping >= 0.0) file.structural_damping = options.structural_damping;
   if (options.elements_circumference != 0) {
     if (options.elements_circumference < 8)

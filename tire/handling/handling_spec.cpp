@@ -79,7 +79,7 @@ TireShape HandlingSpec::shape() const {
                     .restitution = 0.2,
                     .normal_stiffness = 2e6,
                     .normal_damping = 13.0};
-  if (options().friction >= 0.0) shape.material.friction = options().friction;
+  options().apply_to(shape.material);
   shape.mass = mass();
   return shape;
 }

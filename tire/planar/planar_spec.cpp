@@ -100,7 +100,8 @@ TireDescription PlanarSpec::describe() const {
 
 /// What the scenario says in place of the file: another number of elements around takes as many more through the tire.
 void apply(PlanarFile& file, const TireOptions& options) {
-  if (options.friction >= 0.0) file.contact.friction = file.params.friction = options.friction;
+  options.apply_to(file.contact);
+  file.params.friction = file.contact.friction;
   if (options.elements_circumference == 0) return;
   const int around = options.elements_circumference;
   if (around < kLeastAround || around > kMostAround)

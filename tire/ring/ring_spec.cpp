@@ -126,7 +126,7 @@ TireShape RingSpec::shape() const {
 /// What the scenario says in place of the file.
 void apply(RingFile& file, const TireOptions& options) {
   if (!options.pressure.empty()) file.params.pressure = options.pressure.at(0.0);
-  if (options.friction >= 0.0) file.contact.friction = options.friction;
+  options.apply_to(file.contact);
   if (options.structural_damping >= 0.0) file.motion.damping = options.structural_damping;
   if (options.elements_circumference == 0) return;
   if (options.elements_circumference < kMinSegments || options.elements_circumference > kMaxSegments)

@@ -66,6 +66,7 @@ struct ContactForce {
 struct ContactStiffness {
   double k_n = 0.0, k_t = 0.0;  // N/m
   double c_n = 0.0, c_t = 0.0;  // N s/m
+  double k_r = 0.0, c_r = 0.0;  // of the rolling couple, N m, N m s
 };
 
 /// Largest stable step of semi-implicit Euler and what limits it.

@@ -37,6 +37,8 @@ ContactMaterial grain_material(const DemOptions& o) {
           .normal_stiffness = o.normal_stiffness,
           .normal_damping = o.normal_damping,
           .cohesion = o.cohesion,
+          .pair_friction = -1.0,
+          .rolling_friction = -1.0,
           .area_density = 0.0};
 }
 
@@ -59,6 +61,8 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
       // Sliding also spins the spheres, which resist as 2/7 of their mass.
       .slide_mass = 1.0 / (3.5 / properties.mass + (pair ? 3.5 : 1.0) / other_mass),
       .inertia = pair ? 0.5 * properties.inertia : properties.inertia,
+      .friction = other.pair_friction >= 0.0 ? other.pair_friction : std::min(grain.friction, other.friction),
+      .rolling = other.rolling_friction >= 0.0 ? other.rolling_friction : options.rolling_friction,
   };
   return with_law(law_from(options.law), [&](auto law) { return ContactCoefficients(law.mix(mixed, options)); });
 }

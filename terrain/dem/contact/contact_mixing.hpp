@@ -30,6 +30,8 @@ struct MixedPair {
   double mass;            // m*, 1/m* = Σ 1/m, kg
   double slide_mass;      // with which surfaces resist sliding, kg
   double inertia;         // I*, kg m²
+  double friction;        // Coulomb coefficient, -
+  double rolling;         // coefficient of rolling friction, -
 
   /// F_c = π r² min(c_t), N.
   double cohesion_force() const;

@@ -41,10 +41,10 @@ struct HertzTanhLaw {
     Coefficients<double> c;
     c.stiffness = 0.5 * (a.normal_stiffness + b.normal_stiffness);
     c.damping = 0.5 * (a.normal_damping + b.normal_damping);
-    c.friction = smaller(a.friction, b.friction);
+    c.friction = pair.friction;
     c.cohesion_force = pair.cohesion_force();
     c.velocity_scale = options.friction_velocity_scale;
-    c.rolling_arm = options.rolling_friction * pair.reduced_radius;
+    c.rolling_arm = pair.rolling * pair.reduced_radius;
     c.rolling_radius = pair.reduced_radius;
     const bool limited = options.friction_impulse_limit;
     c.slip_limit = limited ? kImpulseShare * pair.slide_mass / options.step : std::numeric_limits<double>::infinity();
@@ -107,6 +107,8 @@ struct HertzTanhLaw {
     const double speed = std::sqrt(larger(0.0, dot(at.velocity, at.velocity) - v_n * v_n));
     if (c.velocity_scale * speed < kViscous)
       t.c_t = share * smaller(c.friction * f.elastic * c.velocity_scale, c.slip_limit);
+    if (const double rate = c.velocity_scale * c.rolling_radius; rate * std::sqrt(dot(at.roll, at.roll)) < kViscous)
+      t.c_r = share * smaller(c.rolling_arm * f.elastic * rate, c.roll_limit);
     return t;
   }
 

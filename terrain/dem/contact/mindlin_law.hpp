@@ -52,7 +52,7 @@ struct MindlinLaw {
   };
 
   template <class Pair, class Options>
-  static Coefficients<double> mix(const Pair& pair, const Options& options) {
+  static Coefficients<double> mix(const Pair& pair, const Options&) {
     const auto &a = pair.a, &b = pair.b;
     const double r = pair.reduced_radius, root_r = std::sqrt(r);
     const double e_star = 1.0 / ((1.0 - a.poisson_ratio * a.poisson_ratio) / a.young_modulus +
@@ -65,9 +65,9 @@ struct MindlinLaw {
     c.damping = factor * std::sqrt(2.0 * e_star * root_r * pair.mass);
     c.shear_stiffness = 8.0 * g_star * root_r;
     c.shear_damping = factor * std::sqrt(c.shear_stiffness * pair.slide_mass);
-    c.friction = smaller(a.friction, b.friction);
+    c.friction = pair.friction;
     c.cohesion_force = pair.cohesion_force();
-    c.rolling_arm = options.rolling_friction * r;
+    c.rolling_arm = pair.rolling * r;
     c.rolling_radius = r;
     c.rolling_damping = 2.0 * kRollingDampingRatio * std::sqrt(c.shear_stiffness * r * r * pair.inertia);
     return c;
@@ -191,6 +191,11 @@ struct MindlinLaw {
     if (std::sqrt(dot(f.tangential, f.tangential)) < kSlides * c.friction * f.elastic) {
       t.k_t = share * c.shear_stiffness * s;
       t.c_t = share * c.shear_damping * q;
+    }
+    const double most = kSlides * c.rolling_arm * f.elastic;
+    if (dot(f.rolling, f.rolling) < most * most) {
+      t.k_r = share * c.shear_stiffness * c.rolling_radius * c.rolling_radius * s;
+      t.c_r = share * c.rolling_damping * q;
     }
     return t;
   }

@@ -68,6 +68,7 @@ class SurfaceContacts {
   void set_coefficients(int k, const ContactCoefficients& c) {
     FURROW_ASSERT(in_range(k, count()), k, count());
     surfaces_[k].coefficients = c;
+    rolling_ |= with_law(law_, [&](auto law) { return c.of<decltype(law)>().rolling_arm > 0.0; });
   }
 
   /// Declares the motion of the coming interval from where each surface stands.

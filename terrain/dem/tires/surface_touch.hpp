@@ -19,13 +19,26 @@ inline constexpr double kSameNormal = 0.5;
 /// @pre the surface has the triangle
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n);
 
+/// @param patches for the roll of the grain against the surface; null where nothing resists it
 /// @param arm from the grain's centre to the point, m  @param velocity of the centre, m/s  @param spin rad/s
-inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const SurfaceHit& hit, const Triple<double>& arm,
-                                       const Triple<double>& velocity, const Triple<double>& spin) {
+inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const SurfacePatches* patches,
+                                       const SurfaceHit& hit, const Triple<double>& arm, const Triple<double>& velocity,
+                                       const Triple<double>& spin) {
   ContactMotion<double> motion = motion_on_surface(triple(hit.normal), hit.overlap, arm, velocity, spin);
   motion.velocity = motion.velocity - triple(surface.velocity_at(hit));
   motion.spin += 0.5 * spin_about(surface, hit.triangle, hit.normal);
+  if (patches) {
+    const PatchTurn patch(patches->of(hit.triangle), surface.positions());
+    motion.roll = motion.roll - triple(patch.spin(surface.velocities()));
+  }
   return motion;
+}
+
+/// Whether friction is within 1 % of its limit.
+template <class Coefficients>
+bool slides(const Coefficients& c, const ContactForce<double>& f) {
+  const double limit = 0.99 * c.friction * f.elastic;
+  return dot(f.tangential, f.tangential) >= limit * limit;
 }
 
 /// How a contact that counts by `share` answers to the motion of the surface.
@@ -33,7 +46,7 @@ template <class Law>
 SurfaceContactTangent contact_tangent(const typename Law::template Coefficients<double>& c,
                                       const ContactMotion<double>& at, const ContactForce<double>& f, double share) {
   const ContactStiffness k = Law::tangent(c, at, f, share);
-  return {vec(at.normal), k.k_n, k.k_t, k.c_n, k.c_t};
+  return {vec(at.normal), k.k_n, k.k_t, k.c_n, k.c_t, k.k_r, k.c_r};
 }
 
 }  // namespace furrow::terrain::dem

@@ -33,7 +33,7 @@ struct TireSurface {
   TireSurface(const SurfaceMesh& mesh, double reach, bool tangents, const GrainProperties& grain,
               const ContactMaterial& of_tire, const SurfaceState& at)
       : collider(mesh, reach),
-        sum(mesh.vertex_count, tangents),
+        sum(mesh.vertex_count, tangents, SurfacePatches(mesh, at.position, grain.radius)),
         material(of_tire),
         mass_share(dem::mass_share(grain, of_tire)),
         start(at.position),
@@ -74,6 +74,7 @@ void save_surfaces(Archive& archive, const std::string& word, const Surfaces& su
     save_fields(archive, "mesh", surfaces[k].collider.mesh());
     save_value(archive, "position", surfaces[k].end);
     save_fields(archive, "material", surfaces[k].material);
+    save_fields(archive, "patches", surfaces[k].sum.patches());
   }
 }
 
@@ -97,6 +98,9 @@ void restore_surfaces(const Archive& archive, const std::string& word, Surfaces&
     if (!before.empty() && start.position.size() != before[k].end.size())
       throw Error(ExitCode::io, fmt::format("saved state of {} {} is of another tire", word, k));
     attach(mesh, material, start);
+    SurfacePatches patches;
+    restore_fields(archive, "patches", patches);
+    surfaces.back().sum.set_patches(std::move(patches));
   }
 }
 

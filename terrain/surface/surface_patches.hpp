@@ -1,0 +1,70 @@
+// Couples on a triangulated surface. Vertices carry forces only, so that a couple M acts on the vertices around its
+// point as forces without a resultant. With their positions x_a from their centroid and J = Σ (|x_a|² I − x_a x_aᵀ),
+//
+//   f_a = (J⁻¹ M) × x_a,     Σ f_a = 0,   Σ x_a × f_a = M,   Σ f_a · v_a = M · ω_s,   ω_s = J⁻¹ Σ x_a × v_a:
+//
+// force, moment and power are exact for the spin ω_s, which is that of the vertices where they move as a rigid body.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "protocol/core/assert.hpp"
+#include "protocol/core/fields.hpp"
+#include "protocol/core/surface.hpp"
+
+namespace furrow::terrain {
+
+/// For each triangle its vertices, and more around it where it is small.
+class SurfacePatches {
+ public:
+  SurfacePatches() = default;
+  /// @param reach within which vertices belong to a triangle, from its centroid and along connected triangles, m
+  /// @pre a position for each vertex
+  SurfacePatches(const SurfaceMesh& mesh, std::span<const Vec3> position, double reach);
+
+  std::span<const int> of(int triangle) const {
+    FURROW_ASSERT(in_range(triangle + 1, first_.size()), triangle, first_.size());
+    return std::span(vertex_).subspan(first_[triangle], first_[triangle + 1] - first_[triangle]);
+  }
+
+ private:
+  friend void visit_fields(FieldsOf<SurfacePatches> auto& s, auto&& visit) {
+    visit(s.first_, Field{"first"});
+    visit(s.vertex_, Field{"vertex"});
+  }
+  std::vector<int> first_, vertex_;
+};
+
+/// A patch as it stands.
+class PatchTurn {
+ public:
+  /// @pre three vertices or more
+  PatchTurn(std::span<const int> patch, std::span<const Vec3> position);
+
+  /// ω_s, rad/s.
+  Vec3 spin(std::span<const Vec3> velocity) const;
+  /// Calls f(vertex, force) for a couple, N m. On vertices that stand in one line no moment about it can act.
+  template <class F>
+  void each_force(const Vec3& couple, const F& f) const {
+    const Vec3 turn = solved(couple);
+    for (const int v : patch_) f(v, Vec3(turn.cross(position_[v] - centre_)));
+  }
+  /// −∂f/∂u of a vertex alone, where M = −K ω: [x]ᵀ J⁻¹ K J⁻¹ [x].
+  Mat3 resistance(int vertex, const Mat3& of_couple) const;
+
+ private:
+  Vec3 moment_of(const Vec3& turn) const;
+  /// J⁻¹ b. Once more with what is left over: J of a sliver is ill-conditioned.
+  Vec3 solved(const Vec3& b) const {
+    const Vec3 first = inverse_ * b;
+    return first + inverse_ * (b - moment_of(first));
+  }
+
+  std::span<const int> patch_;
+  std::span<const Vec3> position_;
+  Vec3 centre_ = Vec3::Zero();   // m
+  Mat3 inverse_ = Mat3::Zero();  // 1/m²
+};
+
+}  // namespace furrow::terrain

@@ -23,7 +23,8 @@ struct SoilArguments {
   bool quick = false;
   int seeds = 3;
   double speed = 0.1;             // of the tools, m/s
-  std::vector<std::string> only;  // plate, shear, cone, repose; empty: all
+  std::vector<std::string> only;  // tests; empty: all but that of the interface
+  double friction = -1.0;         // of the interface test, -; negative: as among the grains
   std::vector<double> stresses;   // of the shear tests, Pa; empty: the usual ones
 };
 
@@ -51,8 +52,12 @@ terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains, 
     return only.empty() || std::find(only.begin(), only.end(), test) != only.end();
   };
   for (const std::string& test : only)
-    require_option(test == "plate" || test == "shear" || test == "cone" || test == "repose", "--only",
-                   "is '" + test + "', expected plate, shear, cone or repose");
+    require_option(test == "plate" || test == "shear" || test == "cone" || test == "repose" || test == "interface",
+                   "--only", "is '" + test + "', expected plate, shear, cone, repose or interface");
+  o.interface = !only.empty() && asked("interface");
+  o.face_friction = arguments.friction;
+  require_option(arguments.friction == -1.0 || (arguments.friction >= 0.0 && arguments.friction <= 10.0), "--friction",
+                 "expected 0 to 10");
   o.plate = asked("plate"), o.shear = asked("shear"), o.cone = asked("cone"), o.repose = asked("repose");
   return o;
 }
@@ -87,7 +92,7 @@ ExitCode test_soil(const scenario::Scenario& scenario, const SoilArguments& argu
     const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
     launch::say(terrain::soil::soil_text(soil));  // before the files: the disk may be full
     std::cout << soil.dump(2) << std::endl;
-    directory.add({"scenario.json", "soil.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"});
+    directory.add({"scenario.json", "soil.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv", "interface.csv"});
     write_whole_file(directory.path() / "scenario.json", scenario.completed + "\n");
     terrain::soil::write_soil_tables(directory.path(), run);
     write_whole_file(directory.path() / "soil.json", soil.dump(2) + "\n");
@@ -111,7 +116,8 @@ Action soil_options(CLI::App& command, Typed& typed) {
       ->capture_default_str();
   command
       .add_option("--only", arguments->only,
-                  "Run this test only: plate, shear, cone or repose. The option may be repeated.")
+                  "Run this test only: plate, shear, cone, repose or interface (grains along a plate, which is not run "
+                  "otherwise). The option may be repeated.")
       ->take_all()
       ->allow_extra_args(false);
   command
@@ -120,6 +126,9 @@ Action soil_options(CLI::App& command, Typed& typed) {
                   "20, 50 and 100 kPa, less for soft grains).")
       ->take_all()
       ->allow_extra_args(false);
+  command.add_option("--friction", arguments->friction,
+                     "Coulomb coefficient between the grains and the plate of the interface test (default: as among "
+                     "the grains).");
   command.add_flag("--quick", arguments->quick,
                    "Use small boxes and one seed, for an impression within seconds. Do not quote its results.");
   return [arguments, &typed] { return test_soil(load(typed), *arguments); };

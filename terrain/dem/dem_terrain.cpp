@@ -137,14 +137,20 @@ class DemTerrain : public Terrain {
     out.position.resize(3 * n);
     out.speed.resize(n);
     out.radius.resize(n);
+    for (auto* of : {&out.velocity, &out.spin}) of->resize(out.motion ? 3 * n : 0);
+    const auto put = [](std::vector<float>& to, std::size_t id, const dem::Quad& q) {
+      to[3 * id] = static_cast<float>(q.x), to[3 * id + 1] = static_cast<float>(q.y);
+      to[3 * id + 2] = static_cast<float>(q.z);
+    };
     for (std::size_t g = 0; g < n; ++g) {
       const std::size_t id = grains.id[g];
       const dem::Quad &x = grains.position[g], &v = grains.velocity[g];
-      out.position[3 * id] = static_cast<float>(x.x);
-      out.position[3 * id + 1] = static_cast<float>(x.y);
-      out.position[3 * id + 2] = static_cast<float>(x.z);
+      put(out.position, id, x);
       out.radius[id] = static_cast<float>(x.w);
       out.speed[id] = static_cast<float>(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z));
+      if (!out.motion) continue;
+      put(out.velocity, id, v);
+      put(out.spin, id, grains.spin[g]);
     }
   }
 

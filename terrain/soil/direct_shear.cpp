@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <utility>
 
 #include "protocol/core/assert.hpp"
@@ -22,6 +23,20 @@ constexpr double kMaxHold = 60.0;     // s per m of grain radius, for consolidat
 constexpr double kRestSpeed = 2e-3;   // m/s: a slower lid is at rest
 constexpr double kStartShare = 0.01;  // of the travel over which the speed grows
 constexpr double kBulkShare = 0.5;    // solid fraction for the lid's mass
+constexpr double kNearFace = 4.0;     // radii below the face over which the solid fraction is taken
+
+/// Of the grains beside the upper plate.
+struct FaceSums {
+  double rolls = 0.0, passes = 0.0;  // ω r, speed of the plate against the centre, m/s
+  double sliding = 0.0, contacts = 0.0;
+  double solid = 0.0, space = 0.0;  // m³
+};
+
+/// Volume of the part of a sphere that lies above a plane `height` over its centre, m³.
+double cap_above(double r, double height) {
+  const double h = std::clamp(r - height, 0.0, 2.0 * r);
+  return std::numbers::pi * h * h * (r - h / 3.0);
+}
 
 /// The cell with its two plates; lower first.
 class ShearCell {
@@ -35,8 +50,10 @@ class ShearCell {
         tools_{lower(specimen, test, r_), upper(specimen, test, r_)},
         lid_(area_, test.normal_stress, kBulkShare * specimen.options().density, specimen.height(),
              dem::grain_modulus(specimen.options())) {
-    const ContactMaterial material = rough_material(specimen.options());
-    for (const Tool& tool : tools_) terrain_->attach(tool.mesh(), material, tool.state());
+    ContactMaterial material = rough_material(specimen.options());
+    terrain_->attach(tools_[0].mesh(), material, tools_[0].state());
+    material.pair_friction = test.friction;
+    terrain_->attach(tools_[1].mesh(), material, tools_[1].state());
     targets_ = {tools_[0].state(), tools_[1].state()};
   }
 
@@ -77,6 +94,23 @@ class ShearCell {
     }
   }
 
+  /// Adds the grains beside the upper plate, which moves at `speed` along x. @param face of the plate
+  void look_at_face(double speed, Face face, FaceSums& sums) {
+    terrain_->gather_frame(frame_);
+    const double lowest = height_ - (face == Face::glued ? r_ : 0.0);
+    for (std::size_t g = 0; g < frame_.radius.size(); ++g) {
+      const double r = frame_.radius[g], below = lowest - frame_.position[3 * g + 2];
+      if (below < 1.5 * r) {
+        sums.rolls += r * frame_.spin[3 * g + 1];
+        sums.passes += speed - frame_.velocity[3 * g];
+      }
+      sums.solid += cap_above(r, below - kNearFace * r_) - cap_above(r, below);
+    }
+    sums.space += kNearFace * r_ * area_;
+    sums.sliding += static_cast<double>(sums_[1].sliding);
+    sums.contacts += static_cast<double>(sums_[1].contacts);
+  }
+
   double lid_height() const { return height_; }
   double area() const { return area_; }
   const ContactSums& lower_sums() const { return sums_[0]; }
@@ -98,8 +132,10 @@ class ShearCell {
   Tool upper(const Specimen& s, const ShearTest& test, double r) {
     const double room = 3.0 * r;
     height_ = s.top() + (kLift + kClear + 2.0 * test.tooth) * r;
-    return toothed_sheet(-room - (test.travel + test.pitch) * r, s.length() + room, 0.5 * s.width() + room, height_,
-                         test.pitch * r, test.tooth * r, -1);
+    const double from = -room - (test.travel + test.pitch) * r, to = s.length() + room, half = 0.5 * s.width() + room;
+    if (test.face == Face::flat) return flat_sheet(from, to, half, height_);
+    if (test.face == Face::glued) return studded_sheet(from, to, half, height_, r);
+    return toothed_sheet(from, to, half, height_, test.pitch * r, test.tooth * r, -1);
   }
 
   const Specimen& specimen_;
@@ -112,6 +148,7 @@ class ShearCell {
   std::vector<SurfaceState> targets_;
   std::vector<NodalForces> forces_{2};
   std::vector<ContactSums> sums_{2};
+  TerrainFrame frame_{.motion = true};
 };
 
 /// Sums of one sample.
@@ -120,6 +157,8 @@ struct Sample {
 };
 
 }  // namespace
+
+const char* face_name(Face face) { return face == Face::teeth ? "teeth" : face == Face::flat ? "flat" : "glued"; }
 
 ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const WorkCall& work) {
   FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.travel > 0.0, test.samples, test.speed, test.travel);
@@ -133,15 +172,18 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
   share = kPreparation;
 
   ShearResult result;
+  result.face = test.face;
   result.normal_nominal = test.normal_stress;
   result.height = cell.gap();
   const double start = cell.lid_height(), each = travel / test.samples;
   double j = 0.0, begun = 0.0, floor_off = 0.0, shear_off = 0.0, late_shear = 0.0;
+  FaceSums face;
   for (int k = 0; k < test.samples; ++k) {
     Sample sum;
     int steps = 0;
+    double speed = 0.0;
     for (; steps == 0 || j < (k + 1) * each; ++steps) {
-      const double speed = test.speed * std::clamp(j / (kStartShare * travel), 0.05, 1.0);
+      speed = test.speed * std::clamp(j / (kStartShare * travel), 0.05, 1.0);
       cell.step(speed, 1.0);
       j += dt * speed;
       sum.shear -= cell.upper_sums().force.x();
@@ -161,6 +203,7 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
       floor_off += (sum.below - sum.normal) / steps - specimen.weight();
       shear_off += (sum.across - sum.shear) / steps;
       late_shear += sum.shear / steps;
+      if (test.face != Face::teeth) cell.look_at_face(speed, test.face, face);
     }
     if (4 * k >= 3 * test.samples) result.final_shear += result.shear.back() / (0.25 * test.samples);
   }
@@ -168,6 +211,10 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
   result.floor_error = std::abs(floor_off / half) / (specimen.weight() + result.normal_mean * cell.area());
   result.shear_error = std::abs(shear_off) / std::max(std::abs(late_shear), 1e-300);
   result.janosi = fit_janosi(result.travel, result.shear);
+  if (test.face == Face::teeth) return result;
+  result.roll = face.rolls / face.passes;
+  result.sliding = face.sliding / std::max(face.contacts, 1.0);
+  result.solid = face.solid / face.space;
   return result;
 }
 

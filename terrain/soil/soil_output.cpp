@@ -140,6 +140,45 @@ json shear_json(const SoilRun& run, double goodness) {
   return j;
 }
 
+json interface_json(const SoilRun& run, const SoilParameters& p) {
+  const auto& tests = run.results.faces;
+  const double r = run.options.material.radius;
+  const ShearTest& test = run.plan.faces.front();
+  json j = {{"what",
+             "grains sheared along a flat plate and along one with half-grains glued to it, in the cell of the shear "
+             "test; stresses at the end of the travel"},
+            {"box", box_json(tests.front().specimen, run.plan.shear_box)},
+            {"beds_settled", all_settled(tests)},
+            {"speed_m_s", test.speed},
+            {"travel_m", test.travel * r},
+            {"friction", test.friction >= 0.0 ? test.friction : run.options.material.friction}};
+  for (const Interface& of : p.interfaces) {
+    json face = {{"face", face_name(of.face)}};
+    Parameters parameters(face, run.options.quick);
+    parameters.add("friction_angle_deg", of.delta, kDegree);
+    parameters.add("adhesion_Pa", of.adhesion);
+    parameters.add("friction_angle_without_adhesion_deg", of.delta_alone, kDegree);
+    parameters.add("janosi_K_m", of.K);
+    parameters.add("roll", of.roll);
+    parameters.add("sliding_share", of.sliding);
+    parameters.finish();
+    j["faces"].push_back(face);
+  }
+  for (const auto& [specimen, t] : tests)
+    j["tests"].push_back({{"seed", specimen.seed},
+                          {"face", face_name(t.face)},
+                          {"normal_stress_Pa", t.normal_mean},
+                          {"final_shear_stress_Pa", t.final_shear},
+                          {"tau_max_Pa", t.janosi.tau_max},
+                          {"janosi_K_m", t.janosi.K},
+                          {"rise_m", t.rise.back()},
+                          {"roll", t.roll},
+                          {"sliding_share", t.sliding},
+                          {"solid_fraction_at_face", t.solid},
+                          {"shear_force_error", t.shear_error}});
+  return j;
+}
+
 json cone_json(const SoilRun& run) {
   const double r = run.options.material.radius;
   const ConeTest& test = run.plan.cone;
@@ -235,6 +274,7 @@ json soil_json(const SoilRun& run) {
   add_empirical(p, j["terrain"]);             // and of the soil as a whole
   if (run.options.plate) j["plate"] = plate_json(run, p.bekker_goodness);
   if (run.options.shear) j["shear"] = shear_json(run, p.coulomb_goodness);
+  if (run.options.interface) j["interface"] = interface_json(run, p);
   if (run.options.cone) j["cone"] = cone_json(run);
   if (run.options.repose) j["repose"] = repose_json(run);
   j["threads"] = run.options.threads;
@@ -261,6 +301,13 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
             for (std::size_t k = 0; k < t.result.travel.size(); ++k)
               row(t, {t.result.normal_nominal, t.result.travel[k], t.result.shear[k], t.result.normal[k],
                       t.result.rise[k]});
+        });
+  write(run.options.interface, "interface.csv",
+        "seed,glued,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n", [&](const auto& row) {
+          for (const auto& t : run.results.faces)
+            for (std::size_t k = 0; k < t.result.travel.size(); ++k)
+              row(t, {t.result.face == Face::glued ? 1.0 : 0.0, t.result.normal_nominal, t.result.travel[k],
+                      t.result.shear[k], t.result.normal[k], t.result.rise[k]});
         });
   write(run.options.cone, "cone.csv", "seed,depth_m,pressure_Pa\n", [&](const auto& row) {
     for (const auto& t : run.results.cone)
@@ -297,6 +344,12 @@ std::string soil_text(const json& soil) {
     text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm; with c = 0: φ {}°\n",
                         value("cohesion_Pa", 1e-3), value("friction_angle_deg", 1.0), value("janosi_K_m", 1e3),
                         value("friction_angle_without_cohesion_deg", 1.0));
+  if (soil.contains("interface"))
+    for (const json& face : soil["interface"]["faces"])
+      text +=
+          fmt::format("furrow: {} plate: friction angle {:.3g}°, K {:.3g} mm; grains there roll by {:.2g} of its way\n",
+                      face["face"].get<std::string>(), face["friction_angle_without_adhesion_deg"].get<double>(),
+                      1e3 * face["janosi_K_m"].get<double>(), face["roll"].get<double>());
   if (soil["cone_index_Pa"].is_number())
     text += fmt::format("furrow: cone index {} kPa\n", value("cone_index_Pa", 1e-3));
   if (soil["repose_angle_deg"].is_number()) {

@@ -127,9 +127,10 @@ class Planner {
   Planner(const SoilOptions& options, const SoilPlan& plan, SoilResults& results) : o_(options) {
     dem::DemOptions dry = o_.material;
     dry.cohesion = 0.0;
-    double plate_way = 0.0, shear_way = 0.0;
+    double plate_way = 0.0, shear_way = 0.0, face_way = 0.0;
     for (const PlateTest& test : plan.plates) plate_way += test.sinkage + 1.0;
     for (const ShearTest& test : plan.shears) shear_way += 1.6 * test.travel;
+    for (const ShearTest& test : plan.faces) face_way += 1.2 * test.travel;
     const double cone_way = 1.9 * plan.cone.diameter + plan.cone.depth + 2.0;
     for (int s = 0; s < o_.seeds; ++s) {
       if (o_.cone)
@@ -137,6 +138,8 @@ class Planner {
       if (o_.plate)
         add(s, o_.material, plan.plate_box, plan.plates, steps_for(plate_way), plate_sinkage, results.plate);
       if (o_.shear) add(s, o_.material, plan.shear_box, plan.shears, steps_for(shear_way), direct_shear, results.shear);
+      if (o_.interface)
+        add(s, o_.material, plan.shear_box, plan.faces, steps_for(face_way), direct_shear, results.faces);
       if (!o_.repose) continue;
       add(s, o_.material, plan.repose_box, {&plan.repose, 1}, kReposeSteps, angle_of_repose, results.repose);
       if (o_.material.cohesion > 0.0)
@@ -218,6 +221,26 @@ void shear_parameters(const SoilResults& results, SoilParameters& p) {
   p.K = mean_of(K);
 }
 
+void face_parameters(const SoilResults& results, SoilParameters& p) {
+  for (const Face face : {Face::flat, Face::glued}) {
+    std::vector<double> normal, final, K, roll, sliding;
+    for (const auto& [specimen, r] : results.faces) {
+      if (r.face != face) continue;
+      normal.push_back(r.normal_mean), final.push_back(r.final_shear), K.push_back(r.janosi.K);
+      roll.push_back(r.roll), sliding.push_back(r.sliding);
+    }
+    if (normal.empty()) continue;
+    const CoulombFit fit = fit_coulomb(normal, final);
+    p.interfaces.push_back({.face = face,
+                            .delta = fit.phi,
+                            .adhesion = fit.cohesion,
+                            .delta_alone = fit_friction(normal, final),
+                            .K = mean_of(K),
+                            .roll = mean_of(roll),
+                            .sliding = mean_of(sliding)});
+  }
+}
+
 }  // namespace
 
 SoilPlan soil_plan(const SoilOptions& o) {
@@ -253,6 +276,13 @@ SoilPlan soil_plan(const SoilOptions& o) {
     if (o.quick) test.travel = 4.0, test.samples = 50;
     plan.shears.push_back(test);
   }
+  for (const Face face : {Face::flat, Face::glued})
+    for (const double stress : o.stresses.empty() ? std::vector{2e3, 5e3, 10e3, 20e3} : o.stresses) {
+      ShearTest test{.normal_stress = stress, .travel = 40.0, .speed = o.speed, .face = face};
+      test.friction = o.face_friction;
+      if (o.quick) test.travel = 8.0, test.samples = 50;
+      plan.faces.push_back(test);
+    }
   plan.cone.speed = o.speed;
   if (o.quick) plan.cone.samples = 50;
   return plan;
@@ -269,6 +299,7 @@ SoilParameters soil_parameters(const SoilResults& results, const SoilPlan& plan,
   SoilParameters p;
   plate_parameters(results, plan, radius, p);
   shear_parameters(results, p);
+  face_parameters(results, p);
   const auto mean_over = [](const auto& tests, const auto& value) {
     std::vector<double> values;
     for (const auto& tested : tests) values.push_back(value(tested.result));

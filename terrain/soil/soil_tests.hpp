@@ -20,7 +20,8 @@ struct SoilOptions {
   bool quick = false;            // small boxes, short ways: a look, no result to quote
   int threads = 1;               // tests that run at the same time
   std::vector<double> stresses;  // of the shear tests, Pa; empty: soil_plan() chooses
-  bool plate = true, shear = true, cone = true, repose = true;
+  bool plate = true, shear = true, cone = true, repose = true, interface = false;
+  double face_friction = -1.0;  // of the interface test, -; negative: as among the grains
 };
 
 /// Sizes of boxes and tools in grain radii, of the loads in Pa.
@@ -31,6 +32,7 @@ struct SoilPlan {
   Box repose_box{120.0, 10.0, 28.0, false, true};
   std::vector<PlateTest> plates;  // two widths
   std::vector<ShearTest> shears;  // three loads
+  std::vector<ShearTest> faces;   // of the interface test: by face, then load
   ConeTest cone;
   ReposeTest repose;
   double plate_from = 0.5;  // sinkage from which Bekker's curve is fitted, radii
@@ -57,6 +59,7 @@ struct Tested {
 struct SoilResults {
   std::vector<Tested<PlateResult>> plate;    // by seed, then width
   std::vector<Tested<ShearResult>> shear;    // by seed, then load
+  std::vector<Tested<ShearResult>> faces;    // by seed, then as the plan's
   std::vector<Tested<ConeResult>> cone;      // by seed
   std::vector<Tested<ReposeResult>> repose;  // by seed
   std::vector<Tested<ReposeResult>> dry;     // the same grains without cohesion; empty where they have none
@@ -65,6 +68,15 @@ struct SoilResults {
 /// Runs the tests that are asked for, several at a time; the results do not depend on how many.
 /// @throws Error(physics) when grains fail, and what `progress` throws
 SoilResults run_soil_tests(const SoilOptions& options, const SoilPlan& plan, const ProgressCall& progress);
+
+/// Grains against a face: τ = adhesion + σ tan δ of the stress at the end of the travel.
+struct Interface {
+  Face face{};
+  Measured delta, adhesion;  // rad, Pa
+  Measured delta_alone;      // rad, if there is no adhesion
+  Measured K;                // m
+  Measured roll, sliding;    // as of ShearResult
+};
 
 /// The parameters; those of tests that were not run have no samples.
 struct SoilParameters {
@@ -75,8 +87,9 @@ struct SoilParameters {
   double coulomb_goodness = 0.0;
   Measured final_cohesion, final_phi;  // of the stress at the end of the travel
   Measured K;                          // mean over all shear tests, m
-  Measured cone_index;                 // Pa
-  Measured repose, repose_dry;         // rad
+  std::vector<Interface> interfaces;
+  Measured cone_index;          // Pa
+  Measured repose, repose_dry;  // rad
 };
 SoilParameters soil_parameters(const SoilResults& results, const SoilPlan& plan, double radius);
 

@@ -60,6 +60,41 @@ Tool toothed_sheet(double from, double to, double half, double z, double pitch, 
   return {std::move(mesh), std::move(x)};
 }
 
+Tool flat_sheet(double from, double to, double half, double z) {
+  FURROW_ASSERT(from < to && half > 0.0, from, to, half);
+  SurfaceMesh mesh;
+  quad(mesh, 0, 1, 3, 2);
+  return {std::move(mesh), {{from, -half, z}, {from, half, z}, {to, -half, z}, {to, half, z}}};
+}
+
+Tool studded_sheet(double from, double to, double half, double z, double radius) {
+  FURROW_ASSERT(from < to && half > 0.0 && radius > 0.0, from, to, half, radius);
+  const double row = std::numbers::sqrt3 * radius, facet = radius / 3.0;
+  // Depth of the studs below the sheet: rows along x, every other one shifted by a radius.
+  const auto depth = [&](double x, double y) {
+    double deepest = 0.0;
+    const double near = std::round(y / row);
+    for (const double n : {near - 1.0, near, near + 1.0}) {
+      const double shift = std::fmod(std::abs(n), 2.0) * radius;
+      const double dx = std::remainder(x - shift, 2.0 * radius), dy = y - n * row;
+      deepest = std::max(deepest, radius * radius - dx * dx - dy * dy);
+    }
+    return std::sqrt(deepest);
+  };
+  const int nx = static_cast<int>(std::ceil((to - from) / facet)), ny = static_cast<int>(std::ceil(2.0 * half / facet));
+  SurfaceMesh mesh;
+  std::vector<Vec3> x;
+  for (int i = 0; i <= nx; ++i)
+    for (int j = 0; j <= ny; ++j) {
+      const double px = from + (to - from) * i / nx, py = half * (2.0 * j / ny - 1.0);
+      x.emplace_back(px, py, z - depth(px, py));
+      if (i == 0 || j == 0) continue;
+      const int here = i * (ny + 1) + j, back = here - (ny + 1);
+      quad(mesh, back - 1, back, here, here - 1);
+    }
+  return {std::move(mesh), std::move(x)};
+}
+
 double cone_height(double diameter, double angle) {
   FURROW_ASSERT(diameter > 0.0 && angle > 0.0 && angle < std::numbers::pi, diameter, angle);
   return 0.5 * diameter / std::tan(0.5 * angle);

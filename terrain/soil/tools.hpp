@@ -44,6 +44,12 @@ Tool strip_plate(double centre, double width, double half, double z, double heig
 /// @pre from < to; pitch, tooth > 0
 Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign);
 
+/// A flat sheet over the same rectangle, outside down.
+Tool flat_sheet(double from, double to, double half, double z);
+/// The sheet with half-spheres of this radius glued to it, closely packed, each made of facets a third of it wide.
+/// @pre from < to; radius > 0
+Tool studded_sheet(double from, double to, double half, double z, double radius);
+
 /// A cone of this base diameter and total angle (rad), point down at (x, y, z), with a shaft of `shaft` × its diameter.
 Tool cone_on_shaft(const Vec3& point, double diameter, double angle, double shaft, double shaft_length);
 /// Height of such a cone, m.

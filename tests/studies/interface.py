@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+"""Do grains roll along a tread? The interface test of `furrow soil` on the sand of small_wheel.json, over the rolling
+friction among the grains and the friction between grains and plate. Writes interface.csv beside this script; a run that
+is finished is used again.
+
+One row per rolling friction, plate friction and face: δ of τ = σ tan δ at the end of 20 grain diameters of travel with
+its 95 % half-width, K, ω r/v of the first layer, the share of contacts at the limit of friction, the solid fraction
+within 4 r of the face and the lid's rise, means over beds and stresses. Rows of face `teeth` are the direct shear test.
+"""
+import json
+
+import driver
+import provenance
+
+ROLLING = (0.0, 0.2, 0.4, 0.8)
+FRICTION = (0.2, 0.4, 0.8)
+STRESSES = (5e3, 10e3)
+
+
+def run(out, rolling, seeds, *words):
+    if not (out / "soil.json").exists():
+        driver.furrow("soil", "rigs/small_wheel.json", *driver.settings({"terrain.rolling_friction": rolling}), *words,
+                      *(w for s in STRESSES for w in ("--stress", s)), "--seeds", seeds, "--out", out, "--overwrite")
+    return json.loads((out / "soil.json").read_text())
+
+
+def mean(tests, name):
+    return sum(t[name] for t in tests) / len(tests)
+
+
+def rows_of(rolling, friction, soil):
+    for face in soil["interface"]["faces"]:
+        tests = [t for t in soil["interface"]["tests"] if t["face"] == face["face"]]
+        interval = face["interval_95"]["friction_angle_without_adhesion_deg"]
+        yield {"rolling_friction": rolling, "plate_friction": friction, "face": face["face"],
+               "friction_angle_deg": face["friction_angle_without_adhesion_deg"],
+               "half_width_deg": (interval[1] - interval[0]) / 2 if interval else "",
+               "janosi_K_mm": 1e3 * face["janosi_K_m"], "roll": face["roll"], "sliding_share": face["sliding_share"],
+               "solid_fraction_at_face": mean(tests, "solid_fraction_at_face"), "rise_mm": 1e3 * mean(tests, "rise_m")}
+
+
+def main():
+    seeds = driver.options(__doc__, seeds={"type": int, "default": 3}).parse_args().seeds
+    results, rows, made = driver.RESULTS / "interface", [], provenance.made_here()
+    for rolling in ROLLING:
+        shear = run(results / f"shear_{rolling:g}", rolling, seeds, "--only", "shear")
+        rows.append({"rolling_friction": rolling, "face": "teeth",
+                     "friction_angle_deg": shear["friction_angle_without_cohesion_deg"],
+                     "janosi_K_mm": 1e3 * shear["janosi_K_m"]})
+        for friction in FRICTION:
+            soil = run(results / f"{rolling:g}_{friction:g}", rolling, seeds, "--only", "interface",
+                       "--friction", friction)
+            rows += rows_of(rolling, friction, soil)
+            driver.write("interface.csv", rows, made)
+            print(*rows[-2:], sep="\n", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -15,8 +15,7 @@ import provenance
 RUNS = driver.RESULTS / "activity"
 LATER = (1.3, 1.6)  # behind the axle, m
 FIGURES = {"pull_N": ("drawbar_pull_N", 1.0), "sinkage_mm": ("sinkage_m", 1e3), "rut_depth_mm": ("rut_depth_m", 1e3),
-           "effort_N": ("tractive_effort_N", 1.0), "active_share": ("active_share_mean", 1.0),
-           "wall_s": ("wall_s", 1.0)}
+           "effort_N": ("tractive_effort_N", 1.0), "active_share": ("active_share_mean", 1.0)}
 
 
 def depths(folder):

@@ -25,9 +25,10 @@ struct TerrainFrame {
   std::vector<float> position;  // x y z per grain, m
   std::vector<float> speed;     // |v| per grain, m/s
   std::vector<float> radius;    // per grain, m
-  bool motion = false;          // asked for: what follows; engine dem
-  std::vector<float> velocity;  // x y z per grain, m/s
-  std::vector<float> spin;      // likewise, rad/s
+  // Engine dem fills these where `motion` asks for them.
+  bool motion = false;
+  std::vector<float> velocity = {};  // x y z per grain, m/s
+  std::vector<float> spin = {};      // likewise, rad/s
 };
 
 class Terrain {

@@ -166,12 +166,11 @@ def columns(source, struct):
         for name in re.findall(r"(\w+) =", field[1]):
             meaning[name] = field[2] or before
         before = ""
-    listed = re.search(rf"FieldsOf<{struct}> auto& r\) \{{(.*?)\n\}}", source, re.DOTALL)[1]
-    found = re.findall(r"visit\((?:column::)?(\w+)\(\"(\w+)\"(?:, \"([^\"]*)\")?\)[^;]*?, r\.(\w+)(?:\.\w\(\))?\);",
-                       listed)
+    listed = re.search(rf"FieldsOf<{struct}> auto& r, auto&& visit\) \{{(.*?)\n\}}", source, re.DOTALL)[1]
+    found = re.findall(r"visit\(r\.(\w+)(?:\.\w\(\))?,\s*(?:column::)?(\w+)\(\"(\w+)\"(?:, \"([^\"]*)\")?\)", listed)
     if len(found) != len(re.findall(r"visit\(", listed)):
         raise ValueError(f"{struct}: {len(found)} columns were understood of those that its list has")
-    return [(name, unit or "-", KINDS[kind], meaning.get(member, "")) for kind, name, unit, member in found]
+    return [(name, unit or "-", KINDS[kind], meaning.get(member, "")) for member, kind, name, unit in found]
 
 
 def without_unit(text, unit):

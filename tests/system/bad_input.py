@@ -287,7 +287,7 @@ LINES = [
     (("soil", "rigid.json"), "rigid.json: key 'terrain.engine': is 'rigid', expected 'dem' or 'liggghts'"),
     (("validate", "of_dem.json"), "of_dem.json: key 'terrain.radius': is a key of engine 'dem' or 'liggghts', but "
                                   "terrain.engine is 'rigid'"),
-    ((*SOIL, "--only", "ring"), "key '--only': is 'ring', expected plate, shear, cone or repose"),
+    ((*SOIL, "--only", "ring"), "key '--only': is 'ring', expected plate, shear, cone, repose or interface"),
     ((*SOIL, "--seeds", "0"), "key '--seeds': is 0, expected 1 to 100"),
     ((*SOIL, "--speed", "nan"), "key '--speed'"),
     ((*SOIL, "--out", "out"), "exists already"),

@@ -46,7 +46,7 @@ class Completion(SystemTest):
                 self.assertEqual(set(self.completed(command, "-")), options)
 
     def test_values_that_the_help_lists(self):
-        self.assertEqual(self.completed("soil", "--only", ""), ["plate", "shear", "cone", "repose"])
+        self.assertEqual(self.completed("soil", "--only", ""), ["plate", "shear", "cone", "repose", "interface"])
         self.assertEqual(self.completed("bench", ""), ["grains", "tire"])
         self.assertEqual(self.completed("bench", "grains", "--pr"), ["--precision"])
         self.assertEqual(self.completed("bench", "grains", "--precision", "m"), ["mixed"])

@@ -68,7 +68,9 @@ typename Law::template Coefficients<double> coefficients_of(const ContactMateria
                        .reduced_radius = 0.5 * grain.radius,
                        .mass = 0.5 * grain.mass,
                        .slide_mass = grain.mass / 7.0,
-                       .inertia = 0.5 * grain.inertia};
+                       .inertia = 0.5 * grain.inertia,
+                       .friction = std::min(a.friction, b.friction),
+                       .rolling = options.rolling_friction};
   return Law::mix(pair, options);
 }
 template <class Law>

@@ -55,6 +55,7 @@ class ShearCell {
     material.pair_friction = test.friction;
     terrain_->attach(tools_[1].mesh(), material, tools_[1].state());
     targets_ = {tools_[0].state(), tools_[1].state()};
+    frame_.motion = true;
   }
 
   /// One step with the lid at `speed` along x, bearing `share` of its load; held in height when `share` is negative.
@@ -148,7 +149,7 @@ class ShearCell {
   std::vector<SurfaceState> targets_;
   std::vector<NodalForces> forces_{2};
   std::vector<ContactSums> sums_{2};
-  TerrainFrame frame_{.motion = true};
+  TerrainFrame frame_;
 };
 
 /// Sums of one sample.

@@ -49,6 +49,8 @@ TEST(SoilTools, faces_look_outwards) {
   EXPECT_NEAR((area_vector(strip_plate(0.5, 0.2, 0.1, 0.3, 0.1)) - Vec3(0.0, 0.0, -0.04)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, 1)) - Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, -1)) + Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((area_vector(flat_sheet(0.0, 1.2, 0.1, 0.3)) + Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((area_vector(studded_sheet(0.0, 1.2, 0.1, 0.3, 0.01)) + Vec3(0, 0, 0.24)).norm(), 0.0, 1e-4);
   const Tool cone = cone_on_shaft(Vec3(0.0, 0.0, 0.0), 0.06, kConeAngle, kConeShaft, 0.1);
   EXPECT_LT(area_vector(cone).norm(), 1e-15);  // closed
   double volume = 0.0;
@@ -95,6 +97,21 @@ TEST(DirectShear, strength_vanishes_for_frictionless_grains_without_cohesion) {
 TEST(DirectShear, higher_cohesion_gives_higher_strength_at_low_load) {
   const double none = sheared(coarse(0.0), 20e3).final_shear, much = sheared(coarse(160e3), 20e3).final_shear;
   EXPECT_GT(much, none + 5e3);
+}
+
+TEST(DirectShear, grains_slide_along_a_smooth_plate_and_lock_with_a_glued_one) {
+  const dem::DemOptions material = coarse(0.0);
+  const Specimen specimen(material, kShearBox, 1, ignore);
+  const auto along = [&](Face face) {
+    ShearTest test{.normal_stress = 20e3, .travel = 8.0, .samples = 60, .face = face};
+    test.friction = 0.1;
+    return direct_shear(specimen, test, ignore);
+  };
+  const ShearResult flat = along(Face::flat), glued = along(Face::glued);
+  EXPECT_NEAR(flat.final_shear / flat.normal_mean, 0.1, 0.005);
+  EXPECT_GT(flat.sliding, 0.9);
+  EXPECT_LT(flat.roll, 0.2);
+  EXPECT_GT(glued.final_shear, 1.5 * flat.final_shear);
 }
 
 TEST(PlateSinkage, floor_bears_plate_and_soil_and_pressure_grows) {

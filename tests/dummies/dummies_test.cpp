@@ -337,7 +337,9 @@ TEST(Dummies, grain_under_a_new_law_rebounds_from_the_floor_as_a_damped_spring) 
                        .reduced_radius = grain.radius,
                        .mass = grain.mass,
                        .slide_mass = grain.mass / 3.5,
-                       .inertia = grain.inertia};
+                       .inertia = grain.inertia,
+                       .friction = material.friction,
+                       .rolling = options.rolling_friction};
   const ContactCoefficients floor(LinearLaw::mix(pair, options));
   Grains grains;
   grains.resize(1);

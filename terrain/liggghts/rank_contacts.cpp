@@ -281,8 +281,8 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (const SurfaceHit& hit : hits) {
     const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
-    const dem::ContactMotion<double> motion =
-        dem::motion_at(tire.collider, kRolling ? &tire.sum.patches() : nullptr, hit, arm, v, w);
+    const auto patch = tire.patch_at(hit, kRolling);
+    const dem::ContactMotion<double> motion = dem::motion_at(tire.collider, patch ? &*patch : nullptr, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     double cosine = dem::kSameNormal;
     int nearest = -1;
@@ -298,14 +298,9 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
     const auto [push, drag, torque] = dem::facet_loads(f, motion.normal, arm, hit.share);
     add(grains.force[g], push + drag);
     add(grains.torque[g], torque);
-    tire.forces.push_back({hit.triangle,
-                           hit.weight,
-                           hit.point,
-                           -dem::vec(push),
-                           -dem::vec(drag),
-                           {},
-                           -hit.share * dem::vec(f.rolling),
-                           dem::slides(c, f)});
+    tire.forces.push_back(
+        {hit.triangle, hit.weight, hit.point, -dem::vec(push), -dem::vec(drag), {}, {}, dem::slides(c, f)});
+    if (patch) tire.forces.back().couple = patch->couple(-hit.share * dem::vec(f.rolling));
     if (options_.contact_tangents) tire.forces.back().tangent = dem::contact_tangent<Law>(c, motion, f, hit.share);
     on_grains_ += dem::vec(push + drag);
     now_.elastic += hit.share * f.energy;

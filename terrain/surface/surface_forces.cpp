@@ -88,13 +88,14 @@ void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, c
     const Vec3 arm = contact.point - mean;
     const Vec3 turn = arm.cross(total);
     force += total;
-    moment += turn + contact.couple;
+    moment += turn + contact.couple.moment;
     force_scale += total.norm();
-    moment_scale += std::max(turn.norm(), kArmFloor * arm.norm() * total.norm()) + contact.couple.norm();
+    moment_scale += std::max(turn.norm(), kArmFloor * arm.norm() * total.norm()) + contact.couple.moment.norm();
     sums_.normal += dt * contact.normal;
     sums_.tangential += dt * contact.tangential;
     for (int k = 0; k < 3; ++k) add(triangles[contact.triangle][k], contact.weight[k] * total);
-    if (!contact.couple.isZero(0.0)) PatchTurn(patches_.of(contact.triangle), position).each_force(contact.couple, add);
+    if (contact.couple.moment.isZero(0.0)) continue;
+    for (const int v : patches_.of(contact.triangle)) add(v, contact.couple.force_at(position[v]));
   }
   Vec3 nodal_force = Vec3::Zero(), nodal_moment = Vec3::Zero();
   for (int v : substep_list_) {

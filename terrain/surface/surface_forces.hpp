@@ -38,7 +38,7 @@ struct SurfaceContactForce {
   Vec3 normal = Vec3::Zero();      // N, W
   Vec3 tangential = Vec3::Zero();  // N, W
   SurfaceContactTangent tangent;   // read only where tangents are wanted
-  Vec3 couple = Vec3::Zero();      // N m, W, beside the force at the point
+  PatchCouple couple;              // W, beside the force at the point
   bool slides = false;             // its friction is at the limit
 };
 

@@ -36,6 +36,16 @@ class SurfacePatches {
   std::vector<int> first_, vertex_;
 };
 
+/// A couple on a patch: what each of its vertices receives.
+struct PatchCouple {
+  Vec3 moment = Vec3::Zero();  // M, N m
+  Vec3 turn = Vec3::Zero();    // J⁻¹ M, N/m
+  Vec3 centre = Vec3::Zero();  // of the patch, m
+
+  /// On a vertex at x, N.
+  Vec3 force_at(const Vec3& x) const { return turn.cross(x - centre); }
+};
+
 /// A patch as it stands.
 class PatchTurn {
  public:
@@ -44,12 +54,8 @@ class PatchTurn {
 
   /// ω_s, rad/s.
   Vec3 spin(std::span<const Vec3> velocity) const;
-  /// Calls f(vertex, force) for a couple, N m. On vertices that stand in one line no moment about it can act.
-  template <class F>
-  void each_force(const Vec3& couple, const F& f) const {
-    const Vec3 turn = solved(couple);
-    for (const int v : patch_) f(v, Vec3(turn.cross(position_[v] - centre_)));
-  }
+  /// On vertices that stand in one line no moment about it can act.
+  PatchCouple couple(const Vec3& moment) const { return {moment, solved(moment), centre_}; }
   /// −∂f/∂u of a vertex alone, where M = −K ω: [x]ᵀ J⁻¹ K J⁻¹ [x].
   Mat3 resistance(int vertex, const Mat3& of_couple) const;
 

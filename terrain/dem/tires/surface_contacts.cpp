@@ -136,8 +136,8 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];
     const Triple<double> arm = triple(Vec3(hit.point - centre));
-    const ContactMotion<double> motion =
-        motion_at(surface.collider, rolling_ ? &surface.sum.patches() : nullptr, hit, arm, v, w);
+    const auto patch = surface.patch_at(hit, rolling_);
+    const ContactMotion<double> motion = motion_at(surface.collider, patch ? &*patch : nullptr, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {
       history = of(*past);
@@ -158,9 +158,8 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
     const auto [push, drag, torque] = facet_loads(f, motion.normal, arm, hit.share);
     add(*load.force, push + drag);
     add(*load.torque, torque);
-    mine.touches.push_back(
-        {k,
-         {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}, -hit.share * vec(f.rolling), slides(c, f)}});
+    mine.touches.push_back({k, {hit.triangle, hit.weight, hit.point, -vec(push), -vec(drag), {}, {}, slides(c, f)}});
+    if (patch) mine.touches.back().force.couple = patch->couple(-hit.share * vec(f.rolling));
     if (tangents_) mine.touches.back().force.tangent = contact_tangent<Law>(c, motion, f, hit.share);
     sums.power += hit.share * (power_of(f, motion) + dot(f.rolling, motion.roll));
     sums.elastic += hit.share * f.energy;

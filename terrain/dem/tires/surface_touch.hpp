@@ -19,18 +19,15 @@ inline constexpr double kSameNormal = 0.5;
 /// @pre the surface has the triangle
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n);
 
-/// @param patches for the roll of the grain against the surface; null where nothing resists it
+/// @param patch around the point, for the roll of the grain against it; null where nothing resists that
 /// @param arm from the grain's centre to the point, m  @param velocity of the centre, m/s  @param spin rad/s
-inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const SurfacePatches* patches,
-                                       const SurfaceHit& hit, const Triple<double>& arm, const Triple<double>& velocity,
+inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const PatchTurn* patch, const SurfaceHit& hit,
+                                       const Triple<double>& arm, const Triple<double>& velocity,
                                        const Triple<double>& spin) {
   ContactMotion<double> motion = motion_on_surface(triple(hit.normal), hit.overlap, arm, velocity, spin);
   motion.velocity = motion.velocity - triple(surface.velocity_at(hit));
   motion.spin += 0.5 * spin_about(surface, hit.triangle, hit.normal);
-  if (patches) {
-    const PatchTurn patch(patches->of(hit.triangle), surface.positions());
-    motion.roll = motion.roll - triple(patch.spin(surface.velocities()));
-  }
+  if (patch) motion.roll = motion.roll - triple(patch->spin(surface.velocities()));
   return motion;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,6 +58,11 @@ struct TireSurface {
     collider.move_to(share);
     near = collider.bounds();
     near.lo.array() -= largest, near.hi.array() += largest;
+  }
+  /// On which a couple at the point acts, none where nothing resists rolling.
+  std::optional<PatchTurn> patch_at(const SurfaceHit& hit, bool rolling) const {
+    if (!rolling) return std::nullopt;
+    return std::optional<PatchTurn>(std::in_place, sum.patches().of(hit.triangle), collider.positions());
   }
   /// Coefficients against a grain of this radius.
   template <class Law>

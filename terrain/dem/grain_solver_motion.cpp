@@ -1,4 +1,5 @@
-// How grains move, and what holds those that sleep.
+// How grains move, when they sleep and wake, and what holds those that sleep.
+#include <algorithm>
 #include <cmath>
 
 #include "protocol/core/assert.hpp"
@@ -98,6 +99,52 @@ void GrainSolver::integrate(const Strip& strip, Parcel& parcel, const Loads& loa
   sums.net_force = net[0];
   if constexpr (kMaySleep)
     if (part.last) activity_.add_drift(parcel, &grains_.drift[first], &grains_.velocity[first]);
+}
+
+void GrainSolver::wake(int grain) {
+  FURROW_ASSERT(in_range(grain, grains_.count), grain, grains_.count);
+  for (int k = 0; k < strips_.count(); ++k)
+    for (Parcel& parcel : strips_[k].parcels) {
+      const int at = grain - strips_[k].first;
+      if (at < parcel.part.first || at >= parcel.part.last) continue;
+      Activity::wake(parcel);
+      strips_.sleep_changed(k);
+    }
+}
+
+void GrainSolver::wake_all() {
+  for (int k = 0; k < strips_.count(); ++k) {
+    strips_[k].stale = false;
+    for (Parcel& parcel : strips_[k].parcels) Activity::wake(parcel);
+    strips_.sleep_changed(k);
+  }
+}
+
+int GrainSolver::sway_steps(double dt) const {
+  constexpr double kNever = 1e9;
+  if (drag_ > 0.0) return static_cast<int>(kNever);  // a bed that settles must come to rest, and drag stops what sways
+  const double steps = kSwayTime * std::sqrt(params_.grain.radius / params_.gravity.norm()) / dt;
+  return static_cast<int>(std::min(std::ceil(steps), kNever));
+}
+
+void GrainSolver::change_activity(bool counts) {
+  if (!params_.activity) return;
+  const double speed = std::sqrt(params_.gravity.norm() * params_.grain.radius);
+  activity_.limit({kSleepMeanSpeed * speed, kSleepSpeed * speed, kSwaySpeed * speed, kSleepForce * mean_contact_force_,
+                   kWakeForce * mean_contact_force_});
+  const double margin = 2.0 * strips_.options().reach;
+  const auto near = [&](const Strip& strip, const auto& also) {
+    return surfaces_.any_low_between(strip.x_min - margin, strip.x_max + margin, also);
+  };
+  const Activity::Stopped stopped = activity_.update(
+      strips_, grains_, counts, [&](const Strip& strip) { return near(strip, [](double, double) { return true; }); },
+      [&](const Strip& strip, int p) {
+        return near(strip, [&](double y_min, double y_max) {
+          return strips_.parcel_between(p, y_min - margin, y_max + margin);
+        });
+      });
+  accounts_.slept += stopped.kinetic;
+  accounts_.momentum_removed += params_.grain.mass * stopped.velocity;
 }
 
 }  // namespace furrow::terrain::dem

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <utility>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/beds/loaded_lid.hpp"
 #include "terrain/soil/tools.hpp"
 
@@ -31,12 +31,6 @@ struct FaceSums {
   double sliding = 0.0, contacts = 0.0;
   double solid = 0.0, space = 0.0;  // m³
 };
-
-/// Volume of the part of a sphere that lies above a plane `height` over its centre, m³.
-double cap_above(double r, double height) {
-  const double h = std::clamp(r - height, 0.0, 2.0 * r);
-  return std::numbers::pi * h * h * (r - h / 3.0);
-}
 
 /// The cell with its two plates; lower first.
 class ShearCell {
@@ -100,12 +94,12 @@ class ShearCell {
     terrain_->gather_frame(frame_);
     const double lowest = height_ - (face == Face::glued ? r_ : 0.0);
     for (std::size_t g = 0; g < frame_.radius.size(); ++g) {
-      const double r = frame_.radius[g], below = lowest - frame_.position[3 * g + 2];
-      if (below < 1.5 * r) {
+      const double r = frame_.radius[g], z = frame_.position[3 * g + 2];
+      if (lowest - z < 1.5 * r) {
         sums.rolls += r * frame_.spin[3 * g + 1];
         sums.passes += speed - frame_.velocity[3 * g];
       }
-      sums.solid += cap_above(r, below - kNearFace * r_) - cap_above(r, below);
+      sums.solid += dem::volume_below(r, z, lowest) - dem::volume_below(r, z, lowest - kNearFace * r_);
     }
     sums.space += kNearFace * r_ * area_;
     sums.sliding += static_cast<double>(sums_[1].sliding);

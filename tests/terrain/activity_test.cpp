@@ -38,18 +38,32 @@ TEST(Activity, bed_at_rest_falls_asleep_and_stays_where_it_is) {
   EXPECT_NEAR(solver.accounts().floor_force, weight, 0.02 * weight);
 }
 
+/// Three grains that slide along x without friction and never meet.
+struct SlidingGrains : FewGrains {
+  double speed;  // m/s
+
+  /// @param share of the limit of sleep
+  SlidingGrains(double share, double step) {
+    options.friction = 0.0;
+    options.step = step;
+    options.periodic_x = true;
+    gravity = kStandardGravity;
+    activity = true;
+    speed = share * kSleepMeanSpeed * std::sqrt(kStandardGravity * options.radius);
+  }
+  GrainSolver make() const {
+    const double z = resting_height();
+    GrainSolver s = FewGrains::make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
+    for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));
+    return s;
+  }
+};
+
 TEST(Activity, momentum_of_sliding_grains_is_booked_when_they_fall_asleep) {
-  FewGrains few;
-  few.options.friction = 0.0;
-  few.options.step = 2e-5;
-  few.options.periodic_x = true;
-  few.gravity = kStandardGravity;
-  few.activity = true;
-  const double z = few.resting_height();
-  GrainSolver s = few.make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
-  const double speed = 0.4 * kSleepMeanSpeed * std::sqrt(kStandardGravity * few.options.radius);
-  for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));
-  for (int k = 0; k < 2 * kCalmSteps; ++k) s.step(few.options.step);
+  const SlidingGrains sliding(0.4, 2e-5);
+  const double speed = sliding.speed;
+  GrainSolver s = sliding.make();
+  for (int k = 0; k < 2 * kCalmSteps; ++k) s.step(sliding.options.step);
   ASSERT_EQ(s.accounts().active, 0);
   const double mass = s.params().grain.mass;
   EXPECT_EQ(s.accounts().velocity.norm(), 0.0);
@@ -88,18 +102,10 @@ TEST(Activity, bed_that_only_sways_falls_asleep) {
 }
 
 TEST(Activity, grains_that_drift_stay_awake_however_even_their_motion) {
-  FewGrains few;
-  few.options.friction = 0.0;
-  few.options.step = 1e-4;
-  few.options.periodic_x = true;
-  few.gravity = kStandardGravity;
-  few.activity = true;
-  const double load = grain_properties(few.options.radius, few.options.density).mass * kStandardGravity;
-  const double z = few.options.radius - std::pow(load / few.floor_stiffness(), 2.0 / 3.0);
-  GrainSolver s = few.make({{0.1, 0.0, z, 0.0}, {0.3, 0.05, z, 0.0}, {0.45, -0.05, z, 0.0}});
-  const double speed = 1.5 * kSleepMeanSpeed * std::sqrt(kStandardGravity * few.options.radius);
-  for (const int id : {0, 1, 2}) set_velocity(s, id, Vec3(speed, 0.0, 0.0));
-  for (int k = 0; k < 4 * window(few.options); ++k) s.step(few.options.step);
+  const SlidingGrains sliding(1.5, 1e-4);
+  const double speed = sliding.speed;
+  GrainSolver s = sliding.make();
+  for (int k = 0; k < 4 * window(sliding.options); ++k) s.step(sliding.options.step);
   EXPECT_EQ(s.accounts().active, 3);
   EXPECT_NEAR(s.accounts().velocity.x(), 3 * speed, 1e-9 * speed);
 }

@@ -6,8 +6,8 @@
 
 namespace furrow {
 
-/// tire k → terrain at each t_n, right after its SurfaceMotion and of the same kind, from
-/// tires that state their contact.
+/// tire k → terrain, right after the SurfaceMotion of its prompt exchange and of the same kind, from tires that state
+/// their contact.
 struct ContactStatement {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;

@@ -7,6 +7,13 @@
 //   terrain → tire k  TerrainForces   nodal forces over the last interval
 //   terrain → rig     TerrainReport   sums of the same forces, and the terrain's own measurements
 //
+// A tire that follows its rim on a ground that answers at once gets the forces of the interval that begins, in a second
+// exchange before all advance (nodes/ranks/node.hpp):
+//
+//   tire k → terrain  SurfaceMotion   vertices at t_{n+1}
+//   terrain → tire k  TerrainForces   nodal forces over [t_n, t_{n+1}]
+//   tire k → rig      PromptWrench    wrench over the same interval
+//
 // The ranks of a terrain exchange what they need by messages of the kind `group` (protocol/transport_group.hpp).
 // What a message holds is said once, in the list of fields beside each struct: it is packed and saved by that list.
 #pragma once
@@ -23,7 +30,7 @@
 
 namespace furrow {
 
-inline constexpr std::int32_t kProtocolVersion = 9;
+inline constexpr std::int32_t kProtocolVersion = 10;
 
 enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
@@ -184,6 +191,7 @@ struct SpindleReport {
   std::int64_t newton_iterations = 0;    // cumulative
   std::int64_t factorizations = 0;       // cumulative
   double residual = 0.0;                 // last converged free residual / reference
+  bool prompt = false;                   // its wrench acts over the interval of its forces; false: over the next one
   // Of a tire that uses contact tangents: its forces differ from those reported for the same interval.
   bool contact_tangent = false;
   Vec3 impulse_ahead = Vec3::Zero();  // received beyond what the terrain had reported until then, N s
@@ -205,10 +213,22 @@ void visit_fields(FieldsOf<SpindleReport> auto& s, auto&& visit) {
   visit(s.newton_iterations, Field{"newton_iterations"});
   visit(s.factorizations, Field{"factorizations"});
   visit(s.residual, Field{"residual"});
+  visit(s.prompt, Field{"prompt", ""});
   visit(s.contact_tangent, Field{"contact_tangent", ""});
   visit(s.impulse_ahead, Field{"impulse_ahead", "N s"});
   visit(s.ledger, Field{"ledger", "N s"});
   visit(s.ledger_largest, Field{"ledger_largest", "N s"});
+}
+
+/// tire k → rig, from a prompt tire, after its report of the same kind.
+struct PromptWrench {
+  static constexpr MessageKind kKind = MessageKind::spindle_report;
+  StepHeader header;
+  Wrench wrench;  // as SpindleReport::wrench, over the interval that begins
+};
+void visit_fields(FieldsOf<PromptWrench> auto& s, auto&& visit) {
+  visit(s.header, Field{"header", ""});
+  visit(s.wrench, Field{"wrench", ""});
 }
 
 struct SurfaceMotion {

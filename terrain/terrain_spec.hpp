@@ -67,6 +67,7 @@ struct TerrainDescription {
   bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
   bool gives_tangents = false;               // sends contact tangents beside forces where tires ask for them
   bool yields = true;                        // under a wheel; false: a wheel can climb it
+  bool answers_at_once = false;              // so cheap that rig and tires can wait for its forces in each step
   bool takes_stated_contacts = false;        // of tires that know the ground by themselves: Terrain::state_contacts
   std::string uneven_key;                    // of the section, whose value makes it uneven; empty: it is level ground
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused

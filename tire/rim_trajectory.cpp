@@ -46,11 +46,21 @@ Hermite hermite(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, 
 RimTrajectory::RimTrajectory(const RimState& start) : start_(start), end_(start) {}
 
 void RimTrajectory::extend(const RimState& received, double duration) {
+  extend(received, duration, duration * received.velocity, duration * received.angular_velocity);
+}
+
+void RimTrajectory::extend_accelerated(const RimState& received, double duration) {
+  // Where the last interval ended, the velocities are those of the rim one step before.
+  extend(received, duration, duration * (1.5 * received.velocity - 0.5 * end_.velocity),
+         duration * (1.5 * received.angular_velocity - 0.5 * end_.angular_velocity));
+}
+
+void RimTrajectory::extend(const RimState& received, double duration, const Vec3& way, const Vec3& turn) {
   FURROW_ASSERT(duration > 0.0 && std::isfinite(duration), duration);
   start_ = end_;
   duration_ = duration;
-  end_.position = received.position + duration * received.velocity;
-  end_.orientation = (rotation(duration * received.angular_velocity) * received.orientation).normalized();
+  end_.position = received.position + way;
+  end_.orientation = (rotation(turn) * received.orientation).normalized();
   end_.velocity = received.velocity;
   end_.angular_velocity = received.angular_velocity;
   turn_ = turn_between(start_.orientation, end_.orientation);

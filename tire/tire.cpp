@@ -30,6 +30,8 @@ Outcome Tire::advance(const RimTrajectory& rim, const NodalForces& forces, int s
   return do_advance(rim, forces, substeps);
 }
 
+void Tire::surface_on(const RimState&, SurfaceState&) const { FURROW_ASSERT(false, mesh().vertex_count); }
+
 void Tire::restore(const Archive& archive) {
   do_restore(archive);
   placed_ = true;

@@ -48,8 +48,14 @@ class Tire {
 
   /// Vertices at the current time.
   virtual void surface(SurfaceState& out) const = 0;
-  /// The contact forces that the tire computes by a law of its own, as the terrain shall give them over its next
-  /// interval, at the time of surface(); null: the terrain computes them (TireDescription::own_contact).
+  /// Of a tire that follows its rim (TireDescription::follows_rim): its vertices on that rim.
+  virtual void surface_on(const RimState& rim, SurfaceState& out) const;
+
+  /// Computes the contact forces of a tire that has a law of its own for them (TireDescription::own_contact), over the
+  /// interval that begins with this rim and has the same `duration` as the one before.
+  /// @returns failure when the tire left the model's range
+  virtual Outcome state_contact(const RimState& /*rim*/, double /*duration*/) { return {}; }
+  /// Those forces, as the terrain shall give them; null: the terrain computes them.
   virtual const StatedContact* stated_contact() const { return nullptr; }
 
   /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly; those that

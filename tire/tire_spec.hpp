@@ -98,6 +98,7 @@ struct TireDescription {
   double saved_bytes = 0.0;        // in a checkpoint
   bool takes_tangents = false;     // contact forces may answer to its motion
   bool deflects = true;            // false: no load deforms it
+  bool follows_rim = false;        // its surface is a function of the rim's state alone: Tire::surface_on
   std::vector<std::string> takes;  // names in TireOptions of what the model takes from the scenario: "pressure"
   /// Why the tire computes its contact by a law of its own (Tire::stated_contact): "its forces are those of …"; empty:
   /// it does not.

@@ -27,6 +27,22 @@ json summary_of(const std::filesystem::path& run) {
   return summary;
 }
 
+/// The verdict on the communication step; nothing where it is good.
+std::string step_line(const json& summary, const scenario::Scenario& scenario) {
+  const json judged = summary.value("interface", json::object());
+  if (judged.value("ok", json()) != json(false)) return "";
+  json worst;
+  for (const json& entry : judged.value("entries", json::array()))
+    if (worst.is_null() || number_at(entry, "share") > number_at(worst, "share")) worst = entry;
+  return fmt::format(
+      "furrow: THE STEP IS TOO LARGE: forces that come one step late {} {:.3g} J at the {} of wheel {}, {:.1f} % of "
+      "the "
+      "work there in the averaging window, expected at most 1 %; take a run.step of {} s or less (now {} s)\n",
+      number_at(worst, "made_J") > 0.0 ? "made" : "took", std::abs(number_at(worst, "made_J")),
+      worst.value("interface", ""), worst.value("wheel", 0), 100.0 * number_at(worst, "share"),
+      digits(number_at(judged, "better_step_s")), digits(scenario.run.step));
+}
+
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
   const json pull = summary.value("drawbar_pull_N", json::object());
   const double mean = number_at(pull, "mean"), load = number_at(summary, "vertical_load_N");
@@ -204,6 +220,7 @@ std::string expected_text(const scenario::ExpectedResult& expected, int beds, do
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario) {
   const json summary = summary_of(run);
   std::string text;
+  text += step_line(summary, scenario);
   const json wheels = summary.value("wheels", json::array());
   for (std::size_t k = 0; k < wheels.size(); ++k) {
     const json& wheel = wheels[k];

@@ -196,7 +196,8 @@ TireAccount Accounts::account_of(const Reports& r, std::size_t k) const {
   // The wrench on its way makes the added mass follow the tire's own motion, which continues with the rim's velocity of
   // one step before.
   const Vec3 before = first ? rim.velocity : now_.tires[k].rim_velocity;
-  a.sent_to_rig = step_ * tire.wrench.force + added.mass * (rim.velocity - before);
+  a.sent_to_rig = added.mass * (rim.velocity - before);
+  if (!tire.prompt) a.sent_to_rig += step_ * tire.wrench.force;
   return a;
 }
 

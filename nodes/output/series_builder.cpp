@@ -3,6 +3,7 @@
 //   tire–terrain  e = Σ f̄ₙ·Δx_tire(n+1) − Σ_substeps f·Δx̃_terrain(n)
 //                 with contact tangents, whose forces are those expected of the *same* interval, at n for both
 //   rim–tire      e = (Fₙ·Δx + Mₙ·ωH)_rim(n+1) − (F·Δx + M·ωH)_tire(n),  F, M the complete spindle wrench
+// Those of a prompt tire cross within their interval: both works are those of n.
 #include "nodes/output/series_builder.hpp"
 
 #include <algorithm>
@@ -77,19 +78,22 @@ void SeriesBuilder::measure_work(const StepReports& r) {
   Memory& m = memory_;
   WheelRow& row = row_;
   const double tire_work = r.tire.terrain_work - m.last_tire_work;
-  const double error = tire_work - (r.tire.contact_tangent ? r.contact.work : m.last_terrain_work);
+  const bool same = r.tire.prompt || r.tire.contact_tangent;
+  const double error = tire_work - (same ? r.contact.work : m.last_terrain_work);
   row.energy_error += error;
   row.energy_error_abs += std::abs(error);
   m.last_tire_work = r.tire.terrain_work;
   m.last_terrain_work = r.contact.work;
 
+  const double rim_work = r.tire.rim_work - row.rim_work;
   if (m.started > 0.0) {
     const Vec3 turned = 0.5 * step_ * (m.last_angular_velocity + r.rim.angular_velocity);
-    const double rim_side =
-        m.last_spindle.force.dot(r.rim.position - m.last_rim_position) + m.last_spindle.moment.dot(turned);
-    row.rim_energy_error += rim_side + m.last_rim_work;
+    const Wrench& acted = r.tire.prompt ? r.tire.spindle : m.last_spindle;
+    const double way = acted.force.dot(r.rim.position - m.last_rim_position), turn = acted.moment.dot(turned);
+    row.rim_energy_error += way + turn + (r.tire.prompt ? rim_work : m.last_rim_work);
+    row.passed_work += std::abs(way) + std::abs(turn);
   }
-  m.last_rim_work = r.tire.rim_work - row.rim_work;
+  m.last_rim_work = rim_work;
   row.rim_work = r.tire.rim_work;
   m.last_spindle = r.tire.spindle;
   m.last_rim_position = r.rim.position;

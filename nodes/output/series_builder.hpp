@@ -42,6 +42,8 @@ class SeriesBuilder {
   Vec3 impulse_sent_arrived() const { return memory_.sent_arrived; }
   /// Instants and cumulative values as of the last add(); its means are not yet divided.
   WheelRow now() const;
+  /// Of the last interval alone, beside what is cumulative.
+  const WheelRow& last() const { return row_; }
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);

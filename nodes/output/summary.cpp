@@ -8,6 +8,7 @@
 #include "nodes/checkpoint/segment.hpp"
 #include "nodes/output/accounts_json.hpp"
 #include "nodes/output/averaging_window.hpp"
+#include "nodes/output/lag_watch.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/steadiness.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -31,9 +32,7 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMaxLate = 0.05;      // of load × speed: energy error of the interface of a run that can be trusted
-constexpr double kLeastWindow = 0.1;   // of the planned averaging window, that a run must have come to
-constexpr double kLeastRolled = 1e-3;  // of the radius: a wheel that went less stands
+constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have come to
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 constexpr char kDistance[] = "distance_m";  // of a whole vehicle, if the rig is one
 
@@ -67,19 +66,6 @@ Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatisti
   auto reasons = unsteady_because(
       s, sinkage, {load, given, bounce, w.duration(), std::max(travel, turned), radius, w.whole_facets});
   if (in.run.failure) reasons.emplace_back("the run failed before its end");
-  const double late = w.rate(&WheelRow::energy_error_abs);
-  const double rolled = std::max(travel, turned), rolling = load * rolled / w.duration();
-  if (rolled < kLeastRolled * radius && !w.rows.empty())
-    reasons.push_back(
-        fmt::format("the wheel neither rolls nor slips: {:.2g} mm in the averaging window, expected at least {:g} % of "
-                    "its radius; so the share of load × speed that late contact forces feed is not known",
-                    1e3 * rolled, 100.0 * kLeastRolled));
-  else if (late > kMaxLate * rolling)
-    reasons.push_back(
-        fmt::format("contact forces that come one step late feed the tire: {:.3g} W at its interface, {:.0f} % of load "
-                    "× speed; take a smaller run.step{}",
-                    late, 100.0 * late / rolling,
-                    in.run.scenario.tires[in.wheel]->options().contact_tangent ? "" : " or tire.contact_tangent"));
   return {{"mean", json_number(s.mean)},
           {"std", json_number(s.std)},
           {"sem", json_number(s.sem)},
@@ -315,6 +301,37 @@ void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json
   json["cpu"] = cpu_model();
 }
 
+/// What late forces make or take over the averaging window, interface by interface.
+Json interface_json(const SummaryInput& in) {
+  Json entries = Json::array();
+  double worst = 0.0;
+  for (std::size_t k = 0; k < in.end.wheels.size(); ++k) {
+    const Table& table = in.tables[k];
+    const std::vector<WheelRow> rows = wheel_rows(table);
+    const Window window = averaging_window(table, rows, average_from(in), in.scenario.tires[k]->describe().facets);
+    if (window.rows.empty()) continue;
+    const InterfaceEnergies from = interface_energies(window.before), to = interface_energies(window.rows.back());
+    const double passed = to.passed - from.passed;
+    const auto add = [&](const char* interface, double made) {
+      const double share = lag_share(made, passed, in.end.wheels[k].load, in.cards[1 + k].tire_radius);
+      worst = std::max(worst, share);
+      entries.push_back({{"wheel", k},
+                         {"interface", interface},
+                         {"made_J", json_number(made)},
+                         {"passed_J", json_number(passed)},
+                         {"share", json_number(share)}});
+    };
+    add("ground", to.ground - from.ground);
+    add("rim", to.rim - from.rim);
+  }
+  const bool known = !entries.empty();
+  Json json = {{"share", known ? json_number(worst) : Json(nullptr)},
+               {"ok", known ? Json(worst <= kGoodShare) : Json()}};
+  if (worst > kGoodShare) json["better_step_s"] = better_step(in.scenario.run.step, worst);
+  json["entries"] = entries;
+  return json;
+}
+
 /// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²
 void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
   const auto table =
@@ -372,6 +389,7 @@ std::string summary_text(const SummaryInput& in) {
         wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
   if (!in.end.wheels.empty()) json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
+  if (!in.end.wheels.empty()) json["interface"] = interface_json(in);
   add_cost(in, wheel_rows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {

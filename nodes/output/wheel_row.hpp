@@ -33,6 +33,7 @@ struct WheelRow {
   double energy_error = 0.0;              // Σe at the tire–terrain interface, J
   double energy_error_abs = 0.0;          // Σ|e|, J
   double rim_energy_error = 0.0;          // Σe at the rim–tire interface, J
+  double passed_work = 0.0;               // Σ(|F·Δx| + |M·Δθ|) of the rim by the tire, J
   double rim_work = 0.0;                  // work of the rim on the tire, J
   double spindle_work = 0.0;              // ∫ T ω dt, J
   double soil_dissipation = 0.0;          // J
@@ -97,6 +98,7 @@ void visit_fields(FieldsOf<WheelRow> auto& r, auto&& visit) {
   visit(r.impulse_received.y(), cumulative("impulse_received_y_Ns", "N s"));
   visit(r.energy_error_abs, cumulative("energy_error_abs_J", "J"));
   visit(r.rim_energy_error, cumulative("rim_energy_error_J", "J"));
+  visit(r.passed_work, cumulative("passed_work_J", "J"));
   visit(r.rim_work, cumulative("rim_work_J", "J"));
   visit(r.spindle_work, cumulative("spindle_work_J", "J"));
   visit(r.soil_dissipation, cumulative("soil_dissipation_J", "J"));

@@ -1,6 +1,10 @@
 // One rank's part of a co-simulation: rig, tire or terrain. The run loop drives all kinds alike:
 //
-//   set_up;  for n = 0 … N:  synchronize(n);  if n < N: advance
+//   set_up;  for n = 0 … N:  synchronize(n);  if n < N: answer; advance
+//
+// Forces come one step late: so rig, tires and terrain compute at the same time. A tire that follows its rim has
+// nothing to compute, and grounds given by formulas have little. Between those two forces are prompt: in answer() the
+// tire moves with the rim of t_n, the terrain gives it the forces of that interval, and the rig gets their wrench.
 //
 // synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
 // checkpoints and stops: at t_n it informs the tires, at t_{n+1} they inform the terrain, and all save at t_{n+2},
@@ -33,6 +37,9 @@ class Node {
   virtual void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) = 0;
 
   virtual void synchronize(Transport& transport, const StepHeader& header) = 0;
+
+  /// Exchanges and computes what acts within the step that begins at t_n: the forces of prompt tires.
+  virtual void answer(Transport&, const StepHeader&) {}
 
   /// Advances this node by one communication step, from t_n.
   virtual void advance(const StepHeader& header) = 0;

@@ -2,20 +2,26 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "nodes/checkpoint/wall_schedule.hpp"
 #include "nodes/launch/run_list.hpp"
 #include "nodes/output/accounts.hpp"
+#include "nodes/output/lag_watch.hpp"
 #include "nodes/output/profile.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/subject_series.hpp"
 #include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/wall_watch.hpp"
+#include "nodes/scenario/wheel_geometry.hpp"
+#include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/core/error.hpp"
+#include "protocol/files/json_text.hpp"
 
 namespace furrow::ranks {
 namespace {
@@ -96,10 +102,17 @@ class RigNode : public Node {
       for (int k = 0; k < wheels; ++k) rig_->observe(k, tires_[k].lowest_point, setup_.mean_height[k]);
       measure(header, terrain);
     }
+    if (header.step > 0) watch_lag(terrain);
     if (header.step == 1 && results_) results_->begun();
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
     if (line) record();
     show_progress(header);
+  }
+
+  void answer(Transport& transport, const StepHeader& header) override {
+    for (std::size_t k = 0; k < tires_.size(); ++k)
+      if (tires_[k].prompt)
+        wrenches_[k] = receive_step<PromptWrench>(transport, {Role::tire, static_cast<int>(k)}, header.step).wrench;
   }
 
   void advance(const StepHeader& header) override {
@@ -159,6 +172,7 @@ class RigNode : public Node {
     rig_->save(archive);
     for (const output::SubjectSeries& series : series_) series.save(archive);
     accounts_->save(archive);
+    for (std::size_t k = 0; k < lag_.size(); ++k) save_fields(archive, lag_name(k), lag_[k]);
   }
 
   void save_setup(Archive& archive) const override {
@@ -171,12 +185,15 @@ class RigNode : public Node {
     rig_->restore(archive);
     for (output::SubjectSeries& series : series_) series.restore(archive);
     accounts_->restore(archive);
+    for (std::size_t k = 0; k < lag_.size(); ++k) restore_fields(archive, lag_name(k), lag_[k]);
   }
 
  private:
   static constexpr Address kSelf{Role::rig, 0};
   static constexpr Address kTerrain{Role::terrain, 0};
   static constexpr char kEndReason[] = "run/end_reason";  // in the saved state
+
+  static std::string lag_name(std::size_t wheel) { return fmt::format("node/lag{}", wheel); }
 
   void restore_setup(const Archive& archive) {
     rig_->restore_findings(archive);
@@ -234,6 +251,8 @@ class RigNode : public Node {
       if (k < rig_->wheel_count()) wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
       series_.emplace_back(subjects[k], std::move(wheel));
     }
+    for (int k = 0; k < rig_->wheel_count(); ++k)
+      lag_.emplace_back(cards_[1 + k].tire_radius, rig_->report(k).gravity.norm());
     std::vector<MassProperties> added;
     for (int k = 0; k < rig_->wheel_count(); ++k) added.push_back(cards_[1 + k].tire_mass);
     accounts_.emplace(std::move(added), scenario_.run.step);
@@ -257,6 +276,25 @@ class RigNode : public Node {
                        *rig_, k);
       else
         series_[k].add(header.time, *rig_, k);
+  }
+
+  /// @throws Error(physics) where late forces decide the result, unless run.on_lag has it go on
+  void watch_lag(const TerrainReport& terrain) {
+    for (int k = 0; k < rig_->wheel_count(); ++k) {
+      const auto window =
+          lag_[k].add(series_[k].wheel().last(), rig_->report(k).load(), terrain.contact[k].contacts > 0);
+      if (!window || window->share <= output::kMostShare) continue;
+      const std::string& name = scenario::describe_rig(scenario_).wheels.at(k).name;
+      const std::string text = fmt::format(
+          "wheel {}: forces that come one step late {} {:.3g} J at its {} from {:.4g} to {:.4g} s, {:.0f} % of the "
+          "work "
+          "there; expected at most {:.0f} %: take a run.step of {} s or less",
+          name.empty() ? std::to_string(k) : name, window->made > 0.0 ? "made" : "took", std::abs(window->made),
+          window->interface, window->from, window->to, 100.0 * window->share, 100.0 * output::kMostShare,
+          number_text(output::better_step(scenario_.run.step, window->share)));
+      if (scenario_.run.on_lag == "end") throw physics_error(text + ", or run.on_lag 'warn' to go on");
+      if (!std::exchange(lag_told_, true) && context_.note) context_.note("warning: " + text);
+    }
   }
 
   void record() {
@@ -307,7 +345,9 @@ class RigNode : public Node {
   std::vector<Wrench> wrenches_;
   std::vector<SpindleReport> tires_;           // the last ones
   std::vector<output::SubjectSeries> series_;  // as rig_->subjects()
-  std::optional<output::Accounts> accounts_;   // once the tables are made
+  std::vector<output::LagWatch> lag_;          // of each wheel
+  bool lag_told_ = false;
+  std::optional<output::Accounts> accounts_;  // once the tables are made
   std::unique_ptr<output::Results> results_;
   std::vector<double> last_;    // line of wheel 0
   double worst_sinkage_ = 0.0;  // of the wheels' last lines, m

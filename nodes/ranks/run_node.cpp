@@ -40,6 +40,8 @@ std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64
     transport.flush();
     if (profile) profile->exchanged(n);
     fault_point("step");
+    node.answer(transport, header);
+    transport.flush();
     node.advance(header);
     if (profile) profile->advanced(n);
     if (node.due() != Order::go_on && checkpoint) checkpoint(n + 1);

@@ -1,5 +1,7 @@
 // The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back. Of a terrain of
 // several ranks it is the leader: whatever all of them do, it orders (terrain_orders.hpp).
+#include <algorithm>
+
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/early_end.hpp"
 #include "nodes/ranks/node.hpp"
@@ -59,7 +61,11 @@ class TerrainNode : public Node {
 
     forces_.resize(tires);
     stated_.resize(tires);
-    for (const auto& tire : scenario_.tires) states_contact_.push_back(!tire->describe().own_contact.empty());
+    for (int k = 0; k < tires; ++k) {
+      states_contact_.push_back(!scenario_.tires[k]->describe().own_contact.empty());
+      prompt_.push_back(scenario_.prompt(k));
+      FURROW_ASSERT(prompt_[k] || !states_contact_[k], k);
+    }
     report_.contact.assign(tires, {});
     for (int k = 0; k < tires; ++k)
       attach.start.push_back(receive_step<SurfaceMotion>(transport, {Role::tire, k}, kPlacement).surface);
@@ -80,13 +86,11 @@ class TerrainNode : public Node {
     write_frame(header);
     report_.header = header;
     for (int k = 0; k < static_cast<int>(forces_.size()); ++k)
-      send(transport, Address{Role::tire, k}, TerrainForces{header, forces_[k]});
+      if (!prompt_[k]) send(transport, Address{Role::tire, k}, TerrainForces{header, forces_[k]});
     send(transport, kRig, report_);
     for (int k = 0; k < static_cast<int>(forces_.size()); ++k) {
       SurfaceMotion motion = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step);
-      now_.targets[k] = std::move(motion.surface);
-      if (states_contact_[k])
-        stated_[k] = receive_step<ContactStatement>(transport, {Role::tire, k}, header.step).contact;
+      if (!prompt_[k]) now_.targets[k] = std::move(motion.surface);
       now_.order = motion.order;
       now_.ends_at = motion.ends_at;
     }
@@ -94,14 +98,21 @@ class TerrainNode : public Node {
     share(group_.get(), now_);
   }
 
+  void answer(Transport& transport, const StepHeader& header) override {
+    if (!any_prompt()) return;
+    for (int k = 0; k < static_cast<int>(forces_.size()); ++k) {
+      if (!prompt_[k]) continue;
+      now_.targets[k] = receive_step<SurfaceMotion>(transport, {Role::tire, k}, header.step).surface;
+      if (states_contact_[k])
+        stated_[k] = receive_step<ContactStatement>(transport, {Role::tire, k}, header.step).contact;
+    }
+    move(header);
+    for (int k = 0; k < static_cast<int>(forces_.size()); ++k)
+      if (prompt_[k]) send(transport, Address{Role::tire, k}, TerrainForces{header, forces_[k]});
+  }
+
   void advance(const StepHeader& header) override {
-    FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
-    FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
-    terrain_->state_contacts(stated_);
-    const Outcome outcome =
-        terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
-    if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
-    report_.state = terrain_->gather_state();
+    if (!any_prompt()) move(header);
   }
 
   Order due() const override { return now_.order; }
@@ -144,6 +155,18 @@ class TerrainNode : public Node {
   static constexpr Address kRig{Role::rig, 0};
   static constexpr char kSetup[] = "setup", kBefore[] = "setup/height_before";  // in the saved state
 
+  bool any_prompt() const { return std::ranges::find(prompt_, true) != prompt_.end(); }
+
+  void move(const StepHeader& header) {
+    FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
+    FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
+    terrain_->state_contacts(stated_);
+    const Outcome outcome =
+        terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
+    if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
+    report_.state = terrain_->gather_state();
+  }
+
   void prepare(Transport& transport, const RunContext& context) {
     setup_.settle_wall_s = terrain_->prepare(watched_progress(scenario_, transport, context));
     setup_.grains = terrain_->size();
@@ -170,8 +193,8 @@ class TerrainNode : public Node {
   int threads_;
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
-  std::vector<bool> states_contact_;   // of each tire
-  std::vector<StatedContact> stated_;  // by the tires, of the running step
+  std::vector<bool> states_contact_, prompt_;  // of each tire
+  std::vector<StatedContact> stated_;          // by the tires, of the running step
   AdvanceOrder now_;
   std::vector<NodalForces> forces_;
   TerrainReport report_;

@@ -1,5 +1,5 @@
 // The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp); the terrain's forces of
-// the last interval act over the next one. To the rig goes the spindle wrench without the tire's own rigid-body
+// the last interval act over the next one, those of a prompt tire over their own (nodes/ranks/node.hpp). To the rig goes the spindle wrench without the tire's own rigid-body
 // inertia and weight, which the rig carries as added mass (nodes/ranks/carried_wrench.hpp), with v and ω those of the
 // bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
 // With contact tangents the forces answer to the tire's motion; what they differ by from those that the terrain then
@@ -33,6 +33,7 @@ class TireNode : public Node {
         pressure_(scenario.tires.at(index)->options().pressure),
         tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
+    report_.prompt = scenario.prompt(index);
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
     if (report_.contact_tangent) ledger_ = ImpulseLedger(tire_->mesh().vertex_count);
   }
@@ -76,32 +77,39 @@ class TireNode : public Node {
     motion_.order = due_ = next_;
     write_frame(header);
     send(transport, kRig, report_);
-    send(transport, kTerrain, motion_);
-    if (const StatedContact* stated = tire_->stated_contact())
-      send(transport, kTerrain, ContactStatement{header, *stated});
+    if (report_.prompt)
+      send(transport, kTerrain, SurfaceMotion{header, {}, motion_.order, motion_.ends_at});
+    else
+      send(transport, kTerrain, motion_);
     rim_ = receive_step<RimMotion>(transport, kRig, header.step);
     next_ = rim_.order;
     const std::int64_t sent = motion_.ends_at;
     FURROW_ASSERT(sent == kNotYet || sent == rim_.ends_at, sent, rim_.ends_at);
     motion_.ends_at = rim_.ends_at;
+    if (!report_.prompt) forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
+  }
+
+  void answer(Transport& transport, const StepHeader& header) override {
+    if (!report_.prompt) return;
+    const double duration = scenario_.run.step;
+    const Outcome stated = tire_->state_contact(rim_.rim, duration);
+    if (!stated.ok) throw physics_error(stated, to_string(Address{Role::tire, index_}), when(header));
+    trajectory_.extend_accelerated(rim_.rim, duration);
+    SurfaceMotion end{header, {}, Order::go_on, kNotYet};
+    tire_->surface_on(trajectory_.end(), end.surface);
+    std::ranges::fill(end.surface.velocity, Vec3::Zero());  // there the interval ends
+    send(transport, kTerrain, end);
+    if (const StatedContact* contact = tire_->stated_contact())
+      send(transport, kTerrain, ContactStatement{header, *contact});
     forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
+    move(header);
+    send(transport, kRig, PromptWrench{header, report_.wrench});
   }
 
   void advance(const StepHeader& header) override {
-    FURROW_ASSERT(header.step >= 0 && scenario_.tire_substeps > 0, header.step, scenario_.tire_substeps);
-    const double duration = scenario_.run.step;
-    trajectory_.extend(rim_.rim, duration);
-    if (report_.contact_tangent) {
-      ledger_.settle(forces_, duration);
-      ledger_.hand_back(forces_, duration);
-    } else {
-      forces_.tangent.clear();
-    }
-    if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
-    const Outcome outcome = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
-    if (!outcome.ok) throw physics_error(outcome, to_string(Address{Role::tire, index_}), when(header));
-    tire_->acted(forces_);
-    account(duration);
+    if (report_.prompt) return;
+    trajectory_.extend(rim_.rim, scenario_.run.step);
+    move(header);
   }
 
   Order due() const override { return due_; }
@@ -138,6 +146,22 @@ class TireNode : public Node {
   static constexpr Address kTerrain{Role::terrain, 0};
   static constexpr char kReport[] = "node/report", kShown[] = "shown_forces";  // in the saved state
 
+  void move(const StepHeader& header) {
+    FURROW_ASSERT(header.step >= 0 && scenario_.tire_substeps > 0, header.step, scenario_.tire_substeps);
+    const double duration = scenario_.run.step;
+    if (report_.contact_tangent) {
+      ledger_.settle(forces_, duration);
+      ledger_.hand_back(forces_, duration);
+    } else {
+      forces_.tangent.clear();
+    }
+    if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
+    const Outcome outcome = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
+    if (!outcome.ok) throw physics_error(outcome, to_string(Address{Role::tire, index_}), when(header));
+    tire_->acted(forces_);
+    account(duration);
+  }
+
   void account(double duration) {
     const RimState &from = trajectory_.start(), &to = trajectory_.end();
     report_.spindle = tire_->spindle_wrench();
@@ -157,6 +181,7 @@ class TireNode : public Node {
     }
     report_.impulse_received += impulse;
     report_.impulse_received_abs += impulse.norm();
+    if (report_.prompt) report_.impulse_ahead = impulse;
     if (report_.contact_tangent) {
       ledger_.book(forces_, duration);
       report_ledger();

@@ -38,6 +38,10 @@ std::string Scenario::tire_key(std::size_t wheel, const std::string& name) const
   return tires_listed ? fmt::format("tires.{}.{}", wheel, name) : "tire." + name;
 }
 
+bool Scenario::prompt(std::size_t wheel) const {
+  return tires.at(wheel)->describe().follows_rim && terrain->describe().answers_at_once;
+}
+
 terrain::TerrainContext Scenario::terrain_context() const {
   terrain::TerrainContext context;
   context.step = terrain_step();

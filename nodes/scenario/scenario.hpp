@@ -29,6 +29,7 @@ struct RunOptions {
   int threads = 0;            // terrain's OpenMP threads; 0: auto
   std::uint64_t seed = 1;
   double peer_timeout = 60.0;  // s
+  std::string on_lag = "end";  // end | warn
   std::int64_t steps() const;  // round(end / step)
   /// In an interval, which is rounded to a whole number of steps, at least one; 0 for an interval of 0.
   std::int64_t steps_in(double interval) const;
@@ -50,6 +51,11 @@ void visit_fields(FieldsOf<RunOptions> auto& s, auto&& visit) {
   visit(s.peer_timeout,
         key("peer_timeout", "s", role::harmless, from(1, 1e6),
             "Time after which a rank counts as lost that gives no sign of life while another waits for it."));
+  visit(s.on_lag,
+        key("on_lag", "", role::harmless, words("end warn"),
+            "What happens where forces that come one step late make or take more than a tenth of the work that passes "
+            "a wheel, over a bounce of the wheel. end: the run ends with code 3 and names a step that would do. warn: "
+            "it goes on, and its results are marked."));
 }
 
 /// `output.*`
@@ -186,6 +192,8 @@ struct Scenario {
 
   /// Key of the tire of wheel k: "tire.pressure", "tires.2.pressure".
   std::string tire_key(std::size_t wheel, const std::string& name) const;
+  /// Whether the forces on the tire of wheel k act over the interval for which they are computed, and not one later.
+  bool prompt(std::size_t wheel) const;
   double terrain_step() const { return run.step / terrain_substeps; }  // s
   /// What the run supplies to its terrain, with as many threads as a bed settles with.
   terrain::TerrainContext terrain_context() const;

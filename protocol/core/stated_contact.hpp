@@ -10,7 +10,7 @@ namespace furrow {
 struct StatedContact {
   bool given =
       false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
-  NodalForces forces;  // on the tire, for the terrain's next interval; without tangents
+  NodalForces forces;  // on the tire, for the interval that begins; without tangents
 };
 void visit_fields(FieldsOf<StatedContact> auto& s, auto&& visit) {
   visit(s.given, Field{"given", ""});

@@ -23,7 +23,7 @@ class GroundSpec final : public TerrainSpec {
     d.name = !options_.road_class.empty() ? "rigid road of class " + options_.road_class
              : options_.profile.empty()   ? "rigid ground"
                                           : "rigid ground with a profile";
-    d.gives_tangents = true;
+    d.gives_tangents = d.answers_at_once = true;
     d.yields = false;
     d.takes_stated_contacts = true;
     if (!options_.road_class.empty())

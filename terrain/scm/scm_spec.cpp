@@ -20,7 +20,7 @@ class ScmSpec final : public TerrainSpec {
     d.engine = "scm";
     d.name = "empirical soil";
     d.bounds = {options_.length, options_.width};
-    d.gives_tangents = true;
+    d.gives_tangents = d.answers_at_once = true;
     d.undisturbed_height = 0.0;
     return d;
   }

@@ -65,6 +65,7 @@ TireDescription HandlingSpec::describe() const {
   d.mass = mass();
   d.memory = 1e6;
   d.saved_bytes = 1e4;
+  d.follows_rim = true;
   d.own_contact = "its forces are those of the Magic Formula, which holds for hard level ground";
   return d;
 }

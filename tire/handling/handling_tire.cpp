@@ -15,7 +15,6 @@ namespace furrow::tire::handling {
 namespace {
 
 constexpr double kNear = 4e-3;  // ε of the weights, of the radius
-constexpr double kAhead = 1.5;  // communication steps from a statement to the middle of the interval in which it acts
 
 /// A rim that goes on as it does.
 RimState later(const RimState& rim, double duration) {
@@ -38,7 +37,7 @@ HandlingTire::HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gr
 
 void HandlingTire::do_place(const RimState& rim) {
   body_.place(rim);
-  rim_ = rim;
+  rim_ = met_ = rim;
   spindle_ = {};
   patch_ = {};
   standing_ = true;
@@ -67,16 +66,11 @@ void HandlingTire::move(const RimState& rim, std::vector<Vec3>& position, std::v
   }
 }
 
-void HandlingTire::surface(SurfaceState& out) const { move(rim_, out.position, &out.velocity); }
-
 Outcome HandlingTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int) {
-  const double duration = rim.duration();
   const Outcome moved = body_.advance(rim, {}, 1);
   if (!moved.ok) return moved;
   spindle_ = body_.spindle_wrench();
-
   move(rim.start(), before_, nullptr);
-  standing_ = false;
   move(rim.end(), after_, nullptr);
   const Vec3 centre = 0.5 * (rim.start().position + rim.end().position);
   for (std::size_t i = 0; i < forces.vertex.size(); ++i) {
@@ -84,29 +78,31 @@ Outcome HandlingTire::do_advance(const RimTrajectory& rim, const NodalForces& fo
     spindle_.force += forces.force[i];
     spindle_.moment += (0.5 * (before_[k] + after_[k]) - centre).cross(forces.force[i]);
   }
-
   rim_ = rim.end();
-  RimState middle = later(rim.start(), 0.5 * duration);
-  middle.velocity = 0.5 * (rim.start().velocity + rim_.velocity);
-  middle.angular_velocity = 0.5 * (rim.start().angular_velocity + rim_.angular_velocity);
-  patch_ = advanced(formula_, contact_motion(formula_, middle), patch_, duration);
-
-  const ContactMotion now = contact_motion(formula_, rim_);
-  const double most = formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
-  if (now.deflection >= most)
-    return Outcome::failure(
-        fmt::format("is pressed by {:.4g} m, down to its rim", now.deflection),
-        fmt::format("{}: [DIMENSION] RIM_RADIUS leaves {:.4g} m; expected less load or drop", file_, most));
-  state_contact(kAhead * duration, duration);
   return {};
 }
 
-void HandlingTire::state_contact(double ahead, double duration) {
+Outcome HandlingTire::state_contact(const RimState& now, double duration) {
+  if (!standing_) {
+    RimState middle = later(met_, 0.5 * duration);
+    middle.velocity = 0.5 * (met_.velocity + now.velocity);
+    middle.angular_velocity = 0.5 * (met_.angular_velocity + now.angular_velocity);
+    patch_ = advanced(formula_, contact_motion(formula_, middle), patch_, duration);
+  }
+  standing_ = false;
+  met_ = now;
   stated_.forces.clear();
-  const RimState rim = later(rim_, ahead);
+  const double pressed = contact_motion(formula_, now).deflection,
+               most = formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
+  if (pressed >= most)
+    return Outcome::failure(
+        fmt::format("is pressed by {:.4g} m, down to its rim", pressed),
+        fmt::format("{}: [DIMENSION] RIM_RADIUS leaves {:.4g} m; expected less load or drop", file_, most));
+
+  const RimState rim = later(now, 0.5 * duration);
   const ContactMotion motion = contact_motion(formula_, rim);
-  if (!on_ground(motion) || !(motion.load > 0.0)) return;
-  const HandlingForces f = contact_forces(formula_, motion, advanced(formula_, motion, patch_, ahead));
+  if (!on_ground(motion) || !(motion.load > 0.0)) return {};
+  const HandlingForces f = contact_forces(formula_, motion, advanced(formula_, motion, patch_, 0.5 * duration));
   const WheelAxes& axes = motion.axes;
   const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z, f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
   move(rim, before_, &moving_);
@@ -118,6 +114,7 @@ void HandlingTire::state_contact(double ahead, double duration) {
     power += stated_.forces.force[i].dot(moving_[k] - carried);
   }
   dissipation_ += power * duration;
+  return {};
 }
 
 void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
@@ -174,21 +171,11 @@ void HandlingTire::add_state(Hash& hash) const {
 void HandlingTire::save(Archive& archive) const {
   body_.save(archive);
   save_fields(archive, "handling", *this);
-  save_fields(archive, "handling/stated", stated_.forces);
 }
 
 void HandlingTire::do_restore(const Archive& archive) {
   body_.restore(archive);
   restore_fields(archive, "handling", *this);
-  restore_fields(archive, "handling/stated", stated_.forces);
-  const NodalForces& forces = stated_.forces;
-  if (forces.force.size() != forces.vertex.size() || !forces.tangent.empty() ||
-      !std::all_of(forces.vertex.begin(), forces.vertex.end(),
-                   [&](int k) { return in_range(k, shape_.vertex.size()); }))
-    throw Error(ExitCode::io,
-                fmt::format("saved state 'handling/stated' has {} forces and {} vertices, expected one of "
-                            "the {} vertices for each",
-                            forces.force.size(), forces.vertex.size(), shape_.vertex.size()));
 }
 
 }  // namespace furrow::tire::handling

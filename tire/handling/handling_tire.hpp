@@ -1,9 +1,8 @@
 // A tire that the Magic Formula describes: on level hard ground. It states its contact itself (stated_contact()): the
 // terrain gives the forces that it asks for, on its own surface and in its own books, and adds none of its own.
 //
-// Over an interval of the length H from t the terrain moves what the tire said at t; what it then gives acts on the
-// tire from t + H to t + 2H. So the forces are those of the rim's motion extrapolated to t + 1.5 H, and their moments
-// are taken there: what they do to the rim is late by nothing that is constant.
+// The forces of an interval of the length H from t are those of the rim's motion extrapolated from t to its middle; they
+// act over the same interval. To patch and tire, which are springs, that is the leapfrog rule: it makes no energy.
 //
 // Surface: a cylinder of R_0, flattened where it would be below the ground. Its vertices otherwise move with the rim.
 // Force and moment about the contact centre C go to the vertices near the ground with the weights w = max(0, ε − z)²,
@@ -32,7 +31,9 @@ class HandlingTire final : public Tire {
 
   int coordinates() const override { return 2; }
 
-  void surface(SurfaceState& out) const override;
+  void surface(SurfaceState& out) const override { surface_on(rim_, out); }
+  void surface_on(const RimState& rim, SurfaceState& out) const override { move(rim, out.position, &out.velocity); }
+  Outcome state_contact(const RimState& rim, double duration) override;
   const StatedContact* stated_contact() const override { return &stated_; }
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override;
@@ -45,6 +46,7 @@ class HandlingTire final : public Tire {
   void do_restore(const Archive& archive) override;
   friend void visit_fields(FieldsOf<HandlingTire> auto& s, auto&& visit) {
     visit(s.rim_, Field{"rim", ""});
+    visit(s.met_, Field{"met", ""});
     visit(s.spindle_, Field{"spindle", ""});
     visit(s.patch_, Field{"patch", ""});
     visit(s.dissipation_, Field{"dissipation", "J"});
@@ -54,14 +56,14 @@ class HandlingTire final : public Tire {
   /// Vertices of the wheel at a pose, flattened by the ground. @param velocity may be null
   void move(const RimState& rim, std::vector<Vec3>& position, std::vector<Vec3>* velocity) const;
   bool on_ground(const ContactMotion& motion) const;
-  void state_contact(double ahead, double duration);
   /// Gives `wanted`, about `centre`, to the vertices near the ground.
   void distribute(const Wrench& wanted, const Vec3& centre);
 
   MagicFormula formula_;
   std::string file_;
-  RigidTire body_;  // its mass
-  PatchState patch_;
+  RigidTire body_;            // its mass
+  RimState met_;              // where the last interval began
+  PatchState patch_;          // there
   bool standing_ = false;     // placed and not yet moved: nothing is flattened
   double dissipation_ = 0.0;  // J
   StatedContact stated_;

@@ -16,6 +16,7 @@ class RigidSpec final : public TireSpec {
     d.coordinates = 0;
     d.memory = d.saved_bytes = 0.0;
     d.takes_tangents = d.deflects = false;
+    d.follows_rim = true;
     d.own_contact.clear();
     d.static_only.clear();
     d.damping_time = d.step_share = 0.0;

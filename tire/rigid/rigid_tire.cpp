@@ -18,14 +18,14 @@ void RigidTire::do_place(const RimState& rim) {
   numerical_loss_ = 0.0;
 }
 
-void RigidTire::surface(SurfaceState& out) const {
+void RigidTire::surface_on(const RimState& rim, SurfaceState& out) const {
   out.position.resize(shape_.vertex.size());
   out.velocity.resize(shape_.vertex.size());
-  const Mat3 turn = rim_.orientation.toRotationMatrix();
+  const Mat3 turn = rim.orientation.toRotationMatrix();
   for (std::size_t k = 0; k < shape_.vertex.size(); ++k) {
     const Vec3 arm = turn * shape_.vertex[k];
-    out.position[k] = rim_.position + arm;
-    out.velocity[k] = rim_.velocity + rim_.angular_velocity.cross(arm);
+    out.position[k] = rim.position + arm;
+    out.velocity[k] = rim.velocity + rim.angular_velocity.cross(arm);
   }
 }
 

@@ -15,7 +15,8 @@ class RigidTire final : public Tire {
 
   int coordinates() const override { return 0; }
 
-  void surface(SurfaceState& out) const override;
+  void surface(SurfaceState& out) const override { surface_on(rim_, out); }
+  void surface_on(const RimState& rim, SurfaceState& out) const override;
   TireDiagnostics diagnostics() const override;
   void add_state(Hash& hash) const override;
   void save(Archive& archive) const override;

@@ -47,6 +47,7 @@ class CleatStandSpec final : public RideSpec<DrawbarRigOptions> {
     return fmt::format("1 cleat test stand, axle held from {:.4g} s on", hold_from_);
   }
   double carried_mass(std::size_t) const override { return rig_.carrier_mass + rig_.rim_mass; }
+  double unsprung_mass(std::size_t k) const override { return carried_mass(k); }
 
   double hold_from_;  // s
 };

@@ -122,7 +122,8 @@ class DrawbarSpec final : public RigSpec {
     d.camber_angle = rig.camber_angle;
     d.slip = rig.slip;
     d.travel_sign = rig.travel_sign;
-    d.carried_mass = rig.carrier_mass + rig.rim_mass;
+    d.carried_mass = d.unsprung_mass = rig.carrier_mass + rig.rim_mass;
+    if (rig.mode == "free_rolling") d.spin_inertia = rig.rim_spin_inertia;  // else its spin is imposed
     d.speed = full_speed(rig, tire.radius);
     d.tread_speed = tread_speed(rig, tire.radius);
     d.lowering_time = rig.move_from;

@@ -36,8 +36,9 @@ class HalfCarSpec final : public RideSpec<HalfCarOptions> {
   }
   double carried_mass(std::size_t k) const override {
     const double share = k == 0 ? rig_.front_share : 1.0 - rig_.front_share;
-    return share * rig_.body_mass + rig_.unsprung_mass + rig_.rim_mass;
+    return share * rig_.body_mass + unsprung_mass(k);
   }
+  double unsprung_mass(std::size_t) const override { return rig_.unsprung_mass + rig_.rim_mass; }
 };
 
 }  // namespace

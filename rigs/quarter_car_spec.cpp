@@ -31,7 +31,8 @@ class QuarterCarSpec final : public RideSpec<QuarterCarOptions> {
     return fmt::format("1 quarter car, body {:.5g} kg on {:.4g} N/m and {:.4g} N s/m", rig_.body_mass,
                        rig_.suspension_stiffness, rig_.suspension_damping);
   }
-  double carried_mass(std::size_t) const override { return rig_.body_mass + rig_.unsprung_mass + rig_.rim_mass; }
+  double carried_mass(std::size_t k) const override { return rig_.body_mass + unsprung_mass(k); }
+  double unsprung_mass(std::size_t) const override { return rig_.unsprung_mass + rig_.rim_mass; }
 };
 
 }  // namespace

@@ -83,6 +83,7 @@ class RideSpec : public RigSpec {
   virtual std::string text() const = 0;
   /// Without the tire, kg.
   virtual double carried_mass(std::size_t k) const = 0;
+  virtual double unsprung_mass(std::size_t k) const = 0;
 
   WheelDescription wheel(std::size_t k, const WheelSize& tire, double duration) const {
     WheelDescription wheel;
@@ -94,6 +95,8 @@ class RideSpec : public RigSpec {
     wheel.along = tire.radius;
     wheel.across = 0.5 * tire.width;
     wheel.carried_mass = carried_mass(k);
+    wheel.unsprung_mass = unsprung_mass(k);
+    wheel.spin_inertia = rig_.rim_spin_inertia;
     wheel.speed = wheel.tread_speed = rig_.speed;
     wheel.lowering_time = rig_.move_from;
     wheel.lowering_speed = rig_.lowering_speed;

@@ -51,6 +51,8 @@ struct WheelDescription {
   std::optional<double> slip;      // that the rig imposes or aims at, -; none where it has no such thing
   double travel_sign = 1.0;        // +1 along +x, −1 along −x
   double carried_mass = 0.0;       // without the tire, kg
+  double unsprung_mass = 0.0;      // of that, what no spring is between it and the tire, at least, kg
+  double spin_inertia = 0.0;       // of what turns with the wheel, without the tire, at least, kg m²
   double speed = 0.0;              // of the axle at full speed, m/s
   double tread_speed = 0.0;        // of the tread against the axle at full speed, m/s
   double lowering_time = 0.0;      // until the motions begin, s; 0: they begin at once

@@ -105,6 +105,8 @@ class TerrainSpec {
   virtual std::vector<TerrainFile> files() const { return {}; }
   /// What this program lacks to run it, and what is expected, for people; empty: nothing.
   virtual std::string lacking() const { return {}; }
+  /// Against a rigid wheel that stands on it, N/m; 0: not known. @param width m @param load N
+  virtual double stiffness_under(double /*radius*/, double /*width*/, double /*load*/) const { return 0.0; }
   /// @param width overall, of one tire, m
   /// @throws Error(bad_input) naming the key of the terrain that such a tire does not go with
   virtual void check_tire_width(double) const {}

@@ -107,6 +107,9 @@ struct TireDescription {
   /// `step_share` of `damping_time` are good; with a share of 0 any step is.
   double damping_time = 0.0;  // s
   double step_share = 0.0;    // -
+  /// Of a tire whose contact is its own, under its nominal load: N/m upwards, N/m along where slip relaxes over a
+  /// length, N s/m along where it does not. 0: it has no such thing.
+  double vertical_stiffness = 0.0, grip_stiffness = 0.0, grip_damping = 0.0;
   /// Why this tire can be pressed but not made and run: "whose key 'integrator' is …"; empty: it can.
   std::string static_only;
   NamedValues model;  // what else there is to know of this model: "layers"

@@ -76,6 +76,9 @@ std::string beds_text(const Json& summary, const scenario::Scenario& scenario) {
   if (!unsteady.empty())
     text += fmt::format("furrow: NOT STEADY on {}; the means are over these beds too (see not_steady and runs in {})\n",
                         joined(unsteady), failed.empty() ? "summary.json" : "summary_failed.json");
+  if (const Json large = value_at(summary, "step_too_large"); !large.empty())
+    text += fmt::format("furrow: THE STEP IS TOO LARGE on {}: late forces have part in the means (see interface)\n",
+                        joined(large));
   if (!failed.empty())
     text += fmt::format("furrow: {} failed; the means are over the other {} beds\n", joined(failed), beds);
   return text;

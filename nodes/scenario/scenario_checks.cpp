@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "nodes/scenario/coupling_step.hpp"
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/error.hpp"
@@ -116,10 +117,22 @@ class Checks {
              number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
              tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent ? ", or tire.contact_tangent" : "");
     }
+    coupling();
     const rigs::RigDescription rig = describe();
     if (rig.speeds_up_until > s_.run.average_from + 1e-12)
       warn("run.average_from", "the window begins at {} s, while the wheel still speeds up until {} = {} s",
            number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until));
+  }
+
+  /// Steps at which prompt forces are those of a spring that is stepped over.
+  void coupling() {
+    const std::vector<CouplingStep> steps = coupling_steps(s_);
+    CouplingStep least;
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      if (s_.prompt(k) && steps[k].step < least.step) least = steps[k];
+    if (s_.run.step > least.step)
+      warn("run.step", "{} s is more than {} s, with which {} is computed well; expected at most that",
+           number_text(s_.run.step), number_text(short_decimal(least.step)), least.because);
   }
 
   /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "nodes/scenario/coupling_step.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/soil_material.hpp"
@@ -48,7 +49,7 @@ constexpr double kMoveFrom = 0.4, kRamp = 0.15, kAverageFrom = 1.2, kEnd = 3.0;
 constexpr double kVehicleEnd = 2.5, kThrottleFrom = 0.5, kThrottleAt = 0.7, kThrottle = 0.7;
 constexpr double kStepShare = 0.8;     // of the stable step
 constexpr double kTinyStep = 1e-7;     // s, that any terrain takes
-constexpr double kLargestStep = 2e-4;  // s, where neither grains nor tire ask for a smaller one
+constexpr double kLargestStep = 5e-4;  // s, where neither grains nor tire ask for a smaller one
 constexpr double kNodes = 20.0;        // of empirical soil across a tread
 constexpr std::size_t kColumns = 110;  // of a comment
 
@@ -71,7 +72,6 @@ struct Scales {
   double largest = 0.0;              // radius, m
   double first = 0.0, last = 0.0;    // axles, x, m
   double across = 0.0;               // of the outermost point of any wheel, |y|, m
-  double tire_step = 0.0;            // s; 0: any
   bool meshed = false;               // the tire is a shell, whose mesh the scenario may choose
   // On the soil; first guesses until a bed has been described.
   double pressure = kPressure;  // under the wheel that presses most, Pa
@@ -97,7 +97,6 @@ Scales scales_of(const Scenario& s) {
     scales.first = std::max(scales.first, wheel.from);
     scales.last = std::min(scales.last, wheel.from);
     scales.across = std::max(scales.across, std::abs(wheel.lateral) + wheel.across);
-    if (tire.step_share > 0.0) scales.tire_step = tire.step_share * tire.damping_time;  // none where it is rigid
     scales.meshed = std::find(tire.takes.begin(), tire.takes.end(), "elements_width") != tire.takes.end();
   }
   return scales;
@@ -286,9 +285,10 @@ Scenario checked(const std::filesystem::path& file, const Json& document) {
 }
 
 /// As it is typed: 1, 2, 4, 5 or 8 times a power of ten, so that usual times are whole numbers of it.
-double step_of(const Scenario& s, const Scales& scales) {
+double step_of(const Scenario& s) {
   const double stable = kStepShare * s.terrain->estimate(s.terrain_context()).stable_step;
-  const double largest = std::min({stable, scales.tire_step > 0.0 ? scales.tire_step : kLargestStep, kLargestStep});
+  double largest = std::min(stable, kLargestStep);
+  for (const CouplingStep& coupling : coupling_steps(s)) largest = std::min(largest, coupling.step);
   const double unit = std::pow(10.0, std::floor(std::log10(largest)));
   double step = unit;
   for (const double digit : {2.0, 4.0, 5.0, 8.0})
@@ -330,7 +330,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
     if (pass == 0) add_soil(scales, checked(file, document));
   }
   document["output"] = output_section(scales);
-  const double step = step_of(checked(file, document), scales);
+  const double step = step_of(checked(file, document));
   document["run"]["step"] = step;
   fit(document["output"], {"series_interval", "frame_interval"}, step);
   fit(document["run"], {"end", "average_from"}, step);

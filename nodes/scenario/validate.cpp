@@ -1,10 +1,12 @@
 #include "nodes/scenario/validate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "nodes/scenario/coupling_step.hpp"
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/grain_loads.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -82,6 +84,10 @@ std::vector<Bound> all_bounds(const Scenario& s) {
   return bounds;
 }
 
+CouplingStep smallest(const std::vector<CouplingStep>& steps) {
+  return *std::ranges::min_element(steps, {}, &CouplingStep::step);
+}
+
 /// " (front_left, rear_left)"; empty where the rig has one wheel.
 std::string wheels_text(const Bound& bound, std::size_t all) {
   if (bound.wheels.empty()) return "";
@@ -125,6 +131,9 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   json["terrain_step_s"] = s.terrain_step();
   json["stable_step_s"] = json_number(e.terrain.stable_step);
   json["stable_step_limited_by"] = e.terrain.stable_reason;
+  const std::vector<CouplingStep> coupling = coupling_steps(s);
+  for (const CouplingStep& one : coupling)
+    json["coupling_step"].push_back({{"step_s", json_number(one.step)}, {"limited_by", one.because}});
   json["steps"] = e.steps;
   json["grains"] = e.terrain.grains;
   json["bed_height_m"] = e.terrain.expected_height;
@@ -164,6 +173,9 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
     line("terrain step",
          fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain_step(),
                      100.0 * s.terrain_step() / e.terrain.stable_step, e.terrain.stable_step, e.terrain.stable_reason));
+  if (const CouplingStep least = smallest(coupling_steps(s)); std::isfinite(least.step))
+    line("run step", fmt::format("{:g} s, {:.0f} % of the {:.3g} s that {} allows", s.run.step,
+                                 100.0 * s.run.step / least.step, least.step, least.because));
   line("terrain", e.terrain.text);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s, tires);

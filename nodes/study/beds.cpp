@@ -142,7 +142,7 @@ OverBeds over_beds(std::span<const double> values) {
 Json summary_of_beds(const scenario::Scenario& scenario, std::span<const Sweep::Outcome> beds) {
   FURROW_ASSERT(!beds.empty(), beds.size());
   std::vector<std::vector<Json>> wheels(scenario.tires.size());
-  std::vector<std::string> failed, not_steady;
+  std::vector<std::string> failed, not_steady, large_step;
   Json entries = Json::array();
   const Sweep::Outcome* first_failed = nullptr;
   for (std::size_t k = 0; k < beds.size(); ++k) {
@@ -154,6 +154,7 @@ Json summary_of_beds(const scenario::Scenario& scenario, std::span<const Sweep::
       continue;
     }
     if (unsteady(summary)) not_steady.push_back(name_of(beds[k]));
+    if (value_at(summary, "interface.ok") == false) large_step.push_back(name_of(beds[k]));
     for (std::size_t w = 0; w < wheels.size(); ++w) wheels[w].push_back(value_at(summary, fmt::format("wheels.{}", w)));
   }
   Json json{{"format_version", 1},
@@ -170,6 +171,7 @@ Json summary_of_beds(const scenario::Scenario& scenario, std::span<const Sweep::
   for (const std::vector<Json>& wheel : wheels) of_wheels.push_back(figures(wheel));
   json["beds"] = value_at(of_wheels, "0.drawbar_pull_N.beds");
   json["not_steady"] = not_steady;
+  json["step_too_large"] = large_step;
   if (of_wheels.size() == 1) json.update(of_wheels.front());
   json["wheels"] = of_wheels;
   json["runs"] = entries;

@@ -68,14 +68,16 @@ double rest(Reader& reader) {
   return rest;
 }
 
-// Whatever else a table holds, it says which means are steady.
-const std::vector<std::string> kSteadiness{"drawbar_pull_N.steady", "drawbar_pull_N.n_eff"};
+// Whatever else a table holds, it says which means are steady, and whether late forces have part in them.
+const std::vector<std::string> kSteadiness{"drawbar_pull_N.steady", "drawbar_pull_N.n_eff", "interface.share",
+                                           "interface.ok"};
 
 const std::vector<std::string> kUsualResults{
     "drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "drawbar_pull_N.n_eff",
     "drawbar_coefficient", "sinkage_m",          "sinkage_sem_m",         "rut_depth_m",
     "rut_depth_sem_m",     "tractive_effort_N",  "terrain_resistance_N",  "drive_torque_Nm",
-    "tractive_efficiency", "vertical_load_N",    "bed_clearance_m",       "wall_s"};
+    "tractive_efficiency", "vertical_load_N",    "bed_clearance_m",       "interface.share",      "interface.ok",
+    "wall_s"};
 
 /// Lines and means are over keys that the runs differ in, the ordinate is a result, the abscissa either.
 Json checked_plot(Reader& reader, const Study& study) {

@@ -311,10 +311,12 @@ void Sweep::poll(Run& run) {
       if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
     const double pull = number_at(summary, "drawbar_pull_N.mean");  // not every rig has one
     const bool unsteady = value_at(summary, "drawbar_pull_N.steady") == false;
-    tell(run, std::isfinite(pull)
-                  ? fmt::format("is done: pull {} N{}", with_error(pull, number_at(summary, "drawbar_pull_N.sem")),
-                                unsteady ? ", NOT STEADY" : "")
-                  : "is done");
+    std::string told = "is done";
+    if (std::isfinite(pull))
+      told += fmt::format(": pull {} N{}", with_error(pull, number_at(summary, "drawbar_pull_N.sem")),
+                          unsteady ? ", NOT STEADY" : "");
+    if (value_at(summary, "interface.ok") == false) told += ", THE STEP IS TOO LARGE";
+    tell(run, told);
     if (const double deep = number_at(summary, "sinkage_m") / number_at(summary, "surface_height_m");
         run.pass > 0 && deep > kDeepRut)
       tell(run, fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is "

@@ -70,7 +70,11 @@ class VehicleRigSpec final : public RigSpec {
       mass_ = car.mass();
       for (int k = 0; k < car.wheel_count(); ++k) {
         wheels_.emplace_back();
-        wheels_.back().center = vehicle::spindle_of(car.wheel(k).corner->suspension).center;
+        const vehicle::CornerSpec& corner = *car.wheel(k).corner;
+        const vehicle::SpindleSpec& spindle = vehicle::spindle_of(corner.suspension);
+        wheels_.back().center = spindle.center;
+        wheels_.back().turning_mass = corner.wheel.mass + spindle.mass;
+        wheels_.back().spin_inertia = corner.wheel.inertia(1, 1) + spindle.inertia(1, 1);
       }
     });
   }
@@ -95,7 +99,9 @@ class VehicleRigSpec final : public RigSpec {
     Vec3 center = Vec3::Zero();  // in the vehicle's frame, m
     double load = 0.0;           // at rest, N
     double camber = 0.0, toe = 0.0;
-    double tire_mass = 0.0;  // kg
+    double tire_mass = 0.0;     // kg
+    double turning_mass = 0.0;  // rim, hub and what turns with them, kg
+    double spin_inertia = 0.0;  // of the same, kg m²
   };
 
   /// What a vehicle of this file cannot do is the file's fault. @throws Error(bad_input)
@@ -192,7 +198,8 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
     const vehicle::Trim trim = stand(car, radii, plan_.options.heading);
     for (std::size_t k = 0; k < tires.size(); ++k) {
       const vehicle::WheelTrim& at = trim.wheels[k];
-      wheels_[k] = {at.center, at.load, at.camber, at.toe, tires[k].mass};
+      wheels_[k] = {
+          at.center, at.load, at.camber, at.toe, tires[k].mass, wheels_[k].turning_mass, wheels_[k].spin_inertia};
     }
     stops_ = vehicle::stops_at_rest(plan_.vehicle, trim);
     vehicle::check_locks(plan_.vehicle, radii);
@@ -258,6 +265,8 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   d.camber_angle = place.camber;
   d.travel_sign = std::cos(psi) < 0.0 ? -1.0 : 1.0;
   d.carried_mass = std::max(0.0, -place.load / plan_.gravity.z() - place.tire_mass);
+  d.unsprung_mass = place.turning_mass;
+  d.spin_inertia = place.spin_inertia;
   d.speed = d.tread_speed = top_speed();
   d.start_key = context_.key("start");
   d.start_offset = at.x();

@@ -1,5 +1,7 @@
 #include "terrain/rigid/ground_spec.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +51,11 @@ class GroundSpec final : public TerrainSpec {
     if (!options.road_class.empty())
       options.profile = iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
     return make_rigid_ground(options);
+  }
+  /// W = ∫ κ (δ − x²/2R) b dx over the contact of half length a = √(2 R δ) is ⅔ κ b a³/R; dW/dδ = 2 κ b a.
+  double stiffness_under(double radius, double width, double load) const override {
+    return 2.0 * options_.ground_stiffness * width *
+           std::cbrt(1.5 * load * radius / (options_.ground_stiffness * width));
   }
   std::vector<TerrainFile> files() const override {
     if (options_.profile_file.empty()) return {};

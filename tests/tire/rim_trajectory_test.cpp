@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace furrow::tire {
 namespace {
 
@@ -42,6 +45,31 @@ TEST(RimTrajectory, position_and_velocity_are_continuous_across_intervals_when_t
     end_before = t.at(1.0).state;
     EXPECT_LT((end_before.velocity - r.velocity).norm(), 1e-12);
   }
+}
+
+/// The largest of |x| over the last tenth of 10^4 steps of a mass on a spring, ω H = h, let go at x = 1: the spring's
+/// force is that of the trajectory's mean and acts over its interval.
+double amplitude_after(double h, bool accelerated) {
+  RimState rim;
+  rim.position.x() = 1.0;
+  RimTrajectory t(rim);
+  double largest = 0.0;
+  for (int n = 0; n < 10000; ++n) {
+    accelerated ? t.extend_accelerated(rim, 1.0) : t.extend(rim, 1.0);
+    const double a = -h * h * 0.5 * (t.start().position.x() + t.end().position.x());
+    rim.position.x() += rim.velocity.x() + 0.5 * a;
+    rim.velocity.x() += a;
+    if (n >= 9000) largest = std::max(largest, std::abs(rim.position.x()));
+  }
+  return largest;
+}
+
+TEST(RimTrajectory, a_body_on_a_spring_is_stable_with_the_last_acceleration_and_damped_as_stated) {
+  for (const double h : {0.05, 0.1, 0.3, 0.6, 0.9}) EXPECT_LT(amplitude_after(h, true), 1.01) << h;
+  EXPECT_GT(amplitude_after(0.3, false), 1e3);
+  // ζ = h³/8: the amplitude falls by exp(−ζ h n).
+  const double h = 0.05, expected = std::exp(-h * h * h / 8.0 * h * 9000.0);
+  EXPECT_NEAR(amplitude_after(h, true), expected, 0.02 * expected);
 }
 
 TEST(RimTrajectory, rates_are_derivatives_of_the_poses) {

@@ -1,6 +1,7 @@
 #include "tire/handling/handling_spec.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -66,6 +67,12 @@ TireDescription HandlingSpec::describe() const {
   d.memory = 1e6;
   d.saved_bytes = 1e4;
   d.follows_rim = true;
+  const double slip_stiffness = std::abs(handling::evaluate(t, {.load = t.vertical.fnomin}).slip_stiffness);
+  d.vertical_stiffness = t.vertical.vertical_stiffness;
+  if (s.longitudinal > 0.0)
+    d.grip_stiffness = slip_stiffness / s.longitudinal;
+  else
+    d.grip_damping = slip_stiffness / t.low_speed;
   d.own_contact = "its forces are those of the Magic Formula, which holds for hard level ground";
   return d;
 }

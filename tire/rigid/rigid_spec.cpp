@@ -18,6 +18,7 @@ class RigidSpec final : public TireSpec {
     d.takes_tangents = d.deflects = false;
     d.follows_rim = true;
     d.own_contact.clear();
+    d.vertical_stiffness = d.grip_stiffness = d.grip_damping = 0.0;
     d.static_only.clear();
     d.damping_time = d.step_share = 0.0;
     return d;

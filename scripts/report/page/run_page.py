@@ -82,6 +82,17 @@ def steady_words(pull):
                     "Run longer, or average later (run.end, run.average_from), before you quote this number.")
 
 
+def step_answer(run):
+    """What the run's verdict on its communication step says, where that is not good."""
+    judged = run.summary.get("interface") or {}
+    if judged.get("ok") is not False or not is_number(judged.get("share")):
+        return []
+    return [blocks.text(f"The step is too large: forces that come one step late make or take "
+                        f"{100 * judged['share']:.3g} % of the work that passes a wheel, expected at most 1 %. Take a "
+                        f"run.step of {digits(judged.get('better_step_s'))} s or less before you quote this result.",
+                        "warn")]
+
+
 def pull_answer(run):
     pull = run.summary.get("drawbar_pull_N") or {}
     if not is_number(pull.get("mean")):
@@ -196,7 +207,7 @@ def answer(run):
     elif not run.summary:
         made.append(blocks.text("This run has no summary: it is still running, or it was stopped before its end.",
                                 "warn"))
-    made += pull_answer(run)
+    made += step_answer(run) + pull_answer(run)
     if len(run.summary.get("wheels") or []) < 2 and (items := answer_cards(run)):
         if not run.summary.get("drawbar_pull_N"):
             window = window_of(run)

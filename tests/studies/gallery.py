@@ -23,7 +23,7 @@ TIMES = "time.json"  # in a folder of results: what it took
 PULL = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady",
         "vertical_load_N", "sinkage_m", "rut_depth_m")
 VEHICLE = ("vehicle.distance_m", "vehicle.mean_speed_m_s", "figures.gear_changes", "end_reason", "end_time_s")
-# Simulated time of the two scenarios at full size, which take hours to a steady pull.
+# Simulated time of the two scenarios at full size: they are shown, not measured.
 START = ("--set", "run.end=0.5", "--set", "run.average_from=0.4")
 # name → (command, picture of its folder, keys of the summary, options)
 CASES = {

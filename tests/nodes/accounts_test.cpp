@@ -63,17 +63,18 @@ Accounts rolled(OneWheel scenario, double step, double time) {
   return accounts_after(scenario.made(), std::llround(time / step));
 }
 
-void expect_momentum_closes(const Accounts& accounts) {
+/// Of prompt forces nothing but the added mass' is under way.
+void expect_momentum_closes(const Accounts& accounts, bool prompt = false) {
   const MomentumAccount m = accounts.momentum();
   EXPECT_TRUE(m.closes()) << "residual " << m.residual().transpose() << ", surface "
                           << m.surface_difference().transpose() << ", spindle " << m.spindle_difference().transpose()
                           << " N s of " << m.largest();
   EXPECT_GT(m.surface_of_tires.norm(), 1.0) << "the wheel never touched the ground";
-  EXPECT_GT(m.under_way.norm(), 1e-5 * m.largest()) << "what is under way must matter";
+  if (!prompt) EXPECT_GT(m.under_way.norm(), 1e-5 * m.largest()) << "what is under way must matter";
 }
 
 TEST(Accounts, momentum_closes_on_hard_ground) {
-  expect_momentum_closes(rolled(testing::rigid_wheel_on_plane(), 1e-4, 0.3));
+  expect_momentum_closes(rolled(testing::rigid_wheel_on_plane(), 1e-4, 0.3), true);
   expect_momentum_closes(rolled(flexible_tire_on_plane(), 1e-4, 0.15));
 }
 

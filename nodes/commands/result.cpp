@@ -11,6 +11,7 @@
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/digits.hpp"
+#include "protocol/files/json_text.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::commands {
@@ -40,7 +41,7 @@ std::string step_line(const json& summary, const scenario::Scenario& scenario) {
       "work there in the averaging window, expected at most 1 %; take a run.step of {} s or less (now {} s)\n",
       number_at(worst, "made_J") > 0.0 ? "made" : "took", std::abs(number_at(worst, "made_J")),
       worst.value("interface", ""), worst.value("wheel", 0), 100.0 * number_at(worst, "share"),
-      digits(number_at(judged, "better_step_s")), digits(scenario.run.step));
+      number_text(number_at(judged, "better_step_s")), number_text(scenario.run.step));
 }
 
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "nodes/output/steadiness.hpp"
 #include "protocol/core/assert.hpp"
@@ -17,7 +18,8 @@ constexpr double kLeastPart = 0.02;   // of a step, that a better one is
 
 double lag_share(double made, double passed, double load, double radius) {
   const double least = kFloor * std::abs(load) * radius;
-  return std::abs(made) / std::max({passed, least, 1e-300});
+  const double share = std::abs(made) / std::max({passed, least, 1e-300});
+  return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();  // the motion has no bounds
 }
 
 double better_step(double step, double share) {

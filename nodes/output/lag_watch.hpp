@@ -33,7 +33,7 @@ inline InterfaceEnergies interface_energies(const WheelRow& row) {
   return {row.energy_error, row.rim_energy_error, row.passed_work};
 }
 
-/// |made| as a share of what passes. @param load N @param radius m
+/// |made| as a share of what passes; infinite where one is not finite. @param load N @param radius m
 double lag_share(double made, double passed, double load, double radius);
 
 /// A step with which late forces, whose energy grows with the step, keep below kGoodShare, s: a number of one digit.

@@ -12,6 +12,7 @@
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/digits.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
 
@@ -132,7 +133,7 @@ class Checks {
       if (s_.prompt(k) && steps[k].step < least.step) least = steps[k];
     if (s_.run.step > least.step)
       warn("run.step", "{} s is more than {} s, with which {} is computed well; expected at most that",
-           number_text(s_.run.step), number_text(short_decimal(least.step)), least.because);
+           number_text(s_.run.step), digits(least.step), least.because);
   }
 
   /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.

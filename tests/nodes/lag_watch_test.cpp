@@ -41,6 +41,7 @@ TEST(LagWatch, judges_each_window_after_touch_down_by_the_worse_interface) {
 TEST(LagWatch, a_standing_wheel_counts_as_if_a_thousandth_of_load_times_radius_passed) {
   EXPECT_NEAR(lag_share(1.0, 0.0, kLoad, kRadius), 0.5, 1e-15);
   EXPECT_NEAR(lag_share(-1.0, 4.0, kLoad, kRadius), 0.25, 1e-15);
+  EXPECT_EQ(lag_share(NAN, INFINITY, kLoad, kRadius), INFINITY);
 }
 
 TEST(LagWatch, a_better_step_has_one_digit_and_is_smaller_in_proportion) {
@@ -48,6 +49,7 @@ TEST(LagWatch, a_better_step_has_one_digit_and_is_smaller_in_proportion) {
   EXPECT_NEAR(better_step(1e-3, 0.015), 5e-4, 1e-18);
   EXPECT_NEAR(better_step(4e-5, 0.04), 1e-5, 1e-18);
   EXPECT_NEAR(better_step(1e-3, 20.0), 2e-5, 1e-18);
+  EXPECT_NEAR(better_step(1e-3, INFINITY), 2e-5, 1e-18);
 }
 
 }  // namespace

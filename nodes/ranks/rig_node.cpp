@@ -284,7 +284,7 @@ class RigNode : public Node {
       const auto window =
           lag_[k].add(series_[k].wheel().last(), rig_->report(k).load(), terrain.contact[k].contacts > 0);
       if (!window || window->share <= output::kMostShare) continue;
-      const std::string& name = scenario::describe_rig(scenario_).wheels.at(k).name;
+      const std::string name = scenario::describe_rig(scenario_).wheels.at(k).name;
       const std::string text = fmt::format(
           "wheel {}: forces that come one step late {} {:.3g} J at its {} from {:.4g} to {:.4g} s, {:.0f} % of the "
           "work "

@@ -1,7 +1,8 @@
 // The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp); the terrain's forces of
-// the last interval act over the next one, those of a prompt tire over their own (nodes/ranks/node.hpp). To the rig goes the spindle wrench without the tire's own rigid-body
-// inertia and weight, which the rig carries as added mass (nodes/ranks/carried_wrench.hpp), with v and ω those of the
-// bead's trajectory: nothing is counted twice, and a rigid tire sends its contact alone.
+// the last interval act over the next one, those of a prompt tire over their own (nodes/ranks/node.hpp). To the rig
+// goes the spindle wrench without the tire's own rigid-body inertia and weight, which the rig carries as added mass
+// (nodes/ranks/carried_wrench.hpp), with v and ω those of the bead's trajectory: nothing is counted twice, and a rigid
+// tire sends its contact alone.
 // With contact tangents the forces answer to the tire's motion; what they differ by from those that the terrain then
 // reports is booked and handed back (nodes/ranks/impulse_ledger.hpp).
 #include <algorithm>

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Which step prompt forces bear: the HMMWV on handling tires, from standstill to 30 m/s, and rigid wheels of 20 N to
-60 kN on empirical soil, each at several steps. Writes prompt_step.csv and prompt_step_soil.csv beside this script; a run
-that is finished is used again.
+60 kN on empirical soil, each at several steps. Writes prompt_step.csv and prompt_step_soil.csv beside this script; a
+run that is finished is used again.
 
 Vehicles: over the window the mean of the wheels' F_x together and the spread of one wheel's, the mean acceleration, and
 where the vehicle stands at the end. Soil: a wheel that is let down and rolls at a slip of 0.2, its sinkage and pull.
-Either file has the step that `furrow validate` prints, and how far each figure is from that at the smallest step, in per
-cent: of the load where it is a force.
+Either file has the step that `furrow validate` prints, and how far each figure is from that at the smallest step, in
+per cent: of the load where it is a force.
 """
 import json
 import math

@@ -1,8 +1,8 @@
 // A tire that the Magic Formula describes: on level hard ground. It states its contact itself (stated_contact()): the
 // terrain gives the forces that it asks for, on its own surface and in its own books, and adds none of its own.
 //
-// The forces of an interval of the length H from t are those of the rim's motion extrapolated from t to its middle; they
-// act over the same interval. To patch and tire, which are springs, that is the leapfrog rule: it makes no energy.
+// The forces of an interval of the length H from t are those of the rim's motion extrapolated from t to its middle;
+// they act over the same interval. To patch and tire, which are springs, that is the leapfrog rule: it makes no energy.
 //
 // Surface: a cylinder of R_0, flattened where it would be below the ground. Its vertices otherwise move with the rim.
 // Force and moment about the contact centre C go to the vertices near the ground with the weights w = max(0, ε − z)²,

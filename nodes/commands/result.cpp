@@ -8,6 +8,7 @@
 
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
+#include "nodes/output/lag_watch.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/digits.hpp"
@@ -38,10 +39,12 @@ std::string step_line(const json& summary, const scenario::Scenario& scenario) {
   return fmt::format(
       "furrow: THE STEP IS TOO LARGE: forces that come one step late {} {:.3g} J at the {} of wheel {}, {:.1f} % of "
       "the "
-      "work there in the averaging window, expected at most 1 %; take a run.step of {} s or less (now {} s)\n",
+      "work there in the averaging window, expected at most 1 %; take a run.step of {} s or less{} (now {} s)\n",
       number_at(worst, "made_J") > 0.0 ? "made" : "took", std::abs(number_at(worst, "made_J")),
       worst.value("interface", ""), worst.value("wheel", 0), 100.0 * number_at(worst, "share"),
-      number_text(number_at(judged, "better_step_s")), number_text(scenario.run.step));
+      number_text(number_at(judged, "better_step_s")),
+      output::other_help(*scenario.tires.at(worst.value("wheel", 0)), worst.value("interface", "")),
+      number_text(scenario.run.step));
 }
 
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {

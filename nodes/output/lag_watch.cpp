@@ -22,6 +22,11 @@ double lag_share(double made, double passed, double load, double radius) {
   return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();  // the motion has no bounds
 }
 
+std::string other_help(const tire::TireSpec& tire, std::string_view interface) {
+  const bool helps = interface == "ground" && tire.describe().takes_tangents && !tire.options().contact_tangent;
+  return helps ? ", or tire.contact_tangent" : "";
+}
+
 double better_step(double step, double share) {
   FURROW_ASSERT(step > 0.0 && share > 0.0, step, share);
   const double most = step * std::clamp(kGoodShare / share, kLeastPart, 0.5);

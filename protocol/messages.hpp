@@ -180,6 +180,7 @@ struct SpindleReport {
   StepHeader header;
   Wrench wrench;                // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
   Wrench spindle;               // on the rim by the tire, complete
+  Wrench contact;               // on the tire by the terrain as it acted, about the middle of the rim centre's way
   double lowest_point = 0.0;    // lowest contact-surface vertex z, m
   TireDiagnostics diagnostics;  // of the model
   Vec3 impulse_received = Vec3::Zero();  // cumulative, N s
@@ -202,6 +203,7 @@ void visit_fields(FieldsOf<SpindleReport> auto& s, auto&& visit) {
   visit(s.header, Field{"header", ""});
   visit(s.wrench, Field{"wrench", ""});
   visit(s.spindle, Field{"spindle", ""});
+  visit(s.contact, Field{"contact", ""});
   visit(s.lowest_point, Field{"lowest_point", "m"});
   visit_fields(s.diagnostics, visit);  // under their own names
   visit(s.impulse_received, Field{"impulse_received", "N s"});

@@ -59,13 +59,14 @@ void SeriesBuilder::measure_means(const StepReports& r) {
   row_.aligning_moment = r.wheel.aligning_moment;
 }
 
-/// Contact sums are means over the interval, so the contact centre is that of its middle. The ground plane is the
-/// undisturbed surface, or where the tire has sunk below it the tire's lowest point: the bottom of the rut.
+/// The wrench is what acted on the tire in this interval, whenever the terrain computed it, and the contact centre is
+/// that of the interval's middle: so the moments balance what the rim feels. The ground plane is the undisturbed
+/// surface, or where the tire has sunk below it the tire's lowest point: the bottom of the rut.
 void SeriesBuilder::measure_tire_axes(const StepReports& r) {
   RimState middle = r.rim;
   if (memory_.started > 0.0) middle.position = 0.5 * (memory_.last_rim_position + r.rim.position);
   const tire::WheelAxes axes = tire::wheel_axes(middle, r.heading, std::min(ground_, r.tire.lowest_point));
-  const Wrench wrench = axes.wrench(r.contact.force, r.contact.moment, Vec3::Zero());
+  const Wrench wrench = axes.wrench(r.tire.contact.force, r.tire.contact.moment, middle.position);
   row_.iso_force = wrench.force;
   row_.iso_moment = wrench.moment;
   row_.slip_angle = axes.slip_angle;

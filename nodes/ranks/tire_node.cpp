@@ -175,10 +175,15 @@ class TireNode : public Node {
     position_before_.swap(motion_.surface.position);
     tire_->surface(motion_.surface);
     Vec3 impulse = Vec3::Zero();
+    report_.contact = {};
+    const Vec3 centre = 0.5 * (from.position + to.position);
     for (std::size_t i = 0; i < forces_.vertex.size(); ++i) {
-      const int vertex = forces_.vertex[i];
-      impulse += duration * forces_.force[i];
-      report_.terrain_work += forces_.force[i].dot(motion_.surface.position[vertex] - position_before_[vertex]);
+      const Vec3 &force = forces_.force[i], &before = position_before_[forces_.vertex[i]],
+                 &after = motion_.surface.position[forces_.vertex[i]];
+      impulse += duration * force;
+      report_.contact.force += force;
+      report_.contact.moment += (0.5 * (before + after) - centre).cross(force);
+      report_.terrain_work += force.dot(after - before);
     }
     report_.impulse_received += impulse;
     report_.impulse_received_abs += impulse.norm();

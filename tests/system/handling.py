@@ -53,6 +53,7 @@ class Handling(SystemTest):
                 self.assertAlmostEqual(axes["force_N"][0], said["Fx_N"], delta=0.01 * load)
                 self.assertAlmostEqual(axes["force_N"][1], said["Fy_N"], delta=0.01 * load)
                 self.assertAlmostEqual(axes["moment_Nm"][0], said["Mx_Nm"], delta=0.01 * load * 0.47)
+                self.assertAlmostEqual(axes["moment_Nm"][1], said["My_Nm"], delta=0.5)
                 self.assertAlmostEqual(axes["moment_Nm"][2], said["Mz_Nm"], delta=0.003 * load * 0.47)
                 self.accounts_close(told)
                 self.assertEqual(told["warnings"] if "warnings" in told else [], [])
@@ -82,6 +83,24 @@ class Handling(SystemTest):
         one = self.run_of("one", "--set", "terrain.friction=0.9")
         two = self.run_of("two", "--set", "terrain.friction=0.1")
         self.assertEqual(one["iso_w"]["force_N"], two["iso_w"]["force_N"])
+
+    def test_the_rolling_moment_balances_the_torque_at_any_speed(self):
+        """T + M_y = F_x R_l of a wheel that turns steadily; the spin axis is level."""
+        for name, flags in (("free", ("rig.mode=free_rolling", "rig.slip=0")), ("driven", ("rig.slip=0.05",)),
+                            ("rigid", ("rig.slip=0.0", "tire.rigid=true", "run.step=1e-4")),
+                            ("smooth", ("rig.slip=-0.5", "tire.rigid=true", "run.step=1e-4", "terrain.friction=0"))):
+            for speed in (5.0, 15.0):
+                with self.subTest(name=name, speed=speed):
+                    told = self.run_of(f"{name}{speed:g}", *(word for flag in (*flags, f"rig.speed={speed}")
+                                                             for word in ("--set", flag)))
+                    axes = told["iso_w"]
+                    balance = axes["loaded_radius_m"] * axes["force_N"][0] - told["drive_torque_Nm"]
+                    self.assertAlmostEqual(axes["moment_Nm"][1], balance, delta=0.1)
+                    if name in ("free", "driven"):
+                        file, load = evaluate_tir.read(TIR), axes["force_N"][2]
+                        formula = -load * file["UNLOADED_RADIUS"] * (
+                            file["QSY1"] + file["QSY2"] * axes["force_N"][0] / file["FNOMIN"])
+                        self.assertAlmostEqual(axes["moment_Nm"][1], formula, delta=0.1)
 
     def test_a_resumed_run_has_the_same_bits(self):
         scenario = {**STEADY, "run": {"step": 2e-4, "end": 0.4, "average_from": 0.2},

@@ -118,10 +118,11 @@ struct TireDescription {
 /// How a model computes, and under which gravity; what is not given is as the model takes it on its own.
 struct TireContext {
   int threads = 1;
-  std::optional<double> tolerance = {};  // of the solver's residual, relative
-  std::optional<double> renewal = {};    // change of shape at which the solver renews its factors
-  Vec3 gravity = standard_gravity();     // m/s²
-  std::function<void()> alive = {};      // called now and then while the tire is inflated; may throw to stop
+  std::optional<double> tolerance = {};        // of the solver's residual, relative
+  std::optional<double> renewal = {};          // change of shape at which the solver renews its factors
+  Vec3 gravity = standard_gravity();           // m/s²
+  std::optional<double> ground_friction = {};  // where the scenario states it, -; for tires with a contact of their own
+  std::function<void()> alive = {};            // called now and then while the tire is inflated; may throw to stop
 };
 
 class TireSpec;

@@ -32,7 +32,9 @@ class TireNode : public Node {
         index_(index),
         kind_(scenario.tires.at(index)->describe().kind),
         pressure_(scenario.tires.at(index)->options().pressure),
-        tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(), .alive = std::move(alive)})),
+        tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(),
+                                              .ground_friction = scenario.ground_friction,
+                                              .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
     report_.prompt = scenario.prompt(index);
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;

@@ -30,7 +30,8 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-constexpr std::size_t kMaxKey = 256;  // bytes
+constexpr std::size_t kMaxKey = 256;           // bytes
+constexpr const char* kFriction = "friction";  // of the terrain
 
 std::vector<std::string> split(const std::string& key) {
   std::vector<std::string> parts(1);
@@ -129,8 +130,9 @@ json read_document(const std::string& file, const Settings& settings) {
   return document;
 }
 
-/// Returns warnings of keys that were set aside.
-std::vector<std::string> complete(json& document, const std::string& file, const Settings& settings) {
+/// Returns warnings of keys that were set aside. @param friction of the ground, where it is stated
+std::vector<std::string> complete(json& document, const std::string& file, const Settings& settings,
+                                  std::optional<double>& friction) {
   const Schema& schema = Schema::of_scenarios();
   fill_rig_tires(document, file);
   schema.normalize(document);
@@ -140,6 +142,7 @@ std::vector<std::string> complete(json& document, const std::string& file, const
   if (!document.contains("tire") && !document.contains("tires"))
     throw input_error(file, "tire", "is missing, expected an object { } with the tire's file");
   std::vector<std::string> set_aside = set_aside_keys(document, schema, file, settings);
+  if (const json& terrain = document.at("terrain"); terrain.contains(kFriction)) friction = terrain[kFriction];
   schema.fill_defaults(document);
   schema.normalize(document);
   remove_foreign_keys(document);
@@ -260,6 +263,8 @@ std::string digest_of(json completed, const Scenario& s) {
   if (completed.contains("tires"))
     for (json& tire : completed["tires"]) tire.erase("file");
   Schema::of_scenarios().remove_defaults(completed);
+  // To a tire with a contact of its own the default is not the same as nothing.
+  if (s.ground_friction && s.has_own_contact()) completed["terrain"][kFriction] = *s.ground_friction;
   Hash hash;
   hash.add(&kDigestVersion, sizeof kDigestVersion);
   hash.add(completed.dump());
@@ -298,7 +303,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   s.name = file.stem().string();
   require_utf8(s.name, file.string(), "", "has a name");
   json document = read_document(file.string(), settings);
-  s.warnings = complete(document, file.string(), settings);
+  s.warnings = complete(document, file.string(), settings, s.ground_friction);
   if (const std::string warning = other_grains_warning(document, file); !warning.empty()) s.warnings.push_back(warning);
   take_run(document["run"], s);
   read_fields(document["output"], s.output);
@@ -324,6 +329,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   }
   s.digest = digest_of(document, s);
   make_movable(document, s);
+  if (!s.ground_friction && s.has_own_contact()) document["terrain"].erase(kFriction);
   document[kCompletedBy] = std::string("furrow ") + FURROW_VERSION;
   s.completed = document.dump(2);
   return s;

@@ -42,6 +42,10 @@ bool Scenario::prompt(std::size_t wheel) const {
   return tires.at(wheel)->describe().follows_rim && terrain->describe().answers_at_once;
 }
 
+bool Scenario::has_own_contact() const {
+  return std::ranges::any_of(tires, [](const auto& tire) { return !tire->describe().own_contact.empty(); });
+}
+
 terrain::TerrainContext Scenario::terrain_context() const {
   terrain::TerrainContext context;
   context.step = terrain_step();

@@ -179,6 +179,7 @@ struct Scenario {
   bool tires_listed = false;                                 // as entries of `tires`, not by one `tire` for all
   int tire_substeps = 1;
   std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
+  std::optional<double> ground_friction;  // terrain.friction where it is stated, -
   int terrain_ranks = 1;
   int terrain_substeps = 1;
   int settle_threads = 1;  // OpenMP threads of the terrain while a bed settles
@@ -194,6 +195,8 @@ struct Scenario {
   std::string tire_key(std::size_t wheel, const std::string& name) const;
   /// Whether the forces on the tire of wheel k act over the interval for which they are computed, and not one later.
   bool prompt(std::size_t wheel) const;
+  /// Whether the law of contact of any tire is its own (TireDescription::own_contact).
+  bool has_own_contact() const;
   double terrain_step() const { return run.step / terrain_substeps; }  // s
   /// What the run supplies to its terrain, with as many threads as a bed settles with.
   terrain::TerrainContext terrain_context() const;

@@ -104,8 +104,7 @@ Scales scales_of(const Scenario& s) {
 
 /// A tire whose file holds for hard level ground gets that; a soil file without properties of grains is empirical soil.
 Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
-  const bool hard =
-      std::ranges::any_of(s.tires, [](const auto& tire) { return !tire->describe().own_contact.empty(); });
+  const bool hard = s.has_own_contact();
   if (hard && !o.soil.empty())
     throw input_error("command line", "--soil", "is given, expected none: the file of '{}' holds for hard level ground",
                       o.tire);

@@ -88,6 +88,21 @@ TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
   EXPECT_EQ(again.completed, s.completed);
 }
 
+/// The default of a ground's friction is none to a tire whose file has its own: what is stated decides, and is kept.
+TEST(Scenario, friction_of_the_ground_counts_for_a_handling_tire_where_it_is_stated) {
+  const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_handling.json"}, "terrain": {"engine": "rigid"}})");
+  const scenario::Scenario open = file.load(), stated = file.load({{"terrain.friction", "0.9"}});
+  EXPECT_FALSE(open.ground_friction);
+  EXPECT_EQ(stated.ground_friction, 0.9);
+  EXPECT_NE(open.digest, stated.digest);
+  for (const scenario::Scenario& s : {open, stated}) {
+    const scenario::Scenario again = testing::ScenarioFile(s.completed).load();
+    EXPECT_EQ(again.ground_friction, s.ground_friction);
+    EXPECT_EQ(again.digest, s.digest);
+    EXPECT_EQ(again.completed, s.completed);
+  }
+}
+
 TEST_F(Smallest, axle_starts_clear_of_the_wall_behind_it) {
   const double radius = 0.4673;  // m, of the tire
   const scenario::Scenario forward = file_.load(), backward = file_.load({{"rig.travel_sign", "-1"}});

@@ -79,10 +79,20 @@ class Handling(SystemTest):
                 self.assertAlmostEqual(told["iso_w"]["force_N"][k], float(row[f"iso_w.force_N.{k}"]),
                                        delta=1.1 * largest[of] + 5.0, msg=(wanted, of))
 
-    def test_friction_of_the_ground_counts_no_second_time(self):
-        one = self.run_of("one", "--set", "terrain.friction=0.9")
-        two = self.run_of("two", "--set", "terrain.friction=0.1")
-        self.assertEqual(one["iso_w"]["force_N"], two["iso_w"]["force_N"])
+    def test_the_smaller_friction_of_tire_and_ground_holds(self):
+        def shares(name, *flags):  # of the load: F_x with the wheel braked to a slip ratio of -0.5, F_y at -0.14 rad
+            found = []
+            for k, (key, value) in enumerate((("slip", -1.0), ("toe_angle", 0.14))):
+                force = self.run_of(f"{name}_{key}", "--set", f"rig.{key}={value}", *flags)["iso_w"]["force_N"]
+                found.append(abs(force[k]) / force[2])
+            return found
+        own = shares("own")
+        self.assertGreater(min(own), 0.7)
+        self.assertEqual(shares("rough", "--set", "terrain.friction=1.1"), own)
+        along, across = shares("smooth", "--set", "terrain.friction=0.2")
+        self.assertAlmostEqual(along, 0.2, delta=0.006)
+        self.assertLess(across, 0.201)  # far beyond its peak the formula falls
+        self.assertGreater(across, 0.15)
 
     def test_the_rolling_moment_balances_the_torque_at_any_speed(self):
         """T + M_y = F_x R_l of a wheel that turns steadily; the spin axis is level."""

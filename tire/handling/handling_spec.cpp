@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFacets = 96, kRows = 7;  // of the surface
-constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which no ground uses: the file has its own
+constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which only rigid tires use
 
 class HandlingSpec final : public TireSpec {
  public:
@@ -28,7 +28,9 @@ class HandlingSpec final : public TireSpec {
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
-    return std::make_unique<handling::HandlingTire>(file_.formula, shape(), context.gravity, file_.tir.string());
+    return std::make_unique<handling::HandlingTire>(
+        context.ground_friction ? handling::on_ground_of(file_.formula, *context.ground_friction) : file_.formula,
+        shape(), context.gravity, file_.tir.string());
   }
   TireShape shape() const override;
   std::unique_ptr<StaticTest> static_test() const override {

@@ -9,6 +9,8 @@
 namespace furrow::tire::handling {
 namespace {
 
+constexpr double kLeastFriction = 1e-6;  // of smooth ground: the formula divides by it
+
 using std::atan;
 using std::cos;
 using std::sin;
@@ -224,6 +226,15 @@ RelaxationLengths relaxation_lengths(const MagicFormula& tire, double load, doub
   s.longitudinal = std::max(0.0, s.longitudinal);
   s.lateral = std::max(0.0, s.lateral);
   return s;
+}
+
+MagicFormula on_ground_of(MagicFormula tire, double friction) {
+  FURROW_ASSERT(friction >= 0.0, friction);
+  const double most = std::max(friction, kLeastFriction);
+  const auto hold = [&](double& factor, double peak) { factor = std::min(factor, most / std::abs(peak)); };
+  hold(tire.scaling.lmux, tire.longitudinal.pdx1);
+  hold(tire.scaling.lmuy, tire.lateral.pdy1);
+  return tire;
 }
 
 double rolling_radius(const MagicFormula& tire, double deflection) {

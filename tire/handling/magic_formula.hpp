@@ -52,6 +52,11 @@ struct RelaxationLengths {
 /// @pre load ≥ 0
 RelaxationLengths relaxation_lengths(const MagicFormula& tire, double load, double camber);
 
+/// The formula on a ground of the friction μ: λ_μx and λ_μy are scaled so that the peaks at the nominal load without
+/// camber, |p_Dx1| λ_μx and |p_Dy1| λ_μy, are at most μ. A smaller peak stays, and so do the slip stiffnesses.
+/// @pre friction ≥ 0
+MagicFormula on_ground_of(MagicFormula tire, double friction);
+
 /// R_e = R_0 − (F_z0/C_z)[D atan(B ρ_d) + F ρ_d], ρ_d = ρ C_z/F_z0 [2], m. @param deflection ρ, m
 double rolling_radius(const MagicFormula& tire, double deflection);
 

@@ -136,6 +136,40 @@ TEST(MagicFormula, holds_the_ends_of_its_ranges_and_scales_with_loads_beyond_the
   EXPECT_EQ(evaluate(t, {.load = 18000.0}).fz, 18000.0);
 }
 
+/// Of every load the peaks go down in the ratio of the frictions, the slope at no slip does not.
+TEST(MagicFormula, on_a_smoother_ground_its_peaks_are_the_ground_s_and_its_stiffnesses_its_own) {
+  const MagicFormula t = symmetric_tire();
+  const auto peaks = [](const MagicFormula& tire, double load) {
+    std::pair<double, double> most;
+    for (int i = 0; i <= 1200; ++i) {
+      most.first = std::max(most.first, evaluate(tire, {.load = load, .slip = 1e-3 * i}).fx);
+      most.second = std::max(most.second, evaluate(tire, {.load = load, .slip_angle = -5e-4 * i}).fy);
+    }
+    return most;
+  };
+  for (const double ground : {0.5, 0.2, 0.05}) {
+    const MagicFormula smooth = on_ground_of(t, ground);
+    EXPECT_NEAR(peaks(smooth, 4000.0).first, ground * 4000.0, 1e-4 * 4000.0);
+    EXPECT_NEAR(peaks(smooth, 4000.0).second, ground * 4000.0, 1e-4 * 4000.0);
+    const HandlingForces a = evaluate(t, {.load = 2500.0}), b = evaluate(smooth, {.load = 2500.0});
+    EXPECT_EQ(a.slip_stiffness, b.slip_stiffness);
+    EXPECT_EQ(a.cornering_stiffness, b.cornering_stiffness);
+    EXPECT_NEAR(peaks(smooth, 2500.0).first / peaks(t, 2500.0).first, ground / (t.scaling.lmux * t.longitudinal.pdx1),
+                1e-3);
+  }
+  const MagicFormula rough = on_ground_of(t, 2.0);
+  EXPECT_EQ(rough.scaling.lmux, t.scaling.lmux);
+  EXPECT_EQ(rough.scaling.lmuy, t.scaling.lmuy);
+  // Between the two axes of a tire it tells them apart.
+  const double between = 0.5 * (t.scaling.lmux * t.longitudinal.pdx1 + t.scaling.lmuy * t.lateral.pdy1);
+  EXPECT_LT(on_ground_of(t, between).scaling.lmux, t.scaling.lmux);
+  EXPECT_EQ(on_ground_of(t, between).scaling.lmuy, t.scaling.lmuy);
+  const HandlingForces ice =
+      evaluate(on_ground_of(example_tire(), 0.0), {.load = 4000.0, .slip = 0.3, .slip_angle = 0.1});
+  EXPECT_TRUE(std::isfinite(ice.fx + ice.fy + ice.mz));
+  EXPECT_LT(std::hypot(ice.fx, ice.fy), 0.1);
+}
+
 TEST(MagicFormula, rolling_radius_is_that_of_the_wheel_in_the_air_and_falls_with_the_load) {
   const MagicFormula t = example_tire();
   EXPECT_EQ(rolling_radius(t, 0.0), 0.35);

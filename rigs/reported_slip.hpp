@@ -1,4 +1,4 @@
-// The slip that rigs report.
+// The slips that are reported: against the spin, as rigs impose it, and against the speed.
 #pragma once
 
 #include <cmath>
@@ -13,6 +13,14 @@ inline double reported_slip(double rolled, double speed) {
   const double slid = rolled - speed;
   if (std::abs(slid) <= kSlipLimit * std::abs(rolled)) return rolled == 0.0 ? 0.0 : slid / rolled;
   return (slid > 0.0) == (rolled > 0.0) ? kSlipLimit : -kSlipLimit;
+}
+
+/// (ω r − v)/v, the longitudinal slip of ISO 8855:2011: −1 of a locked wheel. Within ±kSlipLimit, which a wheel has
+/// that spins on the spot; 0 for a wheel that neither rolls nor moves.
+inline double reported_slip_ratio(double rolled, double speed) {
+  const double slid = rolled - speed;
+  if (std::abs(slid) <= kSlipLimit * std::abs(speed)) return speed == 0.0 ? 0.0 : slid / speed;
+  return speed == 0.0 || (slid > 0.0) == (speed > 0.0) ? kSlipLimit : -kSlipLimit;
 }
 
 }  // namespace furrow::rigs

@@ -12,6 +12,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "rigs/reported_slip.hpp"
 #include "tire/wheel_axes.hpp"
 
 namespace furrow::output {
@@ -46,6 +47,7 @@ void SeriesBuilder::add(const StepReports& r) {
 
 void SeriesBuilder::measure_means(const StepReports& r) {
   row_.slip = r.wheel.slip;
+  row_.slip_ratio = r.wheel.slip == 0.0 ? 0.0 : rigs::reported_slip_ratio(r.wheel.spin * radius_, r.wheel.speed);
   row_.speed = r.wheel.speed;
   row_.spin = r.wheel.spin;
   row_.force = r.contact.force;

@@ -9,7 +9,7 @@ namespace furrow::output {
 
 struct WheelRow {
   double time = 0.0;                      // s
-  double slip = 0.0;                      // -
+  double slip = 0.0;                      // 1 − v/(ω R), -
   double speed = 0.0;                     // carriage, along the heading, m/s
   double spin = 0.0;                      // rad/s
   double position = 0.0;                  // axle, along the heading, m
@@ -58,6 +58,7 @@ struct WheelRow {
   double loaded_radius = 0.0;      // m
   // Mean forward speed of the wheel centre in the wheel's plane over the mean spin, m
   double effective_rolling_radius = 0.0;
+  double slip_ratio = 0.0;  // (ω R − v)/v after ISO 8855, −1 of a locked wheel, R as of slip, -
 };
 
 /// The columns in the order of the files; those that users script against come first and keep their place.
@@ -125,6 +126,7 @@ void visit_fields(FieldsOf<WheelRow> auto& r, auto&& visit) {
   visit(r.camber_angle, mean("camber_angle_rad", "rad"));
   visit(r.loaded_radius, mean("loaded_radius_m", "m"));
   visit(r.effective_rolling_radius, derived("effective_rolling_radius_m", "m"));
+  visit(r.slip_ratio, mean("slip_ratio"));
 }
 
 }  // namespace furrow::output

@@ -135,5 +135,27 @@ TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_int
   EXPECT_NEAR(row.effective_rolling_radius, kSpeed * c / 8.4, 1e-14);
 }
 
+/// (ω R − v)/v.
+TEST(SeriesBuilder, slip_ratio_is_that_of_iso_8855) {
+  const double radius = 0.5;
+  const auto ratio = [&](double slip, double speed, double spin) {
+    output::SeriesBuilder builder(radius, 0.0, 1e-3);
+    output::StepReports r;
+    r.time = 1e-3;
+    r.rim = wheel(0.0, 0.0, 1.0);
+    r.wheel.slip = slip;
+    r.wheel.speed = speed;
+    r.wheel.spin = spin;
+    builder.add(r);
+    return builder.take().slip_ratio;
+  };
+  EXPECT_NEAR(ratio(0.2, 8.0, 20.0), 0.25, 1e-15);
+  EXPECT_NEAR(ratio(-0.25, 10.0, 16.0), -0.2, 1e-15);
+  EXPECT_NEAR(ratio(0.2, -8.0, -20.0), 0.25, 1e-15) << "backwards";
+  EXPECT_EQ(ratio(-1e6, 10.0, 0.0), -1.0) << "locked";
+  EXPECT_EQ(ratio(1.0, 0.0, 20.0), 1e6) << "spins on the spot";
+  EXPECT_EQ(ratio(0.0, 1e-4, 0.0), 0.0) << "the rig says that it is at rest";
+}
+
 }  // namespace
 }  // namespace furrow

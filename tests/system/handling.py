@@ -112,6 +112,11 @@ class Handling(SystemTest):
                             file["QSY1"] + file["QSY2"] * axes["force_N"][0] / file["FNOMIN"])
                         self.assertAlmostEqual(axes["moment_Nm"][1], formula, delta=0.1)
 
+    def test_slip_ratio_is_beside_the_slip(self):
+        columns = self.run_of("braked", "--set", "rig.slip=-1")["columns"]
+        self.assertAlmostEqual(columns["slip"], -1.0, delta=1e-9)
+        self.assertAlmostEqual(columns["slip_ratio"], -0.5, delta=1e-9)
+
     def test_a_resumed_run_has_the_same_bits(self):
         scenario = {**STEADY, "run": {"step": 2e-4, "end": 0.4, "average_from": 0.2},
                     "checkpoint": {"interval": 0.1, "keep": 10}}

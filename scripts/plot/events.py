@@ -110,16 +110,23 @@ def driving_events(v):
     gear = v["gear"] if "gear" in v else np.zeros(0)
     for at in np.flatnonzero(np.diff(gear)) + 1:
         yield Event(v.time[at], f"gear {gear[at - 1]:.0f} to {gear[at]:.0f}", "vehicle", wheel_speed(v)[at], "m/s",
-                    "column gear; value: mean ω R of the wheels")
+                    "column gear; value: mean ω R of the driven wheels")
     for begin, end in stretches(v["shifting"] > 0.0 if "shifting" in v else np.zeros(1)):
         if end < len(v.time):
             yield Event(v.time[end], "shift is done", "vehicle", v.time[end] - v.time[begin], "s",
                         "column shifting back to 0; value: how long it took")
 
 
+def driven_wheels(v):
+    """Those with a torque beside the brake's; all where there is none or it is not known."""
+    return [wheel for wheel in v.wheels if "brake_torque_Nm" in wheel
+            and np.any(wheel["spindle_torque_Nm"] != wheel["brake_torque_Nm"])] or v.wheels
+
+
 def wheel_speed(v):
-    """Mean circumferential speed of the wheels, m/s."""
-    return sum(wheel["spin_rad_per_s"] * wheel.radius for wheel in v.wheels) / len(v.wheels)
+    """Mean circumferential speed of the driven wheels, m/s."""
+    driven = driven_wheels(v)
+    return sum(wheel["spin_rad_per_s"] * wheel.radius for wheel in driven) / len(driven)
 
 
 def meetings(v, touched):

@@ -63,7 +63,9 @@ def series(seed=1, **shape):
                        * RADIUS, "speed_m_per_s": speed, "spin_rad_per_s": np.where(locked, 0.0, 1.25 * speed / RADIUS),
                        "position_m": 2.5 + (-BASE / 2 if rear else BASE / 2) + way, "axle_height_m": height,
                        "lowest_point_m": SURFACE - sinkage, "sinkage_kinematic_m": SURFACE - (height - RADIUS),
-                       "suspension_travel_m": zero})
+                       "suspension_travel_m": zero, "brake_torque_Nm": zero})
+        if shape.get("dead_front") and not rear:
+            wheels[-1].update(spin_rad_per_s=0.1 + zero, spindle_torque_Nm=zero - 3.0, brake_torque_Nm=zero - 3.0)
     return vehicle, wheels
 
 
@@ -146,6 +148,12 @@ class Events(SystemTest):
         self.assertAlmostEqual(at["pitch changes", "rear axle"]["time_s"], meets, delta=0.01)
         self.assertAlmostEqual(at["pitch changes", "rear axle"]["value"], np.degrees(-0.02), delta=0.05)
         self.assertEqual(at["end", "vehicle"]["time_s"], END)
+
+    def test_wheels_that_nothing_drives_are_no_part_of_the_speed_of_a_change_of_gear(self):
+        told = [json.loads(self.told("--json", **shape).stdout) for shape in ({}, {"dead_front": True})]
+        value = [next(event for event in one["events"] if event["event"] == "gear 1 to 2") for one in told]
+        self.assertIn("of the driven wheels", value[0]["threshold"])
+        self.assertAlmostEqual(value[0]["value"], value[1]["value"], delta=1e-9)
 
     def test_a_vehicle_of_ones_own_is_read_where_it_is(self):
         car = read_json(ROOT / "vehicle/data/hmmwv.json")

@@ -19,6 +19,7 @@ vehicle::VehicleInputs vehicle_inputs(const vehicle::DriverInputs& inputs) {
   if (inputs.gear == gear_request::reverse) to.selector = Selector::reverse;
   if (inputs.gear == gear_request::neutral) to.selector = Selector::neutral;
   to.gear = std::max(0, inputs.gear);
+  to.lock = inputs.lock;
   return to;
 }
 

@@ -55,6 +55,7 @@ void measure_driver(const vehicle::DriverInputs& inputs, const vehicle::Driver* 
   row.throttle = inputs.throttle;
   row.brake = inputs.brake;
   row.steering = inputs.steering;
+  row.lock = inputs.lock ? 1.0 : 0.0;
   if (!driver) return;
   const vehicle::DriverRecord& record = driver->record();
   row.target_speed = record.target_speed;

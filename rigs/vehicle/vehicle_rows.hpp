@@ -58,6 +58,7 @@ struct VehicleRow {
   double shock_heat = 0.0;     // J
   double lowering_heat = 0.0;  // of the damper that lets the vehicle down, J
   double spring_energy = 0.0;  // J
+  double lock = 0.0;           // 1 while the driver locks the differentials that have a lock
 };
 void visit_fields(FieldsOf<VehicleRow> auto& r, auto&& visit) {
   using namespace column;
@@ -96,6 +97,7 @@ void visit_fields(FieldsOf<VehicleRow> auto& r, auto&& visit) {
   visit(r.shock_heat, cumulative("shock_heat_J", "J"));
   visit(r.lowering_heat, cumulative("lowering_heat_J", "J"));
   visit(r.spring_energy, instant("spring_energy_J", "J"));
+  visit(r.lock, mean("lock"));
 }
 
 }  // namespace furrow::rigs

@@ -174,6 +174,8 @@ void VehicleRigSpec::check_driver() const {
   if (!vehicle::can_steer(plan_.vehicle)) refuse_use("steering", inputs.steering, "no steering");
   if (!vehicle::can_drive(plan_.vehicle)) refuse_use("throttle", inputs.throttle, "neither engine nor motors");
   if (!vehicle::can_brake(plan_.vehicle)) refuse_use("brake", inputs.brake, "no brakes");
+  if (!inputs.lock.empty() && !vehicle::can_lock(plan_.vehicle))
+    refuse("gives lock", "no differential with a lock_torque");
 }
 
 /// With the tires' masses it can be seen how the vehicle stands.

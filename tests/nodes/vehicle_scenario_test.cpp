@@ -87,7 +87,7 @@ TEST(VehicleScenario, changes_the_tires_of_all_wheels_of_each_axle_or_of_each_wh
 }
 
 TEST(VehicleScenario, completed_text_is_a_scenario_that_gives_the_same_digest_from_any_folder) {
-  const json driver = {{"inputs", {{"gear", {{0, 1}, {1, "auto"}}}}},
+  const json driver = {{"inputs", {{"gear", {{0, 1}, {1, "auto"}}}, {"lock", {{0, 1}, {2, 0}}}}},
                        {"speed", {{"target", 5}}},
                        {"path", {{"kind", "circle"}, {"radius", 30}, {"steering", {{"law", "stanley"}}}}}};
   json document = hmmwv();
@@ -186,6 +186,16 @@ TEST(VehicleScenario, wrong_combinations_are_refused_by_key) {
   EXPECT_EQ(complaint(foreign),
             ": key 'rig.vehicle': is a key of type 'vehicle', but rig.type is 'drawbar', expected "
             "keys of that type alone");
+}
+
+TEST(VehicleScenario, locks_need_a_differential_that_has_one) {
+  json document = hmmwv(), open = vehicle_text("hmmwv.json");
+  document["rig"]["driver"] = {{"inputs", {{"lock", {{0, 0}, {1, 1}}}}}};
+  EXPECT_EQ(complaint(document), "");
+  for (json& differential : open["driveline"]["differentials"]) differential.erase("lock_torque");
+  EXPECT_EQ(OwnVehicle(document, open).complaint(),
+            ": key 'rig.driver': gives lock, expected a driver that does not: the vehicle HMMWV has no differential "
+            "with a lock_torque");
 }
 
 // Motors turn backward in gear -1 without a gearbox; without either nothing does.

@@ -132,6 +132,45 @@ TEST(VehicleRig, shifts_by_itself_and_holds_the_gear_that_its_driver_asks_for) {
   EXPECT_NEAR(held->live().speed, of_vehicle(*held, "speed_m_s"), 0.0);
 }
 
+// The rear right wheel stands on ice. Without a lock it spins; locked, both outputs turn alike, or the clutch between
+// them slips and moves its torque from one to the other.
+TEST(VehicleRig, locks_its_differentials_while_its_driver_says_so) {
+  Track road, ice;
+  ice.friction = 0.02;
+  const auto drive = [&](double lock_torque, double& faster, double& torque) {
+    rigs::VehicleRigPlan plan = vehicle_plan(
+        "hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", 1}, {"lock", json::array({{0, 0}, {1.5, 1}})}}}});
+    for (vehicle::DifferentialSpec& one : plan.vehicle.driveline.differentials) one.lock_torque.reset();
+    plan.vehicle.driveline.differentials.back().lock_torque = lock_torque;
+    const auto rig = road.rig(plan, 0.001);
+    const auto run = [&](double duration, const std::function<void()>& after) {
+      std::vector<Wrench> wrenches(4);
+      for (int i = 0; i < std::lround(duration / road.step); ++i) {
+        for (int k = 0; k < 4; ++k) wrenches[k] = (k == 3 ? ice : road).wrench(rig->rim(k));
+        ASSERT_TRUE(rig->advance(wrenches, road.step, 1).ok);
+        if (after) after();
+      }
+    };
+    run(1.4, {});
+    EXPECT_GT(rig->report(3).spin, 1.5 * rig->report(2).spin) << "open";
+    EXPECT_EQ(of_vehicle(*rig, "lock"), 0.0);
+    run(0.9, {});
+    faster = torque = 0.0;
+    run(0.2, [&] {
+      faster += (rig->report(3).spin - rig->report(2).spin) / 400;
+      torque += (rig->report(2).drive_torque - rig->report(3).drive_torque) / 400;
+    });
+    EXPECT_EQ(of_vehicle(*rig, "lock"), 1.0);
+  };
+  double faster = 0.0, torque = 0.0;
+  drive(1e5, faster, torque);
+  EXPECT_NEAR(faster, 0.0, 1e-3);
+  EXPECT_GT(torque, 250.0);
+  drive(100.0, faster, torque);
+  EXPECT_GT(faster, 1.0);
+  EXPECT_NEAR(torque, 2.0 * 100.0, 10.0);
+}
+
 TEST(VehicleRig, drives_backwards_in_reverse_and_not_at_all_in_neutral) {
   const Track track;
   const auto back = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", -1}}}}));

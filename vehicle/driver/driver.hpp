@@ -1,4 +1,4 @@
-// A driver: from what a vehicle does now to throttle, brake, steering and gear.
+// A driver: from what a vehicle does now to throttle, brake, steering, gear and differential locks.
 #pragma once
 
 #include <cmath>
@@ -33,12 +33,14 @@ struct DriverInputs {
   double brake = 0.0;                  // 0 to 1
   double steering = 0.0;               // −1 to 1, positive to the left
   int gear = gear_request::automatic;  // or reverse, neutral, 1, 2, …
+  bool lock = false;                   // of all differentials that have one
 };
 void visit_fields(FieldsOf<DriverInputs> auto& s, auto&& visit) {
   visit(s.throttle, Field{"throttle", "-", role::column});
   visit(s.brake, Field{"brake", "-", role::column});
   visit(s.steering, Field{"steering", "-", role::column});
   visit(s.gear, Field{"gear_request", "-", role::column});
+  visit(s.lock, Field{"lock", "-", role::column});
 }
 
 /// What a driver knows of its vehicle.

@@ -100,6 +100,10 @@ bool can_brake(const VehicleSpec& spec) { return brake_force(spec, 1.0) > 0.0; }
 
 bool can_drive(const VehicleSpec& spec) { return engine_force(spec, 1.0) + motor_force(spec, 1.0) > 0.0; }
 
+bool can_lock(const VehicleSpec& spec) {
+  return std::ranges::any_of(spec.driveline.differentials, [](const auto& one) { return one.lock_torque.has_value(); });
+}
+
 DriverCar driver_car(const VehicleSpec& spec, std::span<const double> radii, double tire_width, double mass) {
   FURROW_ASSERT(radii.size() == 2 * spec.axles.size(), radii.size(), spec.axles.size());
   FURROW_ASSERT(mass > 0.0 && tire_width >= 0.0, mass, tire_width);

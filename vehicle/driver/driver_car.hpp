@@ -27,6 +27,8 @@ bool can_steer(const VehicleSpec& spec);
 bool can_drive(const VehicleSpec& spec);
 /// Whether a wheel has a brake.
 bool can_brake(const VehicleSpec& spec);
+/// Whether a differential has a lock.
+bool can_lock(const VehicleSpec& spec);
 
 /// @param radii of the tires, m, one for each wheel @param tire_width the widest tire's, m @param mass with tires, kg
 /// @post every member is above zero. @throws Error(physics) naming a suspension that cannot be steered

@@ -21,12 +21,13 @@ inline constexpr double kMostLength = 1e6;  // of paths, m
 inline constexpr Allowed kSeries = allowed::shaped(R"({"allOf": [{"$ref": "#/definitions/series"}]})");
 }  // namespace keys
 
-/// Functions of time; one that is empty was not given. Between points pedals and steering are straight lines, and the
-/// gear stays.
+/// Functions of time; one that is empty was not given. Between points pedals and steering are straight lines, gear and
+/// lock stay.
 struct InputSpec {
   DriverPoints throttle, brake;  // 0 to 1
   DriverPoints steering;         // −1 to 1, positive to the left
   DriverPoints gear;             // gear_request, or 1, 2, …
+  DriverPoints lock;             // of differentials, 0 or 1
 };
 void visit_fields(FieldsOf<InputSpec> auto& s, auto&& visit) {
   using namespace allowed;
@@ -34,6 +35,7 @@ void visit_fields(FieldsOf<InputSpec> auto& s, auto&& visit) {
   visit(s.brake, key("brake", "-", role::by_hand, keys::kSeries, "0 to 1"));
   visit(s.steering, key("steering", "-", role::by_hand, keys::kSeries, "-1 to 1, positive to the left"));
   visit(s.gear, key("gear", "-", role::by_hand, shaped(R"({"$ref": "#/definitions/gear"})"), ""));
+  visit(s.lock, key("lock", "-", role::by_hand, shaped(R"({"$ref": "#/definitions/lock"})"), ""));
 }
 
 /// speed_control.hpp

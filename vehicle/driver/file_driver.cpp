@@ -22,9 +22,9 @@ void visit_fields(FieldsOf<FileDriverState> auto& s, auto&& visit) {
   visit(s.record, Field{"record", ""});
 }
 
-/// The value of the last point that has been reached, or else of the first.
-int gear_at(const DriverPoints& points, double time) {
-  if (points.empty()) return gear_request::automatic;
+/// The value of the last point that has been reached, or else of the first; without points the given one.
+int step_at(const DriverPoints& points, double time, int without) {
+  if (points.empty()) return without;
   const auto next =
       std::upper_bound(points.begin(), points.end(), time, [](double t, const auto& point) { return t < point.first; });
   return static_cast<int>(next == points.begin() ? next->second : std::prev(next)->second);
@@ -36,7 +36,8 @@ class FileDriver final : public Driver {
       : throttle_(table_of_time("throttle", spec.inputs.throttle)),
         brake_(table_of_time("brake", spec.inputs.brake)),
         steering_(table_of_time("steering", spec.inputs.steering)),
-        gear_(spec.inputs.gear) {
+        gear_(spec.inputs.gear),
+        lock_(spec.inputs.lock) {
     if (spec.speed) speed_.emplace(*spec.speed, car);
     if (spec.path) path_.emplace(*spec.path, car);
   }
@@ -45,7 +46,8 @@ class FileDriver final : public Driver {
     FURROW_ASSERT(view.position.allFinite() && view.velocity.allFinite() && std::isfinite(view.yaw), view.time);
     DriverRecord& record = state_.record;
     DriverInputs& inputs = record.inputs;
-    inputs.gear = gear_at(gear_, view.time);
+    inputs.gear = step_at(gear_, view.time, gear_request::automatic);
+    inputs.lock = step_at(lock_, view.time, 0) == 1;
     if (speed_) {
       record.target_speed = speed_->target(view.time);
       speed_->press(view.time, view.speed(), state_.speed, inputs);
@@ -65,7 +67,7 @@ class FileDriver final : public Driver {
 
  private:
   Table throttle_, brake_, steering_;
-  DriverPoints gear_;
+  DriverPoints gear_, lock_;
   std::optional<SpeedControl> speed_;
   std::optional<PathFollower> path_;
   FileDriverState state_;

@@ -1,8 +1,9 @@
-// The driver of a driver file. It has three parts, each of which follows tables of time or closes a loop:
+// The driver of a driver file. It has four parts, each of which follows tables of time or closes a loop:
 //
 //   pedals    tables, or a speed held by a PI law (speed_control.hpp)
 //   steering  a table, or a path followed by looking ahead (path_follower.hpp)
 //   gear      a table, or left to the gearbox
+//   lock      a table
 #pragma once
 
 #include <memory>

@@ -38,6 +38,7 @@ constexpr PointRule kGear{"time_s",
                           "auto",
                           gear_request::automatic,
                           true};
+constexpr PointRule kLock{"time_s", "lock", 0.0, 1.0, "0 (open) or 1 (locked)", nullptr, 0.0, true};
 constexpr PointRule kSpeed{"time_s", "speed_m_s", 0.0, 100.0, "a speed from 0 to 100"};
 constexpr PointRule kWaypoint{"x_m", "y_m", -keys::kMostLength, keys::kMostLength, "at most 1e6"};
 
@@ -56,6 +57,15 @@ constexpr const char* kGearSchema =
                        "items": [{"type": "number"},
                                  {"anyOf": [{"const": "auto"},
                                             {"type": "integer", "minimum": -1, "maximum": 20}]}]}}]})";
+
+constexpr const char* kLockSchema =
+    R"({"description": "Locks of all differentials that have one, 0 (open) or 1 (locked); or points )"
+    R"([time in s, lock], each of which holds until the next; or the name of a CSV file. )"
+    R"(Not for vehicles without locks.",
+  "anyOf": [{"enum": [0, 1]}, {"type": "string"},
+            {"type": "array", "minItems": 1,
+             "items": {"type": "array", "minItems": 2, "maxItems": 2,
+                       "items": [{"type": "number"}, {"enum": [0, 1]}]}}]})";
 
 // What is read apart of each choice.
 
@@ -128,15 +138,17 @@ SpeedSpec read_speed(JsonReader reader) {
   return spec;
 }
 
-constexpr std::array<std::pair<const PointRule*, DriverPoints InputSpec::*>, 4> kInputs = {{
+constexpr std::array<std::pair<const PointRule*, DriverPoints InputSpec::*>, 5> kInputs = {{
     {&kThrottle, &InputSpec::throttle},
     {&kBrake, &InputSpec::brake},
     {&kSteering, &InputSpec::steering},
     {&kGear, &InputSpec::gear},
+    {&kLock, &InputSpec::lock},
 }};
 
 InputSpec read_inputs(const std::filesystem::path& file) {
-  const CsvFile csv(file, "a CSV file of a driver's inputs", {"time_s", "throttle", "brake", "steering", "gear"});
+  const CsvFile csv(file, "a CSV file of a driver's inputs",
+                    {"time_s", "throttle", "brake", "steering", "gear", "lock"});
   InputSpec spec;
   for (const auto& [rule, points] : kInputs)
     if (csv.has(rule->second)) spec.*points = read_points(csv, *rule);
@@ -162,7 +174,8 @@ void check_parts(const DriverSpec& spec, const JsonReader& reader) {
   refuse(spec.speed && !spec.inputs.brake.empty(), "brake", "speed");
   refuse(spec.path && !spec.inputs.steering.empty(), "steering", "path");
   const InputSpec& i = spec.inputs;
-  if (!spec.speed && !spec.path && i.throttle.empty() && i.brake.empty() && i.steering.empty() && i.gear.empty())
+  const bool any = std::ranges::any_of(kInputs, [&](const auto& input) { return !(i.*input.second).empty(); });
+  if (!spec.speed && !spec.path && !any)
     reader.fail("", "gives the driver nothing to do, expected 'inputs', 'speed' or 'path'");
 }
 
@@ -217,7 +230,7 @@ nlohmann::ordered_json driver_schema() {
   Json root = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Furrow driver"}};
   root.update(
       object_schema("What a driver does, against time or in closed loops. SI units. A CSV file with the column time_s "
-                    "and any of throttle, brake, steering and gear is a driver file too."));
+                    "and any of throttle, brake, steering, gear and lock is a driver file too."));
   root["anyOf"] = {{{"required", {"inputs"}}}, {{"required", {"speed"}}}, {{"required", {"path"}}}};
   add_key(root, key("$schema"), {{"type", "string"}});
   add_key(root, needed("format_version"), {{"const", 1}});
@@ -232,6 +245,7 @@ nlohmann::ordered_json driver_schema() {
   Json& parts = writer.definitions;
   parts["series"] = Json::parse(kSeriesSchema);
   parts["gear"] = Json::parse(kGearSchema);
+  parts["lock"] = Json::parse(kLockSchema);
   parts["inputs"] = writer.object<InputSpec>("Functions of time.");
   parts["speed"] = writer.object<SpeedSpec>("Holds a speed by a PI law that presses throttle or brake.");
   parts["steering"] = {{"oneOf", choice(PathSteeringSpec{}, SteeringLaw{}, key("law"))},

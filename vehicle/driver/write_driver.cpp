@@ -73,7 +73,8 @@ json driver_document(const DriverSpec& spec) {
   json inputs = json::object();
   for (const auto& [key, points] : {std::pair{"throttle", &spec.inputs.throttle},
                                     {"brake", &spec.inputs.brake},
-                                    {"steering", &spec.inputs.steering}})
+                                    {"steering", &spec.inputs.steering},
+                                    {"lock", &spec.inputs.lock}})
     if (!points->empty()) inputs[key] = pairs(*points);
   if (!spec.inputs.gear.empty()) inputs["gear"] = gears(spec.inputs.gear);
   if (!inputs.empty()) document["inputs"] = inputs;

@@ -50,6 +50,7 @@ TEST(FileDriver, follows_its_tables) {
   spec.inputs.brake = {{3.0, 0.25}};
   spec.inputs.steering = {{1.0, -0.5}, {2.0, 0.5}, {2.0 + 1e-9, 0.0}};
   spec.inputs.gear = {{1.0, gear_request::reverse}, {2.0, 3}, {4.0, gear_request::automatic}};
+  spec.inputs.lock = {{1.0, 0}, {2.5, 1}, {3.5, 0}};
   const auto driver = make_driver(spec, test_car());
   const auto at = [&](double time) {
     DriverView view;
@@ -65,6 +66,9 @@ TEST(FileDriver, follows_its_tables) {
   EXPECT_EQ(at(1.999).gear, gear_request::reverse);
   EXPECT_EQ(at(2.0).gear, 3);
   EXPECT_EQ(at(2.1).steering, 0.0);
+  EXPECT_FALSE(at(2.499).lock);
+  EXPECT_TRUE(at(2.5).lock);
+  EXPECT_FALSE(at(3.5).lock);
   EXPECT_EQ(at(5.0).throttle, 1.0);
   EXPECT_EQ(at(5.0).gear, gear_request::automatic);
 }
@@ -77,6 +81,7 @@ TEST(FileDriver, without_a_table_does_nothing_and_leaves_the_gear) {
   EXPECT_EQ(inputs.throttle, 0.0);
   EXPECT_EQ(inputs.brake, 0.0);
   EXPECT_EQ(inputs.gear, gear_request::automatic);
+  EXPECT_FALSE(inputs.lock);
 }
 
 TEST(FileDriver, goes_on_bit_for_bit_wherever_it_was_saved) {

@@ -67,13 +67,15 @@ TEST_F(DriverFile, all_its_keys_are_read) {
 
 TEST_F(DriverFile, says_the_same_in_json_and_csv) {
   const DriverSpec from_json = read(R"(, "inputs": {"throttle": [[0, 0], [0.5, 0], [0.6, 1]],
-    "gear": [[0, 1], [0.5, 1], [0.6, "auto"]]})");
+    "gear": [[0, 1], [0.5, 1], [0.6, "auto"]], "lock": [[0, 0], [0.5, 1], [0.6, 0]]})");
   const auto csv =
-      write("inputs.csv", "\xEF\xBB\xBF# a start\r\ntime_s, throttle, gear\r\n0,0,1\r\n\r\n0.5,0,1\r\n0.6,1,auto\r\n");
+      write("inputs.csv",
+            "\xEF\xBB\xBF# a start\r\ntime_s, throttle, gear, lock\r\n0,0,1,0\r\n\r\n0.5,0,1,1\r\n0.6,1,auto,0\r\n");
   const DriverSpec direct = read_driver(csv), named = read(R"(, "inputs": "inputs.csv")");
   for (const DriverSpec* spec : {&direct, &named}) {
     EXPECT_EQ(spec->inputs.throttle, from_json.inputs.throttle);
     EXPECT_EQ(spec->inputs.gear, from_json.inputs.gear);
+    EXPECT_EQ(spec->inputs.lock, from_json.inputs.lock);
     EXPECT_TRUE(spec->inputs.brake.empty());
   }
   write("speed.csv", "time_s,speed_m_s\n0,0\n2,5\n");
@@ -106,6 +108,9 @@ TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
        "key 'inputs.gear': is 'D', expected a list of [time_s, gear], the name of a CSV file or 'auto', "},
       {R"(, "inputs": {"gear": -2})", "gear is -2, expected 'auto'"},
       {R"(, "inputs": {"gear": [[0, "drive"]]})", "key 'inputs.gear[0]': gear is 'drive', expected 'auto'"},
+      {R"(, "inputs": {"lock": 0.5})", "key 'inputs.lock': lock is 0.5, expected 0 (open) or 1 (locked)"},
+      {R"(, "inputs": {"lock": [[0, 0], [1, 2]]})", "key 'inputs.lock[1]': lock is 2, expected 0 (open) or 1 (locked)"},
+      {R"(, "inputs": {"lock": true})", "key 'inputs.lock': is true, expected a list of [time_s, lock]"},
       {R"(, "inputs": "none.csv")", "key 'inputs': 'none.csv' does not exist"},
       {R"(, "inputs": {"throttle": 1}, "speed": {"target": 4})", "key 'inputs': gives throttle beside 'speed'"},
       {R"(, "inputs": {"brake": 1}, "speed": {"target": 4})", "key 'inputs': gives brake beside 'speed'"},

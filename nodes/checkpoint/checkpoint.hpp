@@ -22,6 +22,7 @@ namespace furrow::checkpoint {
 
 struct CheckpointManifest {
   std::string version, build, cpu;  // of the program and the machine that wrote it
+  std::string arithmetic;           // arithmetic_id() there
   std::string name;                 // of the scenario
   std::string scenario;             // completed, JSON
   std::string scenario_digest;
@@ -40,6 +41,7 @@ void visit_fields(FieldsOf<CheckpointManifest> auto& s, auto&& visit) {
   visit(s.version, Field{"version", ""});
   visit(s.build, Field{"build", ""});
   visit(s.cpu, Field{"cpu", ""});
+  visit(s.arithmetic, Field{"arithmetic", ""});
   visit(s.name, Field{"name", ""});
   visit(s.scenario_digest, Field{"scenario_digest", ""});
   visit(s.file_hashes, Field{"file_hashes", ""});

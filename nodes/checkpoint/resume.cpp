@@ -255,6 +255,10 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   if (manifest.build != build_id())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another build of furrow (" + manifest.version +
                             "): the run continues, but not bit for bit");
+  else if (manifest.arithmetic != arithmetic_id())
+    plan.warnings.push_back(run.string() +
+                            ": the checkpoint is of a machine or setting where the C library's mathematical functions "
+                            "give other last digits: the run continues, but not bit for bit");
   else if (manifest.cpu != cpu_model())
     plan.warnings.push_back(run.string() + ": the checkpoint is of another processor (" + manifest.cpu +
                             "): the run continues, perhaps not bit for bit");

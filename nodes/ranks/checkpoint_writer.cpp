@@ -84,6 +84,7 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step, std
   m.version = FURROW_VERSION;
   m.build = build_;
   m.cpu = cpu_model();
+  m.arithmetic = arithmetic_id();
   m.name = scenario_.name;
   m.scenario = scenario_.completed;
   m.scenario_digest = scenario_.digest;

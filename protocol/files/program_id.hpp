@@ -8,8 +8,9 @@ namespace furrow {
 
 /// A hash of the program's own file: another build has another one.
 std::string build_id();
-/// Tells builds apart whose numbers may differ: a digest of the compiler, its target and its options for arithmetic,
-/// made when the build is configured. Sources do not count: whoever changes what is kept raises its format.
+/// Distinguishes programs whose numbers may differ in their last bits: a digest of the compiler, its target and its
+/// options for arithmetic, made when the build is configured, and a hash of what the C library's mathematics give here.
+/// Sources do not count: whoever changes what is kept raises its format.
 std::string arithmetic_id();
 /// "model name" of the processor.
 std::string cpu_model();

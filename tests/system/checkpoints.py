@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from checkpoint_runs import FAULTY, FLEXIBLE, INTERVAL, STEPS, CheckpointTest, steps, summary, table
-from program import PROGRAM, main, read_json, write_json
+from program import HAS_OTHER_MATHEMATICS, OTHER_MATHEMATICS, PROGRAM, main, read_json, write_json
 
 
 class Signals(CheckpointTest):
@@ -158,6 +158,12 @@ class Resume(CheckpointTest):
     def test_another_build_is_warned_of(self):
         self.copy_of_whole()
         self.furrow("resume", self.run_folder, "--no-plots", says="the checkpoint is of another build of furrow")
+
+    @unittest.skipUnless(HAS_OTHER_MATHEMATICS, "needs a processor with FMA")
+    def test_other_mathematics_of_the_c_library_are_warned_of(self):
+        self.copy_of_whole()
+        done = self.resume(env=OTHER_MATHEMATICS, says="the C library's mathematical functions give other last digits")
+        self.assertEqual(done.stderr.count("not bit for bit"), 1)
 
     def test_under_the_users_mpirun(self):
         self.run_with_fault("step", 0, 250, "kill")

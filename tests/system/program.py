@@ -20,6 +20,10 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("FURROW", str(ROOT / "build" / "furrow"))
 
+# Of an environment in which the C library's mathematics round otherwise, and whether the processor can show it.
+OTHER_MATHEMATICS = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-AVX512F,-FMA,-FMA4,-AVX"}
+HAS_OTHER_MATHEMATICS = " fma " in pathlib.Path("/proc/cpuinfo").read_text()
+
 # A rigid wheel on a few large grains.
 SMALL = {
     "format_version": 1,

@@ -6,8 +6,10 @@ import os
 import pathlib
 import signal
 import time
+import unittest
 
-from program import SystemTest, changed, furrow, main, read_json, start, wait_for, write_json, write_scenario
+from program import (HAS_OTHER_MATHEMATICS, OTHER_MATHEMATICS, SystemTest, changed, furrow, main, read_json, start,
+                     wait_for, write_json, write_scenario)
 
 PLOTS = os.access("/usr/bin/python3", os.X_OK)
 
@@ -52,6 +54,15 @@ class Bed(WithCache):
         named, _ = self.run_json("bed", path, "--set", f"terrain.bed={cached}")
         self.assertEqual(named["depth_m"], first["depth_m"])
         self.assertIsNone(named["cache_file"])
+
+    @unittest.skipUnless(HAS_OTHER_MATHEMATICS, "needs a processor with FMA")
+    def test_a_bed_of_other_mathematics_is_another(self):
+        path = write_scenario(self.work)
+        first, _ = self.run_json("bed", path)
+        self.env.update(OTHER_MATHEMATICS)
+        other, _ = self.run_json("bed", path)
+        self.assertFalse(other["from_cache"])
+        self.assertNotEqual(other["cache_file"], first["cache_file"])
 
     def test_positions_of_the_users_own(self):
         rows = ["x_m,y_m,z_m"] + [f"{0.05 + 0.065 * i},{-0.15 + 0.065 * j},{0.04 + 0.062 * k}"

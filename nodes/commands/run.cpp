@@ -129,7 +129,14 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
                                      : result.error);
     return result.code == ExitCode::done ? ExitCode::io : result.code;
   }
-  if (result.code != ExitCode::done && written(directory.path() / kDone) > done_before) {
+  const bool finished = result.code != ExitCode::done && written(directory.path() / kDone) > done_before;
+  if (finished && result.code == ExitCode::io) {  // the checkpoint of the end is missing
+    tell_result(scenario, directory.path(), arguments.plots);
+    print_error(result.error);
+    std::cout << directory.path().string() << "\n";
+    return result.code;
+  }
+  if (finished) {
     print_warning("the run had finished before this happened: " + result.error);
     result.code = ExitCode::done;
   }

@@ -61,7 +61,7 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
   return part;
 }
 
-void CheckpointWriter::write(std::int64_t step, bool needed) {
+void CheckpointWriter::write(std::int64_t step, CheckpointNeed need) {
   FURROW_ASSERT(step > 0, step);
   FURROW_ASSERT(step > last_step_, step, last_step_);
   if (context_.directory.empty()) return;
@@ -71,7 +71,7 @@ void CheckpointWriter::write(std::int64_t step, bool needed) {
   if (context_.held) context_.held->check();
   const CheckpointPart own = write_part(step);
   if (transport_.self() == kRig) {
-    complete(own, needed);
+    complete(own, need);
   } else {
     send(transport_, kRig, own);
     transport_.flush();
@@ -104,7 +104,7 @@ checkpoint::CheckpointManifest CheckpointWriter::manifest(std::int64_t step, std
   return m;
 }
 
-void CheckpointWriter::complete(CheckpointPart own, bool needed) {
+void CheckpointWriter::complete(CheckpointPart own, CheckpointNeed need) {
   FURROW_ASSERT(transport_.self() == kRig, to_string(transport_.self()));
   const std::int64_t step = own.step;
   std::string problem = own.problem;
@@ -127,8 +127,11 @@ void CheckpointWriter::complete(CheckpointPart own, bool needed) {
   checkpoint::drop_unfinished_checkpoint(context_.directory, step);
   const std::string text = fmt::format("the checkpoint at t = {:.6g} s could not be written: {}",
                                        static_cast<double>(step) * scenario_.run.step, problem);
-  if (needed) throw Error(ExitCode::io, text);
-  if (context_.note) context_.note("warning: " + text + "; the run continues");
+  if (need == CheckpointNeed::needed) throw Error(ExitCode::io, text);
+  if (need == CheckpointNeed::last)
+    lost_ = text;
+  else if (context_.note)
+    context_.note("warning: " + text + "; the run continues");
 }
 
 void save_cost(Archive& archive, const NodeCost& cost) { save_fields(archive, kCost, cost); }

@@ -17,23 +17,30 @@ void visit_fields(FieldsOf<NodeCost> auto& s, auto&& visit) {
   visit(s.wait_s, Field{"wait_s", "s"});
 }
 
+/// How much depends on a checkpoint.
+enum class CheckpointNeed {
+  wished,  // one that cannot be written leaves those before it in place: the user is warned and the run continues
+  last,    // the run is complete with it: lost() says why it could not be written, once the results are
+  needed,  // the run stops with it: Error(io)
+};
+
 class CheckpointWriter {
  public:
   /// @param cost returns what this node has used until now
   CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport, const RunContext& context,
                    std::span<const NodeCard> cards, std::function<NodeCost()> cost);
 
-  /// All ranks call it at the same step. One that cannot be written leaves those before it in place: the user is warned
-  /// and the run continues.
-  /// @param needed the run ends with it: Error(io) instead
-  void write(std::int64_t step, bool needed);
+  /// All ranks call it at the same step.
+  void write(std::int64_t step, CheckpointNeed need);
 
   std::int64_t last_step() const { return last_step_; }
+  /// Why the last checkpoint of a complete run could not be written; empty if it was, and on all ranks but the rig's.
+  const std::string& lost() const { return lost_; }
 
  private:
   CheckpointPart write_part(std::int64_t step) const;
   checkpoint::CheckpointManifest manifest(std::int64_t step, std::vector<CheckpointPart> parts) const;
-  void complete(CheckpointPart own, bool needed);
+  void complete(CheckpointPart own, CheckpointNeed need);
 
   const scenario::Scenario& scenario_;
   Node& node_;
@@ -42,7 +49,7 @@ class CheckpointWriter {
   std::vector<NodeCard> cards_;
   std::function<NodeCost()> cost_;
   checkpoint::FrameClock frames_;
-  std::string build_;
+  std::string build_, lost_;
   double begin_;              // wall time, s
   double write_begin_ = 0.0;  // of the last checkpoint, wall time, s
   std::int64_t last_step_ = -1;

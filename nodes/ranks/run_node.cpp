@@ -63,6 +63,9 @@ class RunLoop {
     if (node_ && code != ExitCode::bad_input && code != ExitCode::stopped) node_->fail(code, text);
   }
 
+  /// Why the checkpoint of the end could not be written; empty if it was.
+  const std::string& lost() const { return lost_; }
+
   ExitCode run() {
     transport_.set_peer_timeout(scenario_.run.peer_timeout);
     Archive saved;
@@ -98,13 +101,17 @@ class RunLoop {
     profile_ = output::StepProfile(context_.profile ? steps : 0);
     wall_start_ = wall_clock(), cpu_start_ = cpu_s(), waited_start_ = transport_.wait_clock().waited_s;
     CheckpointWriter checkpoints(scenario_, *node_, transport_, context_, cards, [this] { return cost(); });
+    const auto at_end = scenario_.checkpoint.at_end ? CheckpointNeed::last : CheckpointNeed::wished;
     const std::int64_t at =
         run_steps(*node_, transport_, scenario_.run.step, from_, steps, &profile_, [&](std::int64_t n) {
-          checkpoints.write(n, node_->due() == Order::stop && n < std::min(steps, node_->ends_at()));
+          const bool complete = n >= std::min(steps, node_->ends_at());
+          checkpoints.write(n, complete                      ? at_end
+                               : node_->due() == Order::stop ? CheckpointNeed::needed
+                                                             : CheckpointNeed::wished);
         });
     const bool stopped = at < std::min(steps, node_->ends_at());
     if (!stopped) {
-      if (scenario_.checkpoint.at_end && checkpoints.last_step() != at) checkpoints.write(at, false);
+      if (scenario_.checkpoint.at_end && checkpoints.last_step() != at) checkpoints.write(at, at_end);
       node_->synchronize(transport_, {at, static_cast<double>(at) * scenario_.run.step});
       transport_.flush();
     }
@@ -121,6 +128,7 @@ class RunLoop {
     fault_point("results");
     node_->finish(transport_, own, stopped);
     fault_point("done");
+    lost_ = checkpoints.lost();
     return stopped ? ExitCode::stopped : ExitCode::done;
   }
 
@@ -138,6 +146,7 @@ class RunLoop {
   RunContext context_;
   std::unique_ptr<Node> node_;
   NodeCost cost_before_;
+  std::string lost_;
   output::StepProfile profile_{0};
   std::int64_t from_ = 0;
   double wall_start_ = 0.0, cpu_start_ = 0.0, waited_start_ = 0.0;
@@ -147,8 +156,9 @@ class RunLoop {
 
 ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, const RunContext& context) {
   RunLoop loop(scenario, transport, context);
+  ExitCode code = ExitCode::done;
   try {
-    return loop.run();
+    code = loop.run();
   } catch (const PeerFailure& failure) {
     loop.fail(failure.code(), failure.what());
     throw;
@@ -166,6 +176,10 @@ ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, cons
     loop.fail(error.code(), error.what());
     throw error;
   }
+  // The run itself has not failed: its results are complete, and no other rank need know.
+  if (!loop.lost().empty())
+    throw Error(ExitCode::io, loop.lost() + "; all results are written, but the run cannot be continued from its end");
+  return code;
 }
 
 }  // namespace furrow::ranks

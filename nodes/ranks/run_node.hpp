@@ -10,7 +10,7 @@ namespace furrow::ranks {
 /// Runs this rank's node to the end. Result files are written by the rank that owns them; the rig's writes the series,
 /// the summary and the index. Checkpoints are written as the scenario asks.
 /// @returns done, or stopped when a signal ended the run early, after a checkpoint
-/// @throws Error
+/// @throws Error; of code io after all results are written where the checkpoint of the end could not be
 ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, const RunContext& context);
 
 }  // namespace furrow::ranks

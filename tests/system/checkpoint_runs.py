@@ -71,9 +71,9 @@ class CheckpointTest(SystemTest):
         self.assertTrue(self.mark.exists(), f"the fault {point} of rank {rank} did not fire")
         return done
 
-    def start_waiting(self, point, rank, count, run=None, env=()):
+    def start_waiting(self, point, rank, count, run=None, env=(), flags=()):
         """A run that waits at the point until self.mark is removed."""
-        process = self.start("run", self.path, "--out", run or self.run_folder, "--no-plots", program=FAULTY,
+        process = self.start("run", self.path, "--out", run or self.run_folder, "--no-plots", *flags, program=FAULTY,
                              env={**self.fault(point, rank, count, "wait"), **dict(env)})
         wait_for(lambda: self.mark.exists() or process.poll() is not None, 150, "the fault fires")
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")

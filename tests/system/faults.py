@@ -10,7 +10,7 @@ import threading
 import time
 import unittest
 
-from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, steps, summary
+from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, differences, steps, summary
 from program import children, main, read_json, start, write_json
 
 # (point, rank, which time, step at which the run continues at the latest)
@@ -146,6 +146,39 @@ class LauncherThatDoesNotEnd(CheckpointTest):
         self.hung()
 
 
+class LostCheckpoint(CheckpointTest):
+    """Its folder is removed before it is complete."""
+    LOST = "s could not be written: "
+
+    def lose(self, count, step, flags=()):
+        """The count-th checkpoint, of this step. @returns the process, which goes on once its mark is removed"""
+        process = self.start_waiting("checkpoint.manifest", RANKS["rig"], count, flags=flags)
+        shutil.rmtree(self.run_folder / "checkpoints" / f".{step:012}.part")
+        return process
+
+    def test_before_the_end_is_a_warning(self):
+        told = self.released(self.lose(2, 200), says=f"furrow: warning: the checkpoint at t = 0.04 {self.LOST}")
+        self.assertNotIn("furrow: error", told)
+        self.same_as_whole()
+
+    def test_of_the_end_is_an_error_after_all_results_are_written(self):
+        for count, flags in ((STEPS // INTERVAL, ()), (1, ("--set", "checkpoint.interval=1"))):
+            with self.subTest(flags):
+                self.afresh()
+                self.released(self.lose(count, STEPS, flags), code=5, says=(
+                    f"furrow: error: the checkpoint at t = 0.1 {self.LOST}",
+                    "; all results are written, but the run cannot be continued from its end"))
+                self.assertFalse((self.run_folder / "summary_failed.json").exists())
+                self.assertRegex(" ".join(differences(self.whole, self.run_folder, ["scenario.json", "checkpoints/*"])),
+                                 r"^checkpoints: the newest is 000000000500 and (000000000400|none)$")
+                self.resume(says="is finished")
+
+    def test_of_the_end_that_nobody_asked_for_is_a_warning(self):
+        flags = ("--set", "checkpoint.at_end=false")
+        told = self.released(self.lose(STEPS // INTERVAL, STEPS, flags), says=self.LOST)
+        self.assertNotIn("furrow: error", told)
+
+
 class FullDisk(CheckpointTest):
     """On a real tmpfs of 8 MB, filled at the point."""
 
@@ -238,9 +271,9 @@ class Damaged(CheckpointTest):
 
     def test_of_a_newer_program(self):
         manifest = read_json(self.newest / "manifest.json")
-        manifest["format_version"] = 3
+        manifest["format_version"] = 4
         write_json(self.newest / "manifest.json", manifest)
-        self.goes_on_from_the_one_before("has format_version 3, but this program reads 2")
+        self.goes_on_from_the_one_before("has format_version 4, but this program reads 3")
 
     def test_of_another_scenario(self):
         manifests = sorted((self.run / "checkpoints").glob("*/manifest.json"))

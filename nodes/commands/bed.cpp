@@ -66,9 +66,8 @@ ExitCode make_bed(const scenario::Scenario& scenario) {
   launch::ProgressDisplay display;
   const double begin = wall_clock();
   const ProgressCall progress = launch::shown_on(display, " while the bed was being prepared");
-  const terrain::dem::PreparedBed prepared = terrain::dem::prepare_bed(grains, progress);
   terrain::dem::GrainSolver solver(terrain::dem::solver_params(grains));
-  terrain::dem::restore_bed(solver, prepared);
+  const terrain::dem::PreparedBed prepared = terrain::dem::load_bed(solver, grains, progress);
   const terrain::dem::BedStatistics statistics =
       terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius, progress);
   const double wall = wall_clock() - begin;

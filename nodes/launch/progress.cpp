@@ -111,7 +111,10 @@ void ProgressDisplay::clear() {
 ProgressCall shown_on(ProgressDisplay& display, const std::string& when) {
   return [&display, when](const std::string& what, double share) {
     if (stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal" + fmt::format(fmt::runtime(when), what));
-    display.show({.phase = what, .share = share});
+    if (what.starts_with(kWarning))
+      display.say_error("furrow: " + what);
+    else
+      display.show({.phase = what, .share = share});
   };
 }
 

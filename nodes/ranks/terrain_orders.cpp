@@ -33,6 +33,10 @@ ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& tra
     transport.check_peers();
     if (context.stop_requested && context.stop_requested())
       throw Error(ExitCode::stopped, "stopped by a signal while the bed was being prepared");
+    if (what.starts_with(kWarning)) {
+      if (context.note) context.note(what);
+      return;
+    }
     launch::Progress progress;
     progress.phase = what;
     progress.share = share;

@@ -61,9 +61,8 @@ class DemTerrain : public Terrain {
 
   double do_prepare(const ProgressCall& progress) override {
     const double begin = wall_clock();
-    const dem::PreparedBed prepared = dem::prepare_bed(dem::level(options_), progress);
     // A run from a cached bed and the run that settled it both start here, from the same archive.
-    dem::restore_bed(solver_, prepared);
+    const dem::PreparedBed prepared = dem::load_bed(solver_, dem::level(options_), progress);
     solver_.set_threads(std::max(1, options_.threads));
     set_step(dt_);
     solver_.reset_accounts();

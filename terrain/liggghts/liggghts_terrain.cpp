@@ -57,10 +57,9 @@ class LiggghtsTerrain final : public Terrain {
     dem::Stored stored;
     double elastic = 0.0;
     if (leads()) {
-      const dem::PreparedBed prepared = dem::prepare_bed(dem::level(options_), progress);
       dem::GrainSolver solver(dem::solver_params(options_));
       solver.set_coefficients(contacts_.coefficients());
-      dem::restore_bed(solver, prepared);
+      const dem::PreparedBed prepared = dem::load_bed(solver, dem::level(options_), progress);
       solver.reset_accounts();
       bed = starting_bed(solver);
       elastic = solver.accounts().elastic;

@@ -190,7 +190,7 @@ int run(int argc, char** argv) {
   } else {
     if (bench.rank == 0) {
       dem::GrainSolver solver(dem::solver_params(bench.options));
-      dem::restore_bed(solver, dem::prepare_bed(bench.options, {}));
+      dem::load_bed(solver, bench.options, {});
       bench.bed = starting_bed(solver);
     }
     broadcast(bench.bed.grains);

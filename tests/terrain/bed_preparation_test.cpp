@@ -309,6 +309,30 @@ TEST_F(Beds, a_bed_that_does_not_hold_together_is_refused_by_file_and_array) {
   EXPECT_TRUE(holds(told(forged), "holds a tire besides its grains"));
 }
 
+/// The same in the cache, where the next run settles it anew: with a warning, and with the same result.
+TEST_F(Beds, a_cached_bed_that_does_not_hold_together_is_settled_anew_and_replaced) {
+  const auto load = [&](bool refused) {
+    std::string warnings;
+    GrainSolver solver(solver_params(options_));
+    const PreparedBed prepared = load_bed(solver, options_, [&](const std::string& what, double) {
+      if (what.starts_with(kWarning)) warnings += what;
+    });
+    EXPECT_EQ(holds(warnings, "saved state 'position'"), refused) << warnings;
+    EXPECT_EQ(holds(warnings, prepared.file.string()), refused) << warnings;
+    return prepared;
+  };
+  const PreparedBed made = load(false);
+  Archive forged = made.bed;
+  std::vector<double> positions = forged.get<double>("position");
+  positions[5] = NAN;
+  forged.put("position", positions);
+  keep_bed(made.file, forged, bed_digest(options_));
+  const PreparedBed again = load(true);
+  EXPECT_FALSE(again.from_cache);
+  EXPECT_EQ(again.bed.arrays(), made.bed.arrays());
+  EXPECT_TRUE(load(false).from_cache);
+}
+
 TEST_F(Beds, compaction_makes_the_bed_denser_and_leaves_it_at_rest) {
   options_.cohesion = 80e3;
   const PreparedBed loose = prepare_bed(options_, {});
@@ -341,9 +365,8 @@ TEST_F(Beds, whatever_a_bed_lacks_is_told_with_its_file) {
     bed.remove(name);
     write_bed(options_.bed, bed);
     const std::string text = furrow::refusal(ExitCode::io, [&] {
-      const PreparedBed prepared = prepare_bed(options_, {});
       GrainSolver solver(solver_params(options_));
-      restore_bed(solver, prepared);
+      load_bed(solver, options_, {});
     });
     refused += !text.empty();
     EXPECT_TRUE(text.empty() || text.starts_with(options_.bed)) << name << ": " << text;

@@ -77,15 +77,16 @@ DemOptions falling(DemOptions o) {
 /// Progress of a part of the work under a name of its own.
 ProgressCall named(const char* part, const ProgressCall& progress) {
   if (!progress) return {};
-  return [part, &progress](const std::string& what, double share) { progress(part + what, share); };
+  return [part, &progress](const std::string& what, double share) {
+    progress(what.starts_with(kWarning) ? what : part + what, share);
+  };
 }
 
 /// Copies of a settled piece, joined and settled once more.
 Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
   const DemOptions of_piece = piece_of(options);
-  const PreparedBed piece = prepare_bed(of_piece, named("a piece of the bed: ", progress));
   GrainSolver solver(settling_params(of_piece));
-  restore_bed(solver, piece);
+  const PreparedBed piece = load_bed(solver, of_piece, named("a piece of the bed: ", progress));
   const std::vector<Quad> positions = tiled_positions(positions_by_id(solver), options, progress);
   // Only what is near a joint or a wall has much to move: the rest may sleep meanwhile.
   SolverParams params = settling_params(options);
@@ -117,6 +118,15 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
   return bed_archive(solver, options, result);
 }
 
+/// Takes from the bed's archive how it was settled.
+void read_settled(PreparedBed& prepared) {
+  const auto& settled = prepared.bed.get<double>("bed/settled", 4);
+  prepared.settled.settled = settled[0] != 0.0;
+  prepared.settled.force_ratio = settled[1];
+  prepared.settled.floor_error = settled[2];
+  prepared.settled.time = settled[3];
+}
+
 /// A cache that cannot be written costs time, not the run.
 bool keep(const std::filesystem::path& file, const DemOptions& options, Archive& bed, const ProgressCall& progress) {
   if (file.empty()) return false;
@@ -128,6 +138,15 @@ bool keep(const std::filesystem::path& file, const DemOptions& options, Archive&
     if (progress) progress(std::string("bed not cached: ") + error.what(), 1.0);
     return false;
   }
+}
+
+/// A bed that is settled now, whatever the cache holds.
+PreparedBed settled_anew(const DemOptions& options, const std::filesystem::path& file, const ProgressCall& progress) {
+  PreparedBed prepared;
+  prepared.bed = made_bed(options, progress, prepared.settled);
+  if (keep(file, options, prepared.bed, progress)) prepared.file = file;
+  read_settled(prepared);
+  return prepared;
 }
 
 }  // namespace
@@ -153,14 +172,6 @@ Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const 
   return bed;
 }
 
-void restore_bed(GrainSolver& solver, const PreparedBed& prepared) {
-  try {
-    solver.restore(prepared.bed);
-  } catch (const Error& error) {
-    throw Error(error.code(), prepared.file.string() + ": " + error.what());
-  }
-}
-
 void check_bed_options(const DemOptions& o) {
   check_tiling(o);
   if (o.compaction_pressure > 0.0 && !bed_is_settled_anew(o))
@@ -179,16 +190,23 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
   } else {
     prepared.file = options.cache ? bed_cache_file(bed_digest(options)) : std::filesystem::path();
     prepared.from_cache = from_cache(prepared.file, options, prepared.bed, progress);
-    if (!prepared.from_cache) {
-      prepared.bed = made_bed(options, progress, prepared.settled);
-      if (!keep(prepared.file, options, prepared.bed, progress)) prepared.file.clear();
-    }
+    if (!prepared.from_cache) return settled_anew(options, prepared.file, progress);
   }
-  const auto& settled = prepared.bed.get<double>("bed/settled", 4);
-  prepared.settled.settled = settled[0] != 0.0;
-  prepared.settled.force_ratio = settled[1];
-  prepared.settled.floor_error = settled[2];
-  prepared.settled.time = settled[3];
+  read_settled(prepared);
+  return prepared;
+}
+
+PreparedBed load_bed(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress) {
+  PreparedBed prepared = prepare_bed(options, progress);
+  try {
+    solver.restore(prepared.bed);
+  } catch (const Error& error) {
+    const std::string text = prepared.file.string() + ": " + error.what();
+    if (!prepared.from_cache) throw Error(error.code(), text);
+    if (progress) progress(kWarning + text + "; the bed is settled anew and the file replaced", 1.0);
+    prepared = settled_anew(options, prepared.file, progress);
+    solver.restore(prepared.bed);
+  }
   return prepared;
 }
 

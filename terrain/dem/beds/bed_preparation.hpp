@@ -22,8 +22,9 @@ DemOptions level(DemOptions options);
 /// @throws Error(bad_input) for what options or the user's file have wrong, Error(physics) when a grain is lost.
 PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress);
 
-/// Gives the solver the bed. @throws Error(io) naming its file when it does not hold together
-void restore_bed(GrainSolver& solver, const PreparedBed& prepared);
+/// The same, and gives the solver the bed. One of the cache that does not hold together is reported to `progress`, and
+/// made again. @throws Error(io) naming the user's file when that does not
+PreparedBed load_bed(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress);
 
 /// False for a settled bed from the user's file, which is taken as it is.
 bool bed_is_settled_anew(const DemOptions& options);

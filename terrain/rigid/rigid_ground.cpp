@@ -61,7 +61,11 @@ Vec3 flat_normal(const std::array<Vec3, 3>& x) {
 class RigidGround final : public Terrain {
  public:
   explicit RigidGround(const GroundOptions& options)
-      : Terrain(true), options_(options), profile_(options.profile), plane_(options.profile.empty()) {
+      : Terrain(true),
+        options_(options),
+        profile_(options.profile),
+        plane_(profile_.level(profile_.first(), profile_.last(), 0.0)),
+        height_(plane_ ? profile_.height(0.0) : 0.0) {
     check_values(options, options.scenario, "terrain");
   }
 
@@ -91,6 +95,7 @@ class RigidGround final : public Terrain {
   }
 
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
+  int plane_points(std::array<Vec3, 3> corner, std::array<GroundPoint, kMaxGroundPoints>& points) const;
   void press(GroundSurface& surface, double dt);
   void press_profile(GroundSurface& surface, const GroundLaw& law, double dt);
   void give_stated(GroundSurface& surface, double dt);
@@ -100,7 +105,8 @@ class RigidGround final : public Terrain {
 
   GroundOptions options_;
   GroundProfile profile_;
-  bool plane_;  // there is no profile
+  bool plane_;     // there is no profile, or it is level everywhere
+  double height_;  // of the plane, m
   std::vector<GroundSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
@@ -112,7 +118,7 @@ HeightField RigidGround::gather_height_field() const {
   field.cell = kFieldCell;
   field.x0 = 0.5 * kFieldCell;
   field.nx = field.ny = 1;
-  field.height = {0.0};
+  field.height = {height_};
   if (plane_) return field;
   field.cell = std::max(kLeastFieldCell, (profile_.last() - profile_.first()) / kFieldCells);
   field.x0 = profile_.first() - 0.5 * kFieldCells * field.cell;
@@ -148,12 +154,20 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
 
 void RigidGround::do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
   double deepest = 0.0;
-  for (const Vec3& x : start.position) deepest = std::max(deepest, plane_ ? -x.z() : profile_.depth(x.x(), x.z()));
+  for (const Vec3& x : start.position)
+    deepest = std::max(deepest, plane_ ? height_ - x.z() : profile_.depth(x.x(), x.z()));
   if (deepest > kMaxStartDepth)
     throw input_error("surface " + std::to_string(surfaces_.size()), "",
                       "starts " + std::to_string(deepest) + " m below the ground, expected at most " +
                           std::to_string(kMaxStartDepth) + " m");
   add_surface(mesh, material, start.position);
+}
+
+/// Integration points of the part of a triangle below the plane.
+int RigidGround::plane_points(std::array<Vec3, 3> corner, std::array<GroundPoint, kMaxGroundPoints>& points) const {
+  if (corner[0].z() >= height_ && corner[1].z() >= height_ && corner[2].z() >= height_) return 0;
+  for (Vec3& x : corner) x.z() -= height_;
+  return ground_points(corner, points);
 }
 
 /// Contact forces with the surface at `position`, moving with `velocity` for dt.
@@ -175,8 +189,7 @@ void RigidGround::press(GroundSurface& surface, double dt) {
   const auto& x = surface.position;
   for (int t = 0; t < static_cast<int>(surface.mesh.triangles.size()); ++t) {
     const auto& v = surface.mesh.triangles[t];
-    if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
-    const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
+    const int count = plane_points({x[v[0]], x[v[1]], x[v[2]]}, points);
     for (int i = 0; i < count; ++i) {
       const Vec3 velocity = weighted(points[i].weight, surface.velocity, v);
       const double force =
@@ -306,8 +319,7 @@ void RigidGround::measure(GroundSurface& surface) const {
   }
   const auto& x = surface.last;
   for (const auto& v : surface.mesh.triangles) {
-    if (x[v[0]].z() >= 0.0 && x[v[1]].z() >= 0.0 && x[v[2]].z() >= 0.0) continue;
-    const int count = ground_points({x[v[0]], x[v[1]], x[v[2]]}, points);
+    const int count = plane_points({x[v[0]], x[v[1]], x[v[2]]}, points);
     for (int i = 0; i < count; ++i)
       surface.pressed += 0.5 * options_.ground_stiffness * points[i].depth * points[i].depth * points[i].area;
   }

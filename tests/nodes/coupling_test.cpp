@@ -139,6 +139,16 @@ TEST(Coupling, one_thread_and_two_threads_give_the_same_bits) {
   EXPECT_EQ(hashes_after(scenario, 200, 1), hashes_after(scenario, 200, 2));
 }
 
+TEST(Coupling, a_level_profile_is_the_plane_bit_for_bit) {
+  testing::OneWheel level = testing::rigid_wheel_on_plane();
+  terrain::GroundOptions ground;
+  ground.profile = {{-1.0, 0.0}, {1.2, 0.0}, {3.0, 0.0}};
+  level.terrain = terrain::make_ground_spec(ground);
+  testing::InProcessRun on_plane(testing::rigid_wheel_on_plane().made()), on_profile(level.made());
+  on_plane.steps(0, 1000), on_profile.steps(0, 1000);
+  EXPECT_EQ(on_plane.hashes(), on_profile.hashes());
+}
+
 TEST(Coupling, another_seed_gives_another_state) {
   scenario::Scenario other = rigid_wheel_on_grains().made();
   other.run.seed = 2;

@@ -93,6 +93,28 @@ TEST(GroundProfile, a_wheel_on_its_level_part_is_pressed_as_on_the_plane) {
   EXPECT_NEAR(b->gather_state().elastic_energy / a->gather_state().elastic_energy, 1.0, 1e-9);
 }
 
+TEST(GroundProfile, level_everywhere_is_the_plane) {
+  const testing::Surface wheel = testing::wheel(0.4, 0.2, 60, 3);
+  const Vec3 velocity(0.5, 0.1, -0.01), axle(0.3, 0.0, 0.398);
+  const auto pushed = [&](const ProfilePoints& profile, double height) {
+    GroundOptions options;
+    options.profile = profile;
+    const SurfaceState start = placed(wheel, axle + height * Vec3::UnitZ(), velocity);
+    const auto ground = ground_under(wheel, start, options);
+    const Push result = push(*ground, start, 1e-3, 4);
+    EXPECT_EQ(ground->gather_mean_height(-1.0, 1.0, 0.0, 0.0), height);
+    return std::pair(result.sums, ground->gather_state().elastic_energy);
+  };
+  const auto plane = pushed({}, 0.0);
+  for (const double height : {0.0, 0.3}) {
+    const auto level = pushed({{-1.0, height}, {0.3, height}, {2.0, height}}, height);
+    const double most = 1e-9 * plane.first.force.norm();
+    EXPECT_LT((level.first.force - plane.first.force).norm(), most);
+    EXPECT_LT((level.first.tangential - plane.first.tangential).norm(), most);
+    EXPECT_NEAR(level.second / plane.second, 1.0, 1e-9);
+  }
+}
+
 /// A block whose lower right edge is led around the curb's edge and back.
 TEST(GroundProfile, contact_without_friction_and_damping_gives_back_what_it_took) {
   GroundOptions options;

@@ -37,6 +37,8 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   j["compaction_pressure_Pa"] = o.compaction_pressure;
   j["terrain"] = fields_json(o, role::bed);  // all keys that make the bed
   j["grains"] = bed.grains;
+  j["radius_m"] = o.radius;  // the median by number
+  j["radius_median_by_mass_m"] = bed.median_by_mass;
   j["depth_m"] = bed.depth;
   j["top_m"] = bed.top;
   j["solid_fraction"] = bed.solid_fraction;

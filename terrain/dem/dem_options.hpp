@@ -60,8 +60,9 @@ void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
             "Contact law. mindlin: Hertz–Mindlin with history. hertz_tanh: Hertz with friction regularised by tanh, as "
             "in Project Chrono, which has no static friction."));
   visit(s.material, keys::kMaterial);
-  visit(s.radius, key("radius", "m", kBed, from(1e-6).below(1).usual(0.0005, 0.05),
-                      "Grain radius; with size_spread the middle of the radii."));
+  visit(s.radius,
+        key("radius", "m", kBed, from(1e-6).below(1).usual(0.0005, 0.05),
+            "Grain radius; with size_spread the middle of the radii, which is their mean and median by number."));
   visit(s.density, key("density", "kg/m³", kBoth, from(1, 1e5).usual(500, 12000), "Density of a grain."));
   visit(s.young_modulus, key("young_modulus", "Pa", kBoth, from(1, 1e13).usual(1e5, 1e11),
                              "Young's modulus of the grains, law mindlin."));

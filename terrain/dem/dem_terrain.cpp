@@ -270,8 +270,14 @@ TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
   const double volume =
       grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * dem::mean_volume_ratio(options);
   e.expected_height = volume / (kLooseFraction * options.length * options.width);
-  e.text = fmt::format("about {} grains of {:g} mm, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
-                       1e3 * options.radius, options.law, 1e3 * e.expected_height, options.length, options.width);
+  const std::string sizes =
+      options.size_spread > 0.0
+          ? fmt::format(" (radii {:.3g} to {:.3g} mm, median by mass {:.3g} mm)", 1e3 * dem::smallest_radius(options),
+                        1e3 * dem::largest_radius(options), 1e3 * dem::median_radius_by_mass(options))
+          : "";
+  e.text =
+      fmt::format("about {} grains of {:g} mm{}, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
+                  1e3 * options.radius, sizes, options.law, 1e3 * e.expected_height, options.length, options.width);
   return e;
 }
 

@@ -1,9 +1,11 @@
 #include "terrain/dem/grain_sizes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -68,6 +70,21 @@ DemOptions of_one_size(DemOptions options, double radius) {
 double mean_volume_ratio(const DemOptions& o) {
   FURROW_ASSERT(o.size_spread >= 0.0 && o.size_spread < 1.0, o.size_spread);
   return 1.0 + 3.0 * o.size_spread * o.size_spread * relative_variance(o);
+}
+
+double median_radius_by_mass(const DemOptions& o) {
+  FURROW_ASSERT(o.size_spread >= 0.0 && o.size_spread < 1.0, o.size_spread);
+  constexpr int kParts = 2000;
+  const auto radius = [&](double part) { return o.radius * (1.0 + o.size_spread * (2.0 * part / kParts - 1.0)); };
+  std::vector<double> until{0.0};  // mass of the grains below the end of each part of the spread, of any unit
+  for (int k = 0; k < kParts; ++k) {
+    const double x = (2.0 * k + 1.0) / kParts - 1.0;
+    const double share = o.size_distribution == "uniform" ? 1.0 : std::exp(-0.5 * kCut * kCut * x * x);
+    until.push_back(until.back() + share * std::pow(radius(k + 0.5), 3));
+  }
+  const double half = 0.5 * until.back();
+  const auto above = std::upper_bound(until.begin(), until.end(), half);
+  return radius(static_cast<double>(above - until.begin()) - (*above - half) / (*above - *(above - 1)));
 }
 
 void draw_radii(const DemOptions& o, std::vector<Quad>& grains) {

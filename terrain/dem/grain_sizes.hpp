@@ -21,6 +21,9 @@ DemOptions of_one_size(DemOptions options, double radius);
 /// Mean volume of a drawn grain over that of a grain of `radius`.
 double mean_volume_ratio(const DemOptions& options);
 
+/// Half of the mass of drawn grains is of those that are not larger, m. `radius` is the median by number.
+double median_radius_by_mass(const DemOptions& options);
+
 /// Gives each grain a radius (its w, m), drawn in order from the seed.
 void draw_radii(const DemOptions& options, std::vector<Quad>& grains);
 

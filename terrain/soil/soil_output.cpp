@@ -9,6 +9,7 @@
 
 #include "protocol/files/fields_json.hpp"
 #include "protocol/files/text_file.hpp"
+#include "terrain/dem/grain_sizes.hpp"
 
 namespace furrow::terrain::soil {
 namespace {
@@ -260,6 +261,7 @@ json soil_json(const SoilRun& run) {
   j["units"] = {{"k_c", "N/m^(n+1)"}, {"k_phi", "N/m^(n+2)"}, {"n", "-"}};
   j["grains"] = {{"law", o.law},
                  {"radius_m", o.radius},
+                 {"radius_median_by_mass_m", dem::median_radius_by_mass(o)},
                  {"density_kg_m3", o.density},
                  {"friction", o.friction},
                  {"rolling_friction", o.rolling_friction},

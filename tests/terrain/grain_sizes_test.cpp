@@ -346,6 +346,27 @@ TEST(GrainSizes, drawn_radii_have_the_stated_mean_volume) {
   EXPECT_NEAR(mean_volume_ratio(uniform), 1.25, 1e-15);
 }
 
+/// Of uniform radii from a to b the mass up to r is as r⁴ − a⁴, so the median is ((a⁴ + b⁴)/2)^¼.
+TEST(GrainSizes, median_by_mass_is_that_of_the_drawn_grains) {
+  for (const char* distribution : {"uniform", "normal"}) {
+    DemOptions o;
+    o.size_spread = 0.5;
+    o.size_distribution = distribution;
+    std::vector<Quad> grains(20000);
+    draw_radii(o, grains);
+    for (std::size_t k = 0; k < grains.size(); ++k) grains[k].x = 0.1 * static_cast<double>(k);
+    const Bin bin{2001.0, 1.0, false, false};
+    EXPECT_NEAR(bed_statistics(grains, bin, 50.0).median_by_mass / median_radius_by_mass(o), 1.0, 0.01) << distribution;
+    EXPECT_GT(median_radius_by_mass(o), 1.05 * o.radius);
+  }
+  DemOptions uniform;
+  uniform.size_spread = 0.5;
+  const double a = smallest_radius(uniform), b = largest_radius(uniform);
+  EXPECT_NEAR(median_radius_by_mass(uniform) / std::pow(0.5 * (std::pow(a, 4) + std::pow(b, 4)), 0.25), 1.0, 1e-6);
+  uniform.size_spread = 0.0;
+  EXPECT_NEAR(median_radius_by_mass(uniform), uniform.radius, 1e-15);
+}
+
 TEST(GrainSizes, sizes_that_cannot_be_are_refused_with_their_key) {
   DemOptions wide, other_law, gamma;
   wide.size_spread = 0.7;

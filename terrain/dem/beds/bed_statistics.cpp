@@ -10,6 +10,20 @@
 
 namespace furrow::terrain::dem {
 
+namespace {
+
+double median_by_mass(const std::vector<Quad>& grains, double volume) {
+  std::vector<double> radii;
+  for (const Quad& grain : grains) radii.push_back(grain.w);
+  std::sort(radii.begin(), radii.end());
+  double below = 0.0;
+  for (const double radius : radii)
+    if ((below += volume_below(radius, 0.0, radius)) >= 0.5 * volume) return radius;
+  return radii.back();
+}
+
+}  // namespace
+
 double lens_volume(double a, double b, double distance) {
   FURROW_ASSERT(a > 0.0 && b > 0.0 && (distance > 0.0 || (distance == 0.0 && a == b)), a, b, distance);
   const double gap = a + b - distance;
@@ -48,6 +62,7 @@ BedStatistics bed_statistics(const std::vector<Quad>& positions, const Bin& bin,
     s.top = std::max(s.top, p.z + p.w);
     for (int wall = 0; wall < kWalls; ++wall) s.wall_contacts += bin.has_wall(wall) && bin.distance(wall, p) < p.w;
   }
+  s.median_by_mass = median_by_mass(positions, s.grain_volume);
   const auto count_pair = [&](std::size_t a, std::size_t b, double distance) {
     const double overlap = positions[a].w + positions[b].w - distance;
     if (overlap <= 0.0) return;

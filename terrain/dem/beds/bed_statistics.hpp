@@ -21,6 +21,7 @@ struct BedStatistics {
   double solid_fraction_bulk = 0.0;  // of its middle half, depth/4 to 3 depth/4, the same way
   double grain_volume = 0.0;         // of all grains, m³
   double max_overlap = 0.0;          // of two grains, m
+  double median_by_mass = 0.0;       // radius: half of the mass is of grains that are not larger, m
 };
 
 /// Of grains that stand at x y z with radius w, m. `radius`: r of the cells, m. May throw what `progress` throws.

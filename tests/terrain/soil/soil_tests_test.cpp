@@ -194,6 +194,17 @@ TEST(SoilTests, progress_may_stop_them) {
   EXPECT_THROW(run_soil_tests(quick(2), soil_plan(quick(2)), stop), Error);
 }
 
+/// The pressure on a cone grows with its depth: another depth would be another quantity.
+TEST(SoilTests, the_quick_cone_index_is_of_the_same_depths) {
+  SoilOptions whole = quick(1);
+  whole.quick = false;
+  const SoilPlan small = soil_plan(quick(1)), full = soil_plan(whole);
+  EXPECT_EQ(small.cone.index_from, full.cone.index_from);
+  EXPECT_EQ(small.cone.index_to, full.cone.index_to);
+  EXPECT_GE(small.cone.depth, small.cone.index_to);
+  EXPECT_GT(small.cone_box.depth, 2.0 * small.cone.depth);
+}
+
 TEST(SoilTests, loads_suit_soft_grains) {
   SoilOptions o = quick(1);
   EXPECT_EQ(soil_plan(o).shears.back().normal_stress, 100e3);

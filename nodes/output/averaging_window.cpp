@@ -14,17 +14,20 @@ constexpr std::size_t kLinesLeftOut = 50, kPartLeftOut = 4;
 
 }  // namespace
 
-std::vector<WheelRow> wheel_rows(const Table& table) {
-  std::vector<WheelRow> rows(table.lines());
-  const std::vector<Column> columns = columns_of<WheelRow>();
-  std::vector<std::size_t> places;
-  for (const Column& column : columns) places.push_back(table.find(column.name).value());
-  std::vector<double> values(columns.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t c = 0; c < columns.size(); ++c) values[c] = columns[c].sign * table.line(i)[places[c]];
-    set_values(rows[i], values);
+WheelRows::WheelRows(const Table& table, std::size_t first) : table_(&table), first_(first) {
+  for (const Column& column : columns_of<WheelRow>()) {
+    places_.push_back(table.find(column.name).value());
+    signs_.push_back(column.sign);
   }
-  return rows;
+}
+
+WheelRow WheelRows::operator[](std::size_t i) const {
+  FURROW_ASSERT(i < size(), i, size());
+  const std::span<const double> line = table_->line(first_ + i);
+  WheelRow row;
+  std::size_t c = 0;
+  visit_fields(row, [&](double& value, const Column&) { value = signs_[c] * line[places_[c]], ++c; });
+  return row;
 }
 
 std::vector<double> Window::samples(std::string_view column) const {
@@ -41,8 +44,9 @@ double Window::mean_of(std::string_view column) const {
   return values.empty() ? NAN : sum / static_cast<double>(values.size());
 }
 
-Window averaging_window(const Table& table, std::span<const WheelRow> rows, double from, int facets) {
-  FURROW_ASSERT(facets >= 0 && table.lines() == rows.size(), facets, table.lines(), rows.size());
+Window averaging_window(const Table& table, double from, int facets) {
+  FURROW_ASSERT(facets >= 0, facets);
+  const WheelRows rows(table);
   std::size_t first = 1;
   while (first < rows.size() && rows[first].time < from) ++first;
   if (first >= rows.size()) return {};
@@ -64,7 +68,7 @@ Window averaging_window(const Table& table, std::span<const WheelRow> rows, doub
     chosen = start;
     whole = off <= turn;
   }
-  return {rows.subspan(chosen), rows[chosen - 1], whole, &table, chosen};
+  return {WheelRows(table, chosen), rows[chosen - 1], whole, &table, chosen};
 }
 
 }  // namespace furrow::output

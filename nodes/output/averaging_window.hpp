@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -12,13 +11,40 @@
 
 namespace furrow::output {
 
-/// What every wheel's table says, line by line.
-std::vector<WheelRow> wheel_rows(const Table& table);
+/// What the table of a wheel says from line `first` on, read line by line where it is asked for: a table may be larger
+/// than the memory. The table outlives it.
+class WheelRows {
+ public:
+  WheelRows() = default;
+  explicit WheelRows(const Table& table, std::size_t first = 0);
+
+  std::size_t size() const { return table_ ? table_->lines() - first_ : 0; }
+  bool empty() const { return size() == 0; }
+  WheelRow operator[](std::size_t i) const;
+  WheelRow front() const { return (*this)[0]; }
+  WheelRow back() const { return (*this)[size() - 1]; }
+
+  struct Iterator {
+    const WheelRows* rows;
+    std::size_t i;
+    WheelRow operator*() const { return (*rows)[i]; }
+    Iterator& operator++() { return ++i, *this; }
+    bool operator==(const Iterator& other) const { return i == other.i; }
+  };
+  Iterator begin() const { return {this, 0}; }
+  Iterator end() const { return {this, size()}; }
+
+ private:
+  const Table* table_ = nullptr;
+  std::size_t first_ = 0;
+  std::vector<std::size_t> places_;  // of WheelRow's columns in the table
+  std::vector<double> signs_;
+};
 
 /// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns
 /// that the rig adds are asked for by name, those of every wheel by their row.
 struct Window {
-  std::span<const WheelRow> rows;
+  WheelRows rows;
   WheelRow before;
   bool whole_facets = false;
   const Table* table = nullptr;
@@ -49,7 +75,7 @@ struct Window {
 
 /// The window from the time `from` to the end of the table, shortened at its beginning to a whole number of facets of
 /// the tire, as far as 50 lines or a quarter of it allow; empty where it holds no line.
-/// @param rows  of the table; they and the table outlive the window
-Window averaging_window(const Table& table, std::span<const WheelRow> rows, double from, int facets);
+/// The table outlives the window.
+Window averaging_window(const Table& table, double from, int facets);
 
 }  // namespace furrow::output

@@ -104,6 +104,7 @@ Results::Results(const scenario::Scenario& scenario, std::vector<NodeCard> cards
       resume_(resume),
       tables_(std::move(tables)) {
   list_files();
+  for (Table& table : tables_) table.kept.keep_in(directory_);
   if (resume) {
     continue_from(*resume);
     return;
@@ -166,7 +167,7 @@ std::vector<std::string> Results::flush() {
 
 void Results::add(int table, std::span<const double> line) {
   FURROW_ASSERT(in_range(table, tables_.size()), table, tables_.size());
-  tables_[table].values.insert(tables_[table].values.end(), line.begin(), line.end());
+  tables_[table].kept.add(line);
   writers_[table]->add(line);
 }
 

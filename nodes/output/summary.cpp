@@ -41,7 +41,7 @@ struct WheelInput {
   const SummaryInput& run;
   int wheel = 0;
   const Table& table;
-  std::vector<WheelRow> rows;
+  WheelRows rows;
   const WheelEnd& end;
   const NodeCard& card() const { return run.cards[1 + wheel]; }
 };
@@ -262,7 +262,7 @@ Json wheel_summary(const WheelInput& in) {
   json["tread_width_m"] = in.card().tire_width;
   json["surface_height_m"] = json_number(in.run.setup.mean_height.at(in.wheel));
   const Window window =
-      averaging_window(in.table, in.rows, average_from(in.run), in.run.scenario.tires[in.wheel]->describe().facets);
+      averaging_window(in.table, average_from(in.run), in.run.scenario.tires[in.wheel]->describe().facets);
   add_mobility(in, window, json);
   add_plumbing(in, json);
   const WheelRow end = in.end.series.now();
@@ -275,7 +275,7 @@ Json wheel_summary(const WheelInput& in) {
 }
 
 /// @param rows of any wheel: what they say of the terrain is the same
-void add_cost(const SummaryInput& in, std::span<const WheelRow> rows, Json& json) {
+void add_cost(const SummaryInput& in, const WheelRows& rows, Json& json) {
   const double time = in.end.time;
   json["simulated_s"] = time;
   double wall = 0.0;
@@ -307,8 +307,7 @@ Json interface_json(const SummaryInput& in) {
   double worst = 0.0;
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k) {
     const Table& table = in.tables[k];
-    const std::vector<WheelRow> rows = wheel_rows(table);
-    const Window window = averaging_window(table, rows, average_from(in), in.scenario.tires[k]->describe().facets);
+    const Window window = averaging_window(table, average_from(in), in.scenario.tires[k]->describe().facets);
     if (window.rows.empty()) continue;
     const InterfaceEnergies from = interface_energies(window.before), to = interface_energies(window.rows.back());
     const double passed = to.passed - from.passed;
@@ -385,12 +384,11 @@ std::string summary_text(const SummaryInput& in) {
   if (!terrain.law.empty()) json["law"] = terrain.law;
   Json wheels = Json::array();
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k)
-    wheels.push_back(
-        wheel_summary({in, static_cast<int>(k), in.tables[k], wheel_rows(in.tables[k]), in.end.wheels[k]}));
+    wheels.push_back(wheel_summary({in, static_cast<int>(k), in.tables[k], WheelRows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
   if (!in.end.wheels.empty()) json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
   if (!in.end.wheels.empty()) json["interface"] = interface_json(in);
-  add_cost(in, wheel_rows(in.tables.front()), json);
+  add_cost(in, WheelRows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {
     if (table.subject == kAccountsTable) continue;

@@ -34,10 +34,8 @@ std::optional<std::size_t> Table::find(std::string_view column) const {
 }
 
 std::vector<double> Table::column(std::string_view name) const {
-  std::vector<double> found;
-  if (const auto place = find(name))
-    for (std::size_t i = *place; i < values.size(); i += columns.size()) found.push_back(values[i]);
-  return found;
+  const auto place = find(name);
+  return place ? kept.column(*place) : std::vector<double>{};
 }
 
 std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Column> added) {
@@ -85,8 +83,10 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
     check(stream_ != nullptr);
   }
   const char* at = text.c_str() + header.size();
+  std::vector<double> values(width_);
   for (std::int64_t line = 0; line < mark.lines; ++line) {
-    at = read_line(at, table);
+    at = read_line(at, values);
+    if (at) table.kept.add(values);
     if (!at) throw io_error(file_.string(), fmt::format("line {} cannot be read", line + 2));
   }
   bytes_ = mark.bytes;
@@ -100,12 +100,10 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
 void TableWriter::only_append() { check(fcntl(fileno(stream_.get()), F_SETFL, O_APPEND) == 0); }
 
 /// The line at `text`, which ends in a line feed; null when it is none.
-const char* TableWriter::read_line(const char* text, Table& table) const {
-  const std::size_t begin = table.values.size();
-  table.values.resize(begin + width_);
+const char* TableWriter::read_line(const char* text, std::span<double> line) const {
   for (std::size_t i = 0; i < width_; ++i) {
     char* end = nullptr;
-    table.values[begin + i] = std::strtod(text, &end);
+    line[i] = std::strtod(text, &end);
     if (end == text || *end != (i + 1 == width_ ? '\n' : ',')) return nullptr;
     text = end + 1;
   }

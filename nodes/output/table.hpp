@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "nodes/checkpoint/series_mark.hpp"
+#include "nodes/output/kept_lines.hpp"
 #include "protocol/core/column.hpp"
 #include "protocol/core/hash.hpp"
 
@@ -21,12 +22,11 @@ namespace furrow::output {
 struct Table {
   std::string subject;  // "wheel0", "vehicle"
   std::vector<Column> columns;
-  std::vector<double> values;  // as they are written, line after line
+  KeptLines kept;  // as they are written
 
-  std::size_t lines() const { return columns.empty() ? 0 : values.size() / columns.size(); }
-  std::span<const double> line(std::size_t i) const {
-    return std::span(values).subspan(i * columns.size(), columns.size());
-  }
+  std::size_t lines() const { return kept.size(); }
+  /// Valid until the next call.
+  std::span<const double> line(std::size_t i) const { return kept.line(i); }
   std::optional<std::size_t> find(std::string_view column) const;
   /// The values of a column; none when there is no such column.
   std::vector<double> column(std::string_view name) const;
@@ -56,7 +56,7 @@ class TableWriter {
   checkpoint::SeriesMark mark();
 
  private:
-  const char* read_line(const char* text, Table& table) const;
+  const char* read_line(const char* text, std::span<double> line) const;
   void check(bool ok);
   void only_append();
   void write(const std::string& text);

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kBytesPerRank = 40e6;  // program, MPI and libraries
 constexpr double kBytesPerFrameVertex = 100.0;
-constexpr double kBytesPerLine = 900.0;  // of timeseries.csv, and the same again in results.h5
+// Of a line of the series in CSV, in results.h5, and among the lines that are kept until the run ends.
+constexpr double kBytesPerWheelLine = 2000.0, kBytesPerAccountsLine = 1100.0;
 
 /// Of what is written once in every interval, at most once per step.
 double times(const Scenario& s, double interval) {
@@ -40,7 +41,8 @@ Estimate estimate(const Scenario& s) {
   e.frame_bytes = e.terrain.frame_bytes + kBytesPerFrameVertex * vertices;
   e.checkpoints = times(s, s.checkpoint.interval) + (s.checkpoint.at_end ? 1.0 : 0.0);
   e.checkpoint_bytes = e.terrain.checkpoint_bytes + saved;
-  e.disk = e.frames * e.frame_bytes + kBytesPerLine * times(s, s.output.series_interval) +
+  const double line_bytes = kBytesPerWheelLine * static_cast<double>(s.tires.size()) + kBytesPerAccountsLine;
+  e.disk = e.frames * e.frame_bytes + line_bytes * times(s, s.output.series_interval) +
            s.checkpoint.keep * e.checkpoint_bytes;
   return e;
 }

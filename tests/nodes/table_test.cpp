@@ -247,6 +247,31 @@ TEST(Table, goes_on_at_its_mark_bit_for_bit) {
   EXPECT_EQ(open_files(), before);
 }
 
+/// Over several blocks, the last of them not whole.
+TEST(KeptLines, give_back_lines_and_columns_bit_for_bit_and_leave_no_file) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kLines = 3 * output::KeptLines::kBlock + 5, kColumns = 7;
+  output::KeptLines kept;
+  kept.keep_in(folder.path());
+  std::vector<std::vector<double>> lines;
+  for (std::size_t i = 0; i < kLines; ++i) {
+    std::vector<double> line(kColumns, -0.0);
+    for (std::size_t k = 1; k < kColumns; ++k) line[k] = std::sin(static_cast<double>(i * kColumns + k));
+    kept.add(line);
+    lines.push_back(line);
+  }
+  const output::KeptLines moved = std::move(kept);
+  ASSERT_EQ(moved.size(), kLines);
+  for (std::size_t i = kLines; i-- > 0;) EXPECT_TRUE(std::ranges::equal(moved.line(i), lines[i])) << i;
+  for (std::size_t k = 0; k < kColumns; ++k) {
+    const std::vector<double> column = moved.column(k);
+    for (std::size_t i = 0; i < kLines; ++i) EXPECT_EQ(column[i], lines[i][k]) << i << " " << k;
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  expect_refused(ExitCode::io, {"no such folder"},
+                 [&] { output::KeptLines().keep_in(folder.path() / "no such folder"); });
+}
+
 TEST(Table, a_mark_beyond_the_end_of_its_file_takes_no_more_memory_than_the_file) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "timeseries.csv";
@@ -301,7 +326,11 @@ struct Series {
   }
   void save(Archive& archive) const { wheel.save(archive), vehicle.save(archive); }
   void restore(const Archive& archive) { wheel.restore(archive), vehicle.restore(archive); }
-  std::vector<output::Table> tables() const { return {wheel.empty_table(), vehicle.empty_table()}; }
+  std::vector<output::Table> tables() const {
+    std::vector<output::Table> both;
+    both.push_back(wheel.empty_table()), both.push_back(vehicle.empty_table());
+    return both;
+  }
 
   output::SubjectSeries wheel, vehicle;
 };

@@ -37,14 +37,12 @@ std::string step_line(const json& summary, const scenario::Scenario& scenario) {
   for (const json& entry : judged.value("entries", json::array()))
     if (worst.is_null() || number_at(entry, "share") > number_at(worst, "share")) worst = entry;
   return fmt::format(
-      "furrow: THE STEP IS TOO LARGE: forces that come one step late {} {:.3g} J at the {} of wheel {}, {:.1f} % of "
-      "the "
-      "work there in the averaging window, expected at most 1 %; take a run.step of {} s or less{} (now {} s)\n",
-      number_at(worst, "made_J") > 0.0 ? "made" : "took", std::abs(number_at(worst, "made_J")),
-      worst.value("interface", ""), worst.value("wheel", 0), 100.0 * number_at(worst, "share"),
+      "furrow: THE STEP IS TOO LARGE: at the interface '{}' late forces {} {:.3g} J, {:.1f} % of the work there in the "
+      "averaging window, expected at most 1 %; take a run.step of {} s or less{} (now {} s)\n",
+      worst.value("name", ""), number_at(worst, "energy_J") > 0.0 ? "made" : "took",
+      std::abs(number_at(worst, "energy_J")), 100.0 * number_at(worst, "share"),
       number_text(number_at(judged, "better_step_s")),
-      output::other_help(*scenario.tires.at(worst.value("wheel", 0)), worst.value("interface", "")),
-      number_text(scenario.run.step));
+      worst.value("name", "").ends_with("ground") ? output::other_help(scenario) : "", number_text(scenario.run.step));
 }
 
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {

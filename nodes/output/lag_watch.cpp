@@ -22,9 +22,11 @@ double lag_share(double made, double passed, double load, double radius) {
   return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();  // the motion has no bounds
 }
 
-std::string other_help(const tire::TireSpec& tire, std::string_view interface) {
-  const bool helps = interface == "ground" && tire.describe().takes_tangents && !tire.options().contact_tangent;
-  return helps ? ", or tire.contact_tangent" : "";
+std::string other_help(const scenario::Scenario& scenario) {
+  const auto helps = [](const auto& tire) {
+    return tire->describe().takes_tangents && !tire->options().contact_tangent;
+  };
+  return std::ranges::any_of(scenario.tires, helps) ? ", or tire.contact_tangent" : "";
 }
 
 double better_step(double step, double share) {

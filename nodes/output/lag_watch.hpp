@@ -9,11 +9,10 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "nodes/output/wheel_row.hpp"
+#include "nodes/scenario/scenario.hpp"
 #include "protocol/core/fields.hpp"
-#include "tire/tire_spec.hpp"
 
 namespace furrow::output {
 
@@ -38,8 +37,8 @@ inline InterfaceEnergies interface_energies(const WheelRow& row) {
 /// |made| as a share of what passes; infinite where one is not finite. @param load N @param radius m
 double lag_share(double made, double passed, double load, double radius);
 
-/// What else helps a tire at an interface beside a smaller step, for people: ", or tire.contact_tangent".
-std::string other_help(const tire::TireSpec& tire, std::string_view interface);
+/// What else helps at the ground beside a smaller step, for people: ", or tire.contact_tangent"; empty: nothing.
+std::string other_help(const scenario::Scenario& scenario);
 
 /// A step with which late forces, whose energy grows with the step, keep below kGoodShare, s: a number of one digit.
 double better_step(double step, double share);

@@ -301,28 +301,36 @@ void add_cost(const SummaryInput& in, const WheelRows& rows, Json& json) {
   json["cpu"] = cpu_model();
 }
 
-/// What late forces make or take over the averaging window, interface by interface.
+/// What late forces make or take over the averaging window, interface by interface: ground and rim of each wheel, and
+/// what the rig's own rule leaves over of the work that goes through it.
 Json interface_json(const SummaryInput& in) {
   Json entries = Json::array();
-  double worst = 0.0;
+  double worst = 0.0, all = 0.0, weight = 0.0;
+  const auto add = [&](const std::string& name, double made, double passed, double load, double radius) {
+    const double share = lag_share(made, passed, load, radius);
+    worst = std::max(worst, share);
+    entries.push_back({{"name", name},
+                       {"energy_J", json_number(made)},
+                       {"work_J", json_number(passed)},
+                       {"share", json_number(share)}});
+  };
+  const rigs::RigDescription rig = scenario::describe_rig(in.scenario);
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k) {
-    const Table& table = in.tables[k];
-    const Window window = averaging_window(table, average_from(in), in.scenario.tires[k]->describe().facets);
+    const Window window = averaging_window(in.tables[k], average_from(in), in.scenario.tires[k]->describe().facets);
     if (window.rows.empty()) continue;
+    const std::string wheel = rig.wheels[k].name.empty() ? fmt::format("wheel {}", k) : rig.wheels[k].name;
+    const double load = in.end.wheels[k].load, radius = in.cards[1 + k].tire_radius;
     const InterfaceEnergies from = interface_energies(window.before), to = interface_energies(window.rows.back());
-    const double passed = to.passed - from.passed;
-    const auto add = [&](const char* interface, double made) {
-      const double share = lag_share(made, passed, in.end.wheels[k].load, in.cards[1 + k].tire_radius);
-      worst = std::max(worst, share);
-      entries.push_back({{"wheel", k},
-                         {"interface", interface},
-                         {"made_J", json_number(made)},
-                         {"passed_J", json_number(passed)},
-                         {"share", json_number(share)}});
-    };
-    add("ground", to.ground - from.ground);
-    add("rim", to.rim - from.rim);
+    add(wheel + " ground", to.ground - from.ground, to.passed - from.passed, load, radius);
+    add(wheel + " rim", to.rim - from.rim, to.passed - from.passed, load, radius);
+    all += to.passed - from.passed;
+    weight += load * radius;
   }
+  const Table& accounts = in.tables.back();
+  const std::vector<double> times = accounts.column("time_s"), left = accounts.column("rig_residual_J");
+  std::size_t first = 0;
+  while (first + 1 < times.size() && times[first + 1] < average_from(in)) ++first;
+  if (!entries.empty() && first + 1 < times.size()) add("driveline", left[first] - left.back(), all, weight, 1.0);
   const bool known = !entries.empty();
   Json json = {{"share", known ? json_number(worst) : Json(nullptr)},
                {"ok", known ? Json(worst <= kGoodShare) : Json()}};

@@ -286,13 +286,13 @@ class RigNode : public Node {
       if (!window || window->share <= output::kMostShare) continue;
       const std::string name = scenario::describe_rig(scenario_).wheels.at(k).name;
       const std::string text = fmt::format(
-          "wheel {}: forces that come one step late {} {:.3g} J at its {} from {:.4g} to {:.4g} s, {:.0f} % of the "
-          "work "
-          "there; expected at most {:.0f} %: take a run.step of {} s or less{}",
-          name.empty() ? std::to_string(k) : name, window->made > 0.0 ? "made" : "took", std::abs(window->made),
-          window->interface, window->from, window->to, 100.0 * window->share, 100.0 * output::kMostShare,
+          "at the interface '{} {}' late forces {} {:.3g} J from {:.4g} to {:.4g} s, {:.0f} % of the work there, "
+          "expected "
+          "at most {:.0f} %: take a run.step of {} s or less{}",
+          name.empty() ? fmt::format("wheel {}", k) : name, window->interface, window->made > 0.0 ? "made" : "took",
+          std::abs(window->made), window->from, window->to, 100.0 * window->share, 100.0 * output::kMostShare,
           number_text(output::better_step(scenario_.run.step, window->share)),
-          output::other_help(*scenario_.tires[k], window->interface));
+          window->interface == std::string_view("ground") ? output::other_help(scenario_) : "");
       if (scenario_.run.on_lag == "end") throw physics_error(text + ", or run.on_lag 'warn' to go on");
       if (!std::exchange(lag_told_, true) && context_.note) context_.note("warning: " + text);
     }

@@ -3,7 +3,7 @@
 run that is finished is used again. Scenarios of many grains are cut short.
 
 One row per scenario: its step, what `furrow validate` says that the pair of tire and ground bears and why, and the
-largest share of what passes a wheel that late forces made in the averaging window, at ground and rim.
+largest share of what passes a wheel that late forces made in the averaging window, at ground, rim and driveline.
 """
 import json
 
@@ -25,10 +25,11 @@ def row_of(name, end):
     told = json.loads(driver.furrow("validate", scenario, "--json"))
     least = min(told["coupling_step"], key=lambda one: one["step_s"] or float("inf"))
     judged = driver.summary(run)["interface"]
-    worst = {at: max((one["share"] for one in judged["entries"] if one["interface"] == at), default=None)
-             for at in ("ground", "rim")}
+    worst = {at: max((one["share"] for one in judged["entries"] if one["name"].endswith(at)), default=None)
+             for at in ("ground", "rim", "driveline")}
     return {"scenario": name, "end_s": end or "", "step_s": told["step_s"], "bears_s": least["step_s"] or "",
             "limited_by": least["limited_by"], "ground_share": worst["ground"], "rim_share": worst["rim"],
+            "driveline_share": worst["driveline"],
             "ok": judged["ok"]}
 
 

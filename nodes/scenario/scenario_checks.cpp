@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "nodes/scenario/coupling_step.hpp"
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_text.hpp"

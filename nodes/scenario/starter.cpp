@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "nodes/scenario/coupling_step.hpp"
 #include "nodes/scenario/load_scenario.hpp"
 #include "nodes/scenario/schema.hpp"
 #include "nodes/scenario/soil_material.hpp"

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "nodes/scenario/coupling_step.hpp"
 #include "nodes/scenario/estimate.hpp"
 #include "nodes/scenario/grain_loads.hpp"
 #include "nodes/scenario/rank_table.hpp"

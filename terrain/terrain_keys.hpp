@@ -12,6 +12,11 @@ inline constexpr Key kMaterial =
         "lete_sand.json, upland_sandy_loam.json, dry_sand.json (published, engine scm) or your own, relative to the "
         "scenario, then in terrain/data. Keys of the scenario's own section override it; with --set it overrides them. "
         "null: none.");
+inline constexpr Key kConeIndex =
+    key("cone_index", "Pa", role::harmless, allowed::above(0).to(1e9).usual(1e4, 1e7).or_null(),
+        "Cone index of the soil, for the published regressions of traction that the summary shows beside the run; it "
+        "changes no result. `furrow soil` measures it. null: that of the soil file under `measured`, where its values "
+        "are taken as they are, or not known.");
 inline constexpr Key kFriction = key(
     "friction", "-", allowed::from(0, 10),
     "Coulomb coefficient between grains. Between grain or ground and tire the smaller of this and the tire's holds. "

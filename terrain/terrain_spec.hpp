@@ -73,6 +73,8 @@ struct TerrainDescription {
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
   std::optional<TerrainBounds> bounds;       // none: unbounded
   std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured
+  std::optional<double> cone_index;          // Pa; none: not known
+  bool cohesive = false;                     // has more cohesion than dry sand
 };
 
 /// What a run will need, before any grain exists.

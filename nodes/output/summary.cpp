@@ -9,6 +9,7 @@
 #include "nodes/output/accounts_json.hpp"
 #include "nodes/output/averaging_window.hpp"
 #include "nodes/output/lag_watch.hpp"
+#include "nodes/output/regressions.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/steadiness.hpp"
 #include "nodes/scenario/rank_table.hpp"
@@ -19,6 +20,7 @@
 #include "protocol/core/rank_group.hpp"
 #include "protocol/files/json_number.hpp"
 #include "protocol/files/program_id.hpp"
+#include "rigs/reported_slip.hpp"
 #include "terrain/rut.hpp"
 
 namespace furrow::output {
@@ -123,6 +125,28 @@ void add_rut(const WheelInput& in, Json& json) {
   json["rut_missing_because"] = rut.missing.empty() ? Json(nullptr) : Json(rut.missing);
 }
 
+/// The slip counted from its other zeros, and what regressions expect of this wheel.
+void add_regressions(const WheelInput& in, const Window& w, double deflection, Json& json) {
+  const tire::TireDescription tire = in.run.scenario.tires[in.wheel]->describe();
+  const terrain::TerrainDescription terrain = in.run.scenario.terrain->describe();
+  const double radius = in.card().tire_radius, bent = tire.deflects ? std::max(deflection, 0.0) : 0.0;
+  const double speed = w.mean(&WheelRow::speed), spin = w.mean(&WheelRow::spin);
+  const double rolling = free_rolling_radius(radius, bent), hard = no_pull_radius(radius, bent);
+  const SlipZeros slip{rigs::reported_slip(spin * rolling, speed), rigs::reported_slip(spin * hard, speed)};
+  json["free_rolling_radius_m"] = json_number(rolling);
+  json["slip_of_free_rolling"] = json_number(slip.free_rolling);
+  json["no_pull_radius_m"] = json_number(hard);
+  json["slip_of_no_pull"] = json_number(slip.no_pull);
+  json["regressions"] = regressions_json({.cone_index = terrain.cone_index.value_or(NAN),
+                                          .diameter = 2.0 * radius,
+                                          .width = tire.width,
+                                          .section_height = tire.section_height > 0.0 ? tire.section_height : NAN,
+                                          .deflection = bent,
+                                          .load = in.end.load,
+                                          .slip = NAN},
+                                         slip, terrain.cohesive);
+}
+
 void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   const double load = in.end.load, radius = in.card().tire_radius;
   const SeriesStatistics sinkage = statistics(w.samples_by(&WheelRow::sinkage));
@@ -144,6 +168,7 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   json["sinkage_kinematic_m"] = json_number(mean(&WheelRow::sinkage_kinematic));
   add_rut(in, json);
   json["tire_deflection_m"] = json_number(radius - (axle - lowest));
+  add_regressions(in, w, radius - (axle - lowest), json);
   json["effective_rolling_radius_m"] = json_number(
       spin != 0.0 ? mean([](const WheelRow& r) { return r.effective_rolling_radius * r.spin; }) / spin : NAN);
   json["bed_clearance_m"] = json_number(lowest - in.run.setup.floor_height);

@@ -304,6 +304,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   require_utf8(s.name, file.string(), "", "has a name");
   json document = read_document(file.string(), settings);
   s.warnings = complete(document, file.string(), settings, s.ground_friction);
+  fill_cone_index(document, file);
   if (const std::string warning = other_grains_warning(document, file); !warning.empty()) s.warnings.push_back(warning);
   take_run(document["run"], s);
   read_fields(document["output"], s.output);

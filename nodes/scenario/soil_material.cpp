@@ -1,8 +1,8 @@
 #include "nodes/scenario/soil_material.hpp"
 
-#include <cmath>
-
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -21,6 +21,7 @@ using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
 constexpr double kSameSize = 0.01;  // of radii, relative
+constexpr const char* kConeIndexKey = "cone_index";
 
 bool takes(const std::string& engine, const std::string& key) {
   const std::vector<std::string> engines = terrain::engines_of_key(key);
@@ -71,6 +72,30 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   return {alone["terrain"], soil.value("measured", json())};
 }
 
+/// The soil file that a completed scenario names; none where it names none.
+std::optional<SoilFile> soil_of(const json& terrain, const std::filesystem::path& scenario) {
+  const json name = terrain.value(kSoilKey, json());
+  if (!name.is_string()) return {};
+  return read_soil_file(find_file(name, "terrain.material", scenario));
+}
+
+/// The scenario takes the soil's values as they are, with none of its own in their place.
+bool taken_whole(const SoilFile& soil, const json& terrain) {
+  for (const auto& [key, value] : soil.values.items())
+    if (terrain.contains(key) && terrain[key] != value) return false;
+  return true;
+}
+
+/// The soil's strength depends on the size of its grains, and the scenario's are of another. @returns the size that it
+/// was measured with, m; null: it does not, or the same holds for both
+json other_radius(const SoilFile& soil, const json& terrain) {
+  const json radius = terrain.value("radius", json());
+  const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
+  if (!radius.is_number() || !with.is_number() || !(with.get<double>() > 0.0)) return {};
+  if (std::abs(radius.get<double>() / with.get<double>() - 1.0) <= kSameSize) return {};
+  return soil.values.value("cohesion", 0.0) == 0.0 ? json() : with;  // without cohesion it has no length in it
+}
+
 /// What the soil named in the scenario says to the engine; null when none is named.
 json named_material(const json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const auto terrain = document.find("terrain");
@@ -99,22 +124,27 @@ void override_soil_material(json& document, const std::filesystem::path& scenari
   for (const auto& [key, value] : soil.items()) document["terrain"][key] = value;
 }
 
+void fill_cone_index(json& completed, const std::filesystem::path& scenario) {
+  json& terrain = completed.at("terrain");
+  if (!terrain.contains(kConeIndexKey) || !terrain[kConeIndexKey].is_null()) return;
+  const std::optional<SoilFile> soil = soil_of(terrain, scenario);
+  if (!soil || !soil->measured.is_object() || !taken_whole(*soil, terrain) || !other_radius(*soil, terrain).is_null())
+    return;
+  const json index = soil->measured.value("cone_index_Pa", json());
+  const json mean = index.is_object() ? index.value("mean", json()) : json();
+  if (mean.is_number() && mean.get<double>() > 0.0) terrain[kConeIndexKey] = mean;
+}
+
 std::string other_grains_warning(const json& completed, const std::filesystem::path& scenario) {
   const json& terrain = completed.at("terrain");
-  const json name = terrain.value(kSoilKey, json()), radius = terrain.value("radius", json());
-  if (!name.is_string() || !radius.is_number()) return {};
-  const std::filesystem::path file = find_file(name, "terrain.material", scenario);
-  const SoilFile soil = read_soil_file(file);
-  const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
-  if (!with.is_number() || !(with.get<double>() > 0.0)) return {};
-  if (std::abs(radius.get<double>() / with.get<double>() - 1.0) <= kSameSize) return {};
-  if (soil.values.value("cohesion", 0.0) == 0.0) return {};  // strength without a length in it
-  for (const auto& [key, value] : soil.values.items())
-    if (terrain.contains(key) && terrain[key] != value) return {};  // a soil of the scenario's own
+  const std::optional<SoilFile> soil = soil_of(terrain, scenario);
+  if (!soil || !taken_whole(*soil, terrain)) return {};  // no soil, or one of the scenario's own
+  const json with = other_radius(*soil, terrain);
+  if (with.is_null()) return {};
   return input_error(scenario.string(), "terrain.radius",
                      "is {} m, but the strength of '{}' was measured with grains of {} m: cohesion changes with the "
                      "size of grains",
-                     number_text(radius), name.get<std::string>(), number_text(with))
+                     number_text(terrain["radius"]), terrain[kSoilKey].get<std::string>(), number_text(with))
       .what();
 }
 

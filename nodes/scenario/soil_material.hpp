@@ -24,6 +24,10 @@ void apply_soil_material(nlohmann::json& document, const std::filesystem::path& 
 /// The same for a soil named on the command line: in place of those the scenario states.
 void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario, const std::string& engine);
 
+/// Fills `terrain.cone_index` of a completed scenario, where it is null, with what was measured of the soil that the
+/// scenario takes as it is.
+void fill_cone_index(nlohmann::json& completed, const std::filesystem::path& scenario);
+
 /// What to say where the scenario takes a cohesive soil as it is, but with grains of another size than those that it
 /// was measured with; empty otherwise. `completed`: the scenario with its defaults.
 std::string other_grains_warning(const nlohmann::json& completed, const std::filesystem::path& scenario);

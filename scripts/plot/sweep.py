@@ -113,6 +113,24 @@ def mark_failed(axis, sweep):
                   transform=axis.get_xaxis_transform(), label="failed: nothing measured")
 
 
+def regression_lines(axis, sweep):
+    """Thin lines of the net traction that published regressions expect, dotted where one does not hold."""
+    if not sweep.plot["x"].endswith("slip") or sweep.plot["y"] != "drawbar_pull_N.mean":
+        return
+    lines = {}
+    for row in sweep.rows:
+        found = sweep.summary(row).get("regressions")
+        for of in found.values() if isinstance(found, dict) else ():
+            if isinstance(of, dict) and of.get("net_N") is not None:
+                at, values = number(row.get(sweep.plot["x"])), lines.setdefault(of["name"], {})
+                values.setdefault(at, []).append((of["net_N"], of["in_range"]))
+    for i, (name, values) in enumerate(lines.items()):
+        holds = all(ok for group in values.values() for _, ok in group)
+        x = sorted(values)
+        axis.plot(x, [np.mean([net for net, _ in values[at]]) for at in x], lw=0.8, ls="-" if holds else ":", zorder=1,
+                  color=COLOURS[-1 - i % len(COLOURS)], label=name if holds else f"{name} (out of range)")
+
+
 def curve(sweep):
     """y over x with error bars, one line per value of a third key, as the study's plot says."""
     plot = sweep.plot
@@ -131,9 +149,10 @@ def curve(sweep):
         open_points(axis, x, y, which, COLOURS[i % len(COLOURS)])
     axis.axhline(0.0, color=GREY, lw=0.8)
     mark_failed(axis, sweep)
+    regression_lines(axis, sweep)
     axis.set(xlabel=plot["x"], ylabel=plot["y"] + bar_meaning(plot))
     axis.set_title(sweep.title(), loc="left", fontweight="bold")
-    if any(groups) or sweep.failed:
+    if axis.get_legend_handles_labels()[1]:
         axis.legend()
     return figure
 

@@ -17,6 +17,7 @@ struct DemOptions : TerrainContext {
   bool piece = false;                 // of a tiled bed: its layers continue across its periodic sides, with no gap
   std::string law = "mindlin";        // mindlin | hertz_tanh
   std::string material;               // soil file whose values the other keys hold already; empty: none
+  double cone_index = -1.0;           // Pa; negative: not known
   // Bed.
   double radius = 0.006;                      // grain radius, m
   std::string size_distribution = "uniform";  // uniform | normal, by number of grains
@@ -60,6 +61,7 @@ void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
             "Contact law. mindlin: Hertz–Mindlin with history. hertz_tanh: Hertz with friction regularised by tanh, as "
             "in Project Chrono, which has no static friction."));
   visit(s.material, keys::kMaterial);
+  visit(s.cone_index, keys::kConeIndex);
   visit(s.radius,
         key("radius", "m", kBed, from(1e-6).below(1).usual(0.0005, 0.05),
             "Grain radius; with size_spread the middle of the radii, which is their mean and median by number."));

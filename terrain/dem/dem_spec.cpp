@@ -40,6 +40,8 @@ TerrainDescription describe_grains(const DemOptions& options) {
   d.unstable_step_allowed = options.allow_unstable_step;
   d.bounds = {options.length, options.width};
   if (options.undisturbed_height >= 0.0) d.undisturbed_height = options.undisturbed_height;
+  if (options.cone_index > 0.0) d.cone_index = options.cone_index;
+  d.cohesive = options.cohesion > 0.0;
   return d;
 }
 

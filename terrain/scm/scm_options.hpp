@@ -15,6 +15,7 @@ namespace furrow::terrain::scm {
 struct ScmOptions : TerrainContext {
   std::string scenario = "scenario";  // what messages name: the scenario's file
   std::string material;               // soil file whose values the other keys hold already; empty: none
+  double cone_index = -1.0;           // Pa; negative: not known
   // Grid.
   double length = 10.0;        // x from 0 to length, m
   double width = 0.6;          // y from −width/2 to width/2, m
@@ -35,6 +36,7 @@ void visit_fields(FieldsOf<ScmOptions> auto& s, auto&& visit) {
   using namespace allowed;
   constexpr unsigned kSoil = role::key | role::soil;
   visit(s.material, keys::kMaterial);
+  visit(s.cone_index, keys::kConeIndex);
   visit(s.length, keys::kLength);
   visit(s.width, keys::kWidth);
   visit(s.grid_spacing,

@@ -12,7 +12,8 @@
 namespace furrow::terrain::scm {
 namespace {
 
-constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
+constexpr double kCohesionOfSand = 2e3;  // Pa; the sands of [Wong 2008] have 1.0 to 1.3 kPa, loams more
+constexpr double kFrameBytes = 20.0;     // of each node: position, speed, radius in single precision
 
 class ScmSpec final : public TerrainSpec {
  public:
@@ -25,6 +26,8 @@ class ScmSpec final : public TerrainSpec {
     d.bounds = {options_.length, options_.width};
     d.gives_tangents = d.answers_at_once = true;
     d.undisturbed_height = 0.0;
+    if (options_.cone_index > 0.0) d.cone_index = options_.cone_index;
+    d.cohesive = options_.mohr_cohesion > kCohesionOfSand;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {

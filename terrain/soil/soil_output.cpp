@@ -353,9 +353,11 @@ std::string soil_text(const json& soil) {
                       face["face"].get<std::string>(), face["friction_angle_without_adhesion_deg"].get<double>(),
                       1e3 * face["janosi_K_m"].get<double>(), face["roll"].get<double>());
   if (soil["cone_index_Pa"].is_number())
-    text += fmt::format("furrow: cone index {} kPa, the mean from {:g} to {:g} mm of depth\n",
-                        value("cone_index_Pa", 1e-3), 1e3 * soil["cone"]["index_depth_m"][0].get<double>(),
-                        1e3 * soil["cone"]["index_depth_m"][1].get<double>());
+    text += fmt::format(
+        "furrow: cone index {} kPa, the mean from {:g} to {:g} mm of depth; as terrain.cone_index it "
+        "shows regressions of traction beside a run\n",
+        value("cone_index_Pa", 1e-3), 1e3 * soil["cone"]["index_depth_m"][0].get<double>(),
+        1e3 * soil["cone"]["index_depth_m"][1].get<double>());
   if (soil["repose_angle_deg"].is_number()) {
     bool slumped = true;
     for (const json& test : soil["repose"]["tests"])

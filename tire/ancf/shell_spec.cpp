@@ -69,6 +69,7 @@ TireDescription ShellSpec::describe() const {
   d.radius = file_.radius;
   for (const ProfileKnot& knot : file_.profile) d.width = std::max(d.width, 2.0 * std::abs(knot.y));
   d.tread_width = tread_width(file_, mesh);
+  d.section_height = file_.radius - file_.rim_radius;
   d.coordinates = 6 * mesh.nodes();
   d.vertices = mesh.nodes() + 2;
   d.facets = mesh.columns;

@@ -62,6 +62,7 @@ TireDescription HandlingSpec::describe() const {
                   t.vertical.fnomin, 1e-3 * t.vertical.vertical_stiffness, s.longitudinal, s.lateral);
   d.radius = t.dimension.unloaded_radius;
   d.width = d.tread_width = t.dimension.width;
+  if (t.dimension.rim_radius > 0.0) d.section_height = d.radius - t.dimension.rim_radius;
   d.coordinates = 2;
   d.vertices = kFacets * kRows + 2;
   d.facets = kFacets;

@@ -85,6 +85,7 @@ TireDescription PlanarSpec::describe() const {
                           2 * p.size.rings, 2 * carcass.mesh().nodes(), p.step_share * limit);
   d.radius = p.size.radius;
   d.width = d.tread_width = p.options.width;
+  d.section_height = p.size.radius - p.size.rim_radius;
   d.coordinates = 2 * carcass.mesh().nodes();
   d.vertices = 2 * p.size.around + 2;
   d.facets = p.size.around;

@@ -103,6 +103,7 @@ TireDescription RingSpec::describe() const {
   d.details = fmt::format("{} segments, {} coordinates, {}", p.segments, 2 * p.segments, pressure_text(pressure));
   d.radius = p.radius;
   d.width = d.tread_width = p.width;
+  d.section_height = p.radius - file_.motion.rim_radius;
   d.coordinates = 2 * p.segments;
   d.vertices = 2 * p.segments + 2;
   d.facets = p.segments;

@@ -172,6 +172,24 @@ def wheels_table(run):
     return [blocks.table(columns, rows, note="Means over the averaging window.")]
 
 
+def regressions_table(run):
+    """What published regressions expect of the only wheel, those that do not hold here apart."""
+    found = run.summary.get("regressions")
+    if not isinstance(found, dict) or len(run.summary.get("wheels") or []) > 1:
+        return []
+    rows = []
+    for of in found.values():
+        if isinstance(of, dict):
+            because = "; ".join(map(printable, of.get("out_of_range_because") or []))
+            rows.append([str(of.get("name")), *(digits(of[key]) if is_number(of.get(key)) else "–"
+                                                for key in ("gross_N", "resistance_N", "net_N")),
+                         "in range" if of.get("in_range") else f"out of range: {because}"])
+    return [{"type": "fold", "title": "Published regressions of traction at this cone index", "blocks": [
+        blocks.table(["regression", "gross, N", "resistance, N", "net, N", ""], rows,
+                     note=f"At a cone index of {digits(1e-3 * found['cone_index_Pa'])} kPa. Formulas, sources and "
+                          "ranges: nodes/output/README.md, \"Regressions\".")]}]
+
+
 def expected_table(run):
     expected = run.scenario.get("expected")
     if not isinstance(expected, dict):
@@ -215,7 +233,7 @@ def answer(run):
             made.append(blocks.text(f"The figures are means over the averaging window{span}. This rig measures no "
                                     f"drawbar pull.", "lead"))
         made.append(blocks.cards(items))
-    made += vehicle_answer(run) + wheels_table(run) + expected_table(run)
+    made += vehicle_answer(run) + wheels_table(run) + regressions_table(run) + expected_table(run)
     for what, found in (run.summary.get("accounts") or {}).items():
         if isinstance(found, dict) and found.get("closes") is False:
             made.append(blocks.text(f"The account of {what} does not close. The result may be wrong: see Accounts.",

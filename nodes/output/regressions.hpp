@@ -1,0 +1,70 @@
+// What published regressions of traction expect of a wheel on soil whose cone index is known, for comparison with a run.
+//
+// W load, b overall width, d diameter, h section height, δ deflection, CI cone index, s slip from the regression's own
+// zero. What each regression takes from where, and how well that is known: nodes/output/README.md, "Regressions".
+//   [Brixius 1987]      Traction prediction equations for bias ply tires, ASAE Paper 87-1622
+//   [Al-Hamed 1994]     Al-Hamed, Grisso, Zoz, Von Bargen: Tractor performance spreadsheet for radial tires, Computers
+//                       and Electronics in Agriculture 10
+//   [Wismer 1973]       Wismer, Luth: Off-road traction prediction for wheeled vehicles, J. Terramechanics 10(2), 49–61
+//   [Turnage 1972]      Tire selection and performance prediction for off-road wheeled-vehicle operations, 4th Int. Conf.
+//                       ISTVS, Stockholm
+//   [Mason 2016]        Mason et al.: Improved sinkage algorithms …, J. Terramechanics 67, 25–36
+//   [Mason 2018]        Mason, Williams, Vahedifard, Priddy: A unified equation for predicting traction for wheels on sand
+//                       over a range of braked, towed, and powered operations, J. Terramechanics 79, 33–40,
+//                       doi:10.1016/j.jterra.2018.05.003
+//   [Williams 2019]     Williams, Vahedifard, Mason, Priddy: New algorithms for predicting longitudinal motion resistance
+//                       of wheels on dry sand, J. Defense Modeling and Simulation, doi:10.1177/1548512917693119
+//   [Jazar 2008]        Vehicle Dynamics: Theory and Application, Springer
+#pragma once
+
+#include <cmath>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace furrow::output {
+
+/// A wheel on soil, as regressions see it. NaN: not known.
+struct SoilWheel {
+  double cone_index = NAN;      // CI, mean over the uppermost 0.15 m, Pa
+  double diameter = NAN;        // d, undeformed, m
+  double width = NAN;           // b, overall, m
+  double section_height = NAN;  // h, from the rim to the tread, undeformed, m
+  double deflection = NAN;      // δ, m; 0: a rigid wheel
+  double load = NAN;            // W, N
+  double slip = NAN;            // s
+};
+
+/// What a regression gives, N; NaN where it gives none.
+struct Traction {
+  double gross = NAN, resistance = NAN, net = NAN;
+};
+
+/// s ≥ 0
+Traction brixius_bias(const SoilWheel& wheel);
+Traction brixius_radial(const SoilWheel& wheel);
+/// s ≥ 0; needs neither h nor δ
+Traction wismer_luth(const SoilWheel& wheel);
+/// s > 0. The net traction holds at 20 % slip, whatever s. None of a rigid wheel, of which the numeric is 0.
+Traction wes_sand(const SoilWheel& wheel);
+/// Any s, the powered resistance from s = 0 on and that of towed wheels below.
+Traction mason_sand(const SoilWheel& wheel);
+
+/// Radius at which a wheel rolls without torque, m: R − δ/3, an estimate [Jazar 2008, Sect. 3.3].
+inline double free_rolling_radius(double radius, double deflection) { return radius - deflection / 3.0; }
+/// Rolling radius on hard ground without net pull, m: 2.5 R (R − δ)/(1.5 R + (R − δ)) [Brixius 1987].
+inline double no_pull_radius(double radius, double deflection) {
+  const double loaded = radius - deflection;
+  return 2.5 * radius * loaded / (1.5 * radius + loaded);
+}
+
+/// The slip of one wheel counted from two other zeros than the undeformed radius.
+struct SlipZeros {
+  double free_rolling = NAN, no_pull = NAN;
+};
+
+/// `regressions` of the summary; null without a cone index.
+/// @param wheel whose slip is not used @param cohesive the soil is, so that regressions of sand do not hold for it, nor
+/// those of loam for any other
+nlohmann::ordered_json regressions_json(SoilWheel wheel, const SlipZeros& slip, bool cohesive);
+
+}  // namespace furrow::output

@@ -1,20 +1,21 @@
-// What published regressions of traction expect of a wheel on soil whose cone index is known, for comparison with a run.
+// What published regressions of traction expect of a wheel on soil whose cone index is known, beside what a run found.
 //
 // W load, b overall width, d diameter, h section height, δ deflection, CI cone index, s slip from the regression's own
 // zero. What each regression takes from where, and how well that is known: nodes/output/README.md, "Regressions".
-//   [Brixius 1987]      Traction prediction equations for bias ply tires, ASAE Paper 87-1622
-//   [Al-Hamed 1994]     Al-Hamed, Grisso, Zoz, Von Bargen: Tractor performance spreadsheet for radial tires, Computers
-//                       and Electronics in Agriculture 10
-//   [Wismer 1973]       Wismer, Luth: Off-road traction prediction for wheeled vehicles, J. Terramechanics 10(2), 49–61
-//   [Turnage 1972]      Tire selection and performance prediction for off-road wheeled-vehicle operations, 4th Int. Conf.
-//                       ISTVS, Stockholm
-//   [Mason 2016]        Mason et al.: Improved sinkage algorithms …, J. Terramechanics 67, 25–36
-//   [Mason 2018]        Mason, Williams, Vahedifard, Priddy: A unified equation for predicting traction for wheels on sand
-//                       over a range of braked, towed, and powered operations, J. Terramechanics 79, 33–40,
-//                       doi:10.1016/j.jterra.2018.05.003
-//   [Williams 2019]     Williams, Vahedifard, Mason, Priddy: New algorithms for predicting longitudinal motion resistance
-//                       of wheels on dry sand, J. Defense Modeling and Simulation, doi:10.1177/1548512917693119
-//   [Jazar 2008]        Vehicle Dynamics: Theory and Application, Springer
+//   [Brixius 1987]   Traction prediction equations for bias ply tires, ASAE Paper 87-1622
+//   [Al-Hamed 1994]  Al-Hamed, Grisso, Zoz, Von Bargen: Tractor performance spreadsheet for radial tires, Computers and
+//                    Electronics in Agriculture 10
+//   [Wismer 1973]    Wismer, Luth: Off-road traction prediction for wheeled vehicles, J. Terramechanics 10(2), 49–61
+//   [Turnage 1972]   Tire selection and performance prediction for off-road wheeled-vehicle operations, 4th Int. Conf.
+//                    ISTVS, Stockholm
+//   [Mason 2016]     Mason et al.: Improved sinkage algorithms for powered and unpowered wheeled vehicles operating on
+//                    sand, J. Terramechanics 67, 25–36
+//   [Mason 2018]     Mason, Williams, Vahedifard, Priddy: A unified equation for predicting traction for wheels on sand
+//                    over a range of braked, towed, and powered operations, J. Terramechanics 79, 33–40,
+//                    doi:10.1016/j.jterra.2018.05.003
+//   [Williams 2019]  Williams, Vahedifard, Mason, Priddy: New algorithms for predicting longitudinal motion resistance
+//                    of wheels on dry sand, J. Defense Modeling and Simulation, doi:10.1177/1548512917693119
+//   [Jazar 2008]     Vehicle Dynamics: Theory and Application, Springer
 #pragma once
 
 #include <cmath>

@@ -251,6 +251,28 @@ TEST(Scenario, a_cohesive_soil_taken_as_it_is_with_grains_of_another_size_is_war
   EXPECT_TRUE(warnings("30e3", R"({"grain_radius_m": 0.01})", R"(, "cohesion": 20e3)").empty()) << "a soil of its own";
 }
 
+TEST(Scenario, a_soil_taken_as_it_is_brings_its_measured_cone_index) {
+  const auto cone_index = [](const std::string& cohesion, const std::string& radius, const std::string& more) {
+    const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"friction": 0.4, "cohesion": )" + cohesion +
+                                     R"(}, "measured": {"grain_radius_m": 0.01, "cone_index_Pa": {"mean": 64e3}}})");
+    return testing::ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"material": ")" +
+                                 soil.path().string() + R"(", "radius": )" + radius + more + "}}")
+        .load()
+        .terrain->describe()
+        .cone_index;
+  };
+  EXPECT_EQ(cone_index("0", "0.01", ""), 64e3);
+  EXPECT_EQ(cone_index("0", "0.01", R"(, "cone_index": 50e3)"), 50e3);
+  EXPECT_EQ(cone_index("0", "0.01", R"(, "friction": 0.5)"), std::nullopt);
+  EXPECT_EQ(cone_index("0", "0.006", ""), 64e3);
+  EXPECT_EQ(cone_index("30e3", "0.006", ""), std::nullopt);
+}
+
+TEST(Scenario, a_cone_index_leaves_the_digest_alone) {
+  const testing::ScenarioFile file(testing::kSmallest);
+  EXPECT_EQ(file.load({{"terrain.cone_index", "2e5"}}).digest, file.load().digest);
+}
+
 TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
   const auto complaint = [](const std::string& text) {
     const testing::ScenarioFile soil(text), own(testing::kSmallest);

@@ -109,6 +109,10 @@ class TerrainSpec {
   virtual std::string lacking() const { return {}; }
   /// Against a rigid wheel that stands on it, N/m; 0: not known. @param width m @param load N
   virtual double stiffness_under(double /*radius*/, double /*width*/, double /*load*/) const { return 0.0; }
+  /// Length of that wheel's contact in nodes of a grid; infinite where there is no grid.
+  virtual double nodes_under(double /*radius*/, double /*width*/, double /*load*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
   /// @param width overall, of one tire, m
   /// @throws Error(bad_input) naming the key of the terrain that such a tire does not go with
   virtual void check_tire_width(double) const {}

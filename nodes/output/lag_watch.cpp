@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kFloor = 1e-3;       // of load × radius, that at least passes a wheel
 constexpr double kSettlement = 0.05;  // of the radius, of the bounce that a window lasts
-constexpr double kLeastPart = 0.02;   // of a step, that a better one is
 
 }  // namespace
 
@@ -29,9 +28,9 @@ std::string other_help(const scenario::Scenario& scenario) {
   return std::ranges::any_of(scenario.tires, helps) ? ", or tire.contact_tangent" : "";
 }
 
-double better_step(double step, double share) {
-  FURROW_ASSERT(step > 0.0 && share > 0.0, step, share);
-  const double most = step * std::clamp(kGoodShare / share, kLeastPart, 0.5);
+double better_step(double step, double share, double bears) {
+  FURROW_ASSERT(step > 0.0 && share > 0.0 && bears > 0.0, step, share, bears);
+  const double most = bears < step ? std::min(bears, 0.5 * step) : step * std::clamp(kGoodShare / share, 0.1, 0.5);
   const double digit = std::pow(10.0, std::floor(std::log10(most)));
   return std::floor(most / digit * (1.0 + 1e-9)) * digit;
 }

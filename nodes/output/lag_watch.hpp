@@ -40,8 +40,10 @@ double lag_share(double made, double passed, double load, double radius);
 /// What else helps at the ground beside a smaller step, for people: ", or tire.contact_tangent"; empty: nothing.
 std::string other_help(const scenario::Scenario& scenario);
 
-/// A step with which late forces, whose energy grows with the step, keep below kGoodShare, s: a number of one digit.
-double better_step(double step, double share);
+/// A step with which late forces keep below kGoodShare, s: a number of one digit. At most what the pair of tire and ground
+/// bears where that is less than the step; else smaller in proportion to the share, as their energy grows with the step,
+/// and by no more than ten, as a motion that ran away says nothing of it.
+double better_step(double step, double share, double bears);
 
 /// Judges a wheel of a running simulation, window by window, each as long as a bounce of a wheel that its tire and
 /// ground let down by a twentieth of its radius. The first begins where it touches the ground.

@@ -14,6 +14,7 @@
 #include "nodes/output/steadiness.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
@@ -359,7 +360,11 @@ Json interface_json(const SummaryInput& in) {
   const bool known = !entries.empty();
   Json json = {{"share", known ? json_number(worst) : Json(nullptr)},
                {"ok", known ? Json(worst <= kGoodShare) : Json()}};
-  if (worst > kGoodShare) json["better_step_s"] = better_step(in.scenario.run.step, worst);
+  if (worst > kGoodShare) {
+    double bears = INFINITY;
+    for (const scenario::CouplingStep& one : scenario::coupling_steps(in.scenario)) bears = std::min(bears, one.step);
+    json["better_step_s"] = better_step(in.scenario.run.step, worst, bears);
+  }
   json["entries"] = entries;
   return json;
 }

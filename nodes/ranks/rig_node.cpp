@@ -17,6 +17,7 @@
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/wall_watch.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
@@ -291,7 +292,8 @@ class RigNode : public Node {
           "at most {:.0f} %: take a run.step of {} s or less{}",
           name.empty() ? fmt::format("wheel {}", k) : name, window->interface, window->made > 0.0 ? "made" : "took",
           std::abs(window->made), window->from, window->to, 100.0 * window->share, 100.0 * output::kMostShare,
-          number_text(output::better_step(scenario_.run.step, window->share)),
+          number_text(
+              output::better_step(scenario_.run.step, window->share, scenario::coupling_steps(scenario_).at(k).step)),
           window->interface == std::string_view("ground") ? output::other_help(scenario_) : "");
       if (scenario_.run.on_lag == "end") throw physics_error(text + ", or run.on_lag 'warn' to go on");
       if (!std::exchange(lag_told_, true) && context_.note) context_.note("warning: " + text);

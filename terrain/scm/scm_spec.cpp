@@ -41,16 +41,15 @@ class ScmSpec final : public TerrainSpec {
     e.checkpoint_bytes = kSavedPerNode * nodes;
     return e;
   }
-  /// That of unloading, over the contact from the lowest point forward: b √(2 R z) with Bekker's sinkage z of a rigid
-  /// wheel [Bekker 1969], W = ⅓ (3 − n) (k_c/b + k_φ) b √(2R) z^(n + ½).
+  /// That of unloading, over the contact from the lowest point forward.
   double stiffness_under(double radius, double width, double load) const override {
     const ScmOptions& o = options_;
-    const double b = o.patch_width >= 0.0 ? o.patch_width : width, modulus = o.bekker_k_c / b + o.bekker_k_phi;
-    const double whole = std::max(0.1, (3.0 - o.bekker_n) / 3.0) * modulus * width * std::sqrt(2.0 * radius);
-    const double z = std::min(radius, std::pow(load / whole, 1.0 / (o.bekker_n + 0.5)));
-    const double area = width * std::sqrt(2.0 * radius * z);
+    const double z = sinkage(radius, width, load), area = width * std::sqrt(2.0 * radius * z);
     return area * std::max(o.unloading_stiffness + o.unloading_stiffness_rate * z,
                            std::max(1.0, o.bekker_n) * load / (area * z));
+  }
+  double nodes_under(double radius, double width, double load) const override {
+    return std::sqrt(2.0 * radius * sinkage(radius, width, load)) / options_.grid_spacing;
   }
   void check_tire_width(double width) const override { check_scm_width(options_, width); }
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
@@ -60,6 +59,14 @@ class ScmSpec final : public TerrainSpec {
   }
 
  private:
+  /// Bekker's of a rigid wheel [Bekker 1969], W = ⅓ (3 − n) (k_c/b + k_φ) b √(2R) z^(n + ½), m.
+  double sinkage(double radius, double width, double load) const {
+    const ScmOptions& o = options_;
+    const double b = o.patch_width >= 0.0 ? o.patch_width : width, modulus = o.bekker_k_c / b + o.bekker_k_phi;
+    const double whole = std::max(0.1, (3.0 - o.bekker_n) / 3.0) * modulus * width * std::sqrt(2.0 * radius);
+    return std::min(radius, std::pow(load / whole, 1.0 / (o.bekker_n + 0.5)));
+  }
+
   ScmOptions options_;
 };
 

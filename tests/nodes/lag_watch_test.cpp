@@ -45,11 +45,12 @@ TEST(LagWatch, a_standing_wheel_counts_as_if_a_thousandth_of_load_times_radius_p
 }
 
 TEST(LagWatch, a_better_step_has_one_digit_and_is_smaller_in_proportion) {
-  EXPECT_NEAR(better_step(1e-3, 0.1), 1e-4, 1e-18);
-  EXPECT_NEAR(better_step(1e-3, 0.015), 5e-4, 1e-18);
-  EXPECT_NEAR(better_step(4e-5, 0.04), 1e-5, 1e-18);
-  EXPECT_NEAR(better_step(1e-3, 20.0), 2e-5, 1e-18);
-  EXPECT_NEAR(better_step(1e-3, INFINITY), 2e-5, 1e-18);
+  EXPECT_NEAR(better_step(1e-3, 0.1, INFINITY), 1e-4, 1e-18);
+  EXPECT_NEAR(better_step(1e-3, 0.015, INFINITY), 5e-4, 1e-18);
+  EXPECT_NEAR(better_step(4e-5, 0.04, INFINITY), 1e-5, 1e-18);
+  EXPECT_NEAR(better_step(1e-3, INFINITY, INFINITY), 1e-4, 1e-18) << "a motion that ran away";
+  EXPECT_NEAR(better_step(5e-4, 0.7, 8.64e-5), 8e-5, 1e-18) << "what the pair bears";
+  EXPECT_NEAR(better_step(2e-4, 0.04, 5e-4), 5e-5, 1e-18) << "it bears more";
 }
 
 }  // namespace

@@ -105,6 +105,35 @@ TEST(HandlingTire, steady_rolling_gives_the_formula_at_the_rims_slips) {
   }
 }
 
+/// Half a turn about z away, a wheel that rolls backward rolls forward and leans the other way.
+TEST(HandlingTire, rolling_backward_is_rolling_forward_seen_from_the_other_side) {
+  for (const auto& [slip, toe, camber] : {std::tuple{0.3, 0.0, 0.0}, {-0.3, 0.02, 0.0}, {0.0, 0.05, 0.05}}) {
+    const double depth = 0.018, speed = 5.0, spin = (1.0 + slip) * speed / rolling_radius(example_tire(), depth);
+    HandlingTire ahead = make(), back = make();
+    Rolling forward(ahead, rolling(depth, speed, spin, toe, -camber)),
+        backward(back, rolling(depth, -speed, -spin, toe, camber));
+    for (int n = 0; n < 4000; ++n) forward.step(), backward.step();
+    const Wrench a = ahead.spindle_wrench(), b = back.spindle_wrench();
+    const Mat3 half = Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()).toRotationMatrix();
+    EXPECT_LT((half * a.force - b.force).norm(), 1e-6 * a.force.norm()) << slip;
+    EXPECT_LT((half * a.moment - b.moment).norm(), 1e-6 * a.force.norm()) << slip;
+  }
+}
+
+TEST(HandlingTire, rolling_resistance_is_whole_from_a_hundredth_of_a_metre_per_second_on) {
+  for (const double speed : {0.02, 0.2, 2.0}) {
+    HandlingTire tire = make();
+    const double depth = 0.018;
+    Rolling run(tire, rolling(depth, speed, speed / rolling_radius(example_tire(), depth), 0.0, 0.0));
+    for (int n = 0; n < 2000; ++n) run.step();
+    const double whole = evaluate(example_tire(), {.load = 2.2e5 * depth, .speed = speed}).my;
+    const WheelAxes axes = wheel_axes(run.rim(), Vec3::UnitX(), 0.0);
+    const Wrench found = axes.wrench(tire.spindle_wrench().force - Vec3(0, 0, -9.81 * 10.0),
+                                     tire.spindle_wrench().moment, run.rim().position);
+    EXPECT_NEAR(found.moment.y(), whole, 0.05 * std::abs(whole)) << speed;
+  }
+}
+
 TEST(HandlingTire, stated_forces_have_the_wrench_whatever_the_wheel_does) {
   HandlingTire tire = make();
   Rolling run(tire, rolling(0.01, 5.0, 16.0, 0.07, 0.15));

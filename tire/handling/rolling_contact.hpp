@@ -16,8 +16,8 @@
 // rest they are springs: a tire holds its place on a slope. D damps these springs below VXLOW, and fades with the
 // cosine of the speed, after [1, chapter 8]; it is a tenth of the critical damping of the mass that F_z carries.
 // Sideways likewise. The formula holds for a wheel that rolls forward; one that rolls backward is seen from the other
-// side, half a turn about z away, and between ± VXLOW both count in proportion. Rolling resistance is whole from 0.01 m/s
-// on. A file without relaxation lengths takes κ = −V_sx/max(|V_Cx|, VXLOW).
+// side, half a turn about z away, and between ± VXLOW both count in proportion. Rolling resistance is whole from 0.01
+// m/s on. A file without relaxation lengths takes κ = −V_sx/max(|V_Cx|, VXLOW).
 //
 // Reference: [1] H. B. Pacejka, Tire and Vehicle Dynamics, 3rd edition, 2012.
 #pragma once

@@ -70,7 +70,9 @@ void expect_momentum_closes(const Accounts& accounts, bool prompt = false) {
                           << m.surface_difference().transpose() << ", spindle " << m.spindle_difference().transpose()
                           << " N s of " << m.largest();
   EXPECT_GT(m.surface_of_tires.norm(), 1.0) << "the wheel never touched the ground";
-  if (!prompt) EXPECT_GT(m.under_way.norm(), 1e-5 * m.largest()) << "what is under way must matter";
+  if (!prompt) {
+    EXPECT_GT(m.under_way.norm(), 1e-5 * m.largest()) << "what is under way must matter";
+  }
 }
 
 TEST(Accounts, momentum_closes_on_hard_ground) {

@@ -40,9 +40,9 @@ double lag_share(double made, double passed, double load, double radius);
 /// What else helps at the ground beside a smaller step, for people: ", or tire.contact_tangent"; empty: nothing.
 std::string other_help(const scenario::Scenario& scenario);
 
-/// A step with which late forces keep below kGoodShare, s: a number of one digit. At most what the pair of tire and ground
-/// bears where that is less than the step; else smaller in proportion to the share, as their energy grows with the step,
-/// and by no more than ten, as a motion that ran away says nothing of it.
+/// A step with which late forces keep below kGoodShare, s: a number of one digit. At most what the pair of tire and
+/// ground bears where that is less than the step; else smaller in proportion to the share, as their energy grows with
+/// the step, and by no more than ten, as a motion that ran away says nothing of it.
 double better_step(double step, double share, double bears);
 
 /// Judges a wheel of a running simulation, window by window, each as long as a bounce of a wheel that its tire and

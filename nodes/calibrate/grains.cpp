@@ -52,6 +52,7 @@ const auto kRules = std::to_array<ParameterRule>({
     {"cohesion", "Pa", 0.0, 1e9, 0.0, 60e3, false},
     {"radius", "m", 1e-4, 0.1, 4e-3, 0.012, true},
     {"size_spread", "-", 0.0, 0.6, 0.0, 0.4, false},
+    {"solid_fraction", "-", 0.3, 0.74, 0.52, 0.62, false},
     {"settling_friction", "-", 0.0, 10.0, 0.0, 0.5, false},
     {"compaction_pressure", "Pa", 0.0, 1e7, 0.0, 50e3, false},
     {"density", "kg/m³", 100.0, 2e4, 2000.0, 3000.0, false},

@@ -1,6 +1,9 @@
 // `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
 #include <iostream>
+#include <optional>
+#include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/commands/command_table.hpp"
@@ -11,6 +14,7 @@
 #include "protocol/core/clock.hpp"
 #include "protocol/files/fields_json.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
+#include "terrain/dem/beds/bed_packing.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/solver_setup.hpp"
@@ -21,7 +25,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, const terrain::dem::PreparedBed& prepared,
-              const terrain::dem::BedStatistics& bed, double wall_s) {
+              const terrain::dem::BedStatistics& bed, std::optional<double> denser, double wall_s) {
   const double mass = o.density * bed.grain_volume;
   const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
   json j;
@@ -33,7 +37,11 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   j["sides"] = o.sides;
   j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
   j["size_spread"] = o.size_spread;
-  j["settling_friction"] = o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction);
+  // As found, where a packing was asked for.
+  std::vector<double> laid{o.settling_friction, o.settling_drag};
+  if (prepared.bed.has("bed/packing")) laid = prepared.bed.get<double>("bed/packing", 2);
+  j["settling_friction"] = laid[0] < 0.0 ? json(nullptr) : json(laid[0]);
+  j["settling_drag"] = laid[1] < 0.0 ? json(nullptr) : json(laid[1]);
   j["compaction_pressure_Pa"] = o.compaction_pressure;
   j["terrain"] = fields_json(o, role::bed);  // all keys that make the bed
   j["grains"] = bed.grains;
@@ -43,6 +51,9 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   j["top_m"] = bed.top;
   j["solid_fraction"] = bed.solid_fraction;
   j["solid_fraction_bulk"] = bed.solid_fraction_bulk;
+  j["solid_fraction_profile"] = bed.profile;
+  j["solid_fraction_asked"] = o.solid_fraction < 0.0 ? json(nullptr) : json(o.solid_fraction);
+  j["solid_fraction_more_at_1_2_g"] = denser ? json(*denser) : json(nullptr);
   j["bulk_density_kg_m3"] = mass / (o.length * o.width * bed.depth);
   j["coordination_number"] = bed.coordination;
   j["contacts"] = bed.pairs;
@@ -72,11 +83,19 @@ ExitCode make_bed(const scenario::Scenario& scenario) {
   const terrain::dem::PreparedBed prepared = terrain::dem::load_bed(solver, grains, progress);
   const terrain::dem::BedStatistics statistics =
       terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius, progress);
+  std::optional<double> denser;
+  if (grains.solid_fraction > 0.0)
+    denser = terrain::dem::densified_by_weight(solver, terrain::dem::level(grains), progress);
   const double wall = wall_clock() - begin;
   display.clear();
   if (!prepared.settled.settled)
     print_warning(scenario.file.string() + ": the bed did not come to rest and is used as it is");
-  std::cout << bed_json(scenario, grains, prepared, statistics, wall).dump(2) << "\n";
+  if (denser && (statistics.solid_fraction_bulk < terrain::dem::kMetastable ||
+                 *denser > terrain::dem::packing_tolerance(statistics.solid_fraction_bulk)))
+    print_warning(
+        fmt::format("{}: the bed is metastable: its solid fraction is {:.4f}, and {:+.4f} under 20 % more gravity",
+                    scenario.file.string(), statistics.solid_fraction_bulk, *denser));
+  std::cout << bed_json(scenario, grains, prepared, statistics, denser, wall).dump(2) << "\n";
   return ExitCode::done;
 }
 

@@ -23,6 +23,7 @@ namespace {
 
 // Measured runs against the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
 constexpr double kLargeBed = 1.8;      // a grain-step of a bed that is settled or rolled on
+constexpr double kPackings = 2.5;      // beds of which one has the solid fraction that is asked for, and their sample
 constexpr double kOnSoil = 1.2;        // a step of a tire
 constexpr double kDouble = 1.5;        // what a grain-step takes in double precision, of one in mixed
 constexpr double kSettling = 0.6;      // that a new bed takes to settle, simulated s
@@ -77,8 +78,8 @@ double settling(const terrain::dem::DemOptions& o) {
   const auto steps = [](const dem::DemOptions& of, double time) {
     return dem::expected_grains(of) * time / dem::settle_step(of);
   };
-  const bool twice = o.compaction_pressure > 0.0 || o.settling_friction >= 0.0;
-  const double time = kSettling * (twice ? 2.0 : 1.0);
+  double time = kSettling * (o.compaction_pressure > 0.0 ? 2.0 : 1.0);
+  if (o.solid_fraction > 0.0) time *= kPackings;
   if (!dem::is_tiled(o)) return steps(o, time);
   const dem::DemOptions piece = dem::piece_of(o);
   return (is_kept(piece) ? 0.0 : steps(piece, time)) + steps(o, kJoints);

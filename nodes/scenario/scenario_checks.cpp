@@ -15,6 +15,7 @@
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/host.hpp"
+#include "terrain/dem/beds/bed_packing.hpp"
 
 namespace furrow::scenario {
 namespace {
@@ -181,6 +182,13 @@ class Checks {
     }
   }
 
+  void packing() {
+    const terrain::dem::DemOptions* const grains = s_.terrain->grains();
+    if (grains && grains->solid_fraction > 0.0 && grains->solid_fraction < terrain::dem::kMetastable)
+      warn("terrain.solid_fraction", "is {}: beds below {} are metastable, as a shock or more weight makes them denser",
+           number_text(grains->solid_fraction), number_text(terrain::dem::kMetastable));
+  }
+
   void ranks() {
     if (terrain_.core_per_rank || !s_.terrain->grains()) {
       if (s_.run.threads > 1)
@@ -331,6 +339,7 @@ void check_scenario(Scenario& scenario, rigs::RigSpec& rig) {
   checks.rig();
   checks.ranks();
   checks.bin();
+  checks.packing();
   checks.tires();
   checks.room();
   checks.start();

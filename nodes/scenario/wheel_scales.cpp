@@ -22,7 +22,7 @@ constexpr double kG = kStandardGravity;
 constexpr double kAngle = 26.0 * std::numbers::pi / 180.0, kAngleOfRolling = 25.0 * std::numbers::pi / 180.0;
 constexpr double kRough = 0.5;           // friction from which the angle does not grow any more
 constexpr double kCohesionShare = 0.08;  // of the contact cohesion
-constexpr double kSolid = 0.55;          // solid fraction of a bed
+constexpr double kSolid = 0.55;          // solid fraction of a bed where none is asked for
 constexpr double kShearBand = 10.0;      // grain diameters
 constexpr double kTimesToSettle = 4.0;   // z/v: F grows with depth while the damper lets the wheel down
 // μ(I) = μ_s + (μ_2 − μ_s)/(1 + I_0/I) [Jop, Forterre & Pouliquen 2006, doi:10.1038/nature04801].
@@ -42,11 +42,12 @@ struct Strength {
   double cohesion = 0.0, angle = 0.0, weight = 0.0;  // Pa; rad; N/m³
 };
 
+double bulk_density(const DemOptions& o) { return o.density * (o.solid_fraction > 0.0 ? o.solid_fraction : kSolid); }
+
 Strength strength_of(const DemOptions& o) {
   const double rough = std::min(1.0, std::sqrt(o.friction / kRough));
   return {kCohesionShare * o.cohesion,
-          rough * (kAngle + kAngleOfRolling * std::pow(std::min(o.rolling_friction, kRough), 2)),
-          kSolid * o.density * kG};
+          rough * (kAngle + kAngleOfRolling * std::pow(std::min(o.rolling_friction, kRough), 2)), bulk_density(o) * kG};
 }
 
 double contact_length(double radius, double sinkage) { return std::sqrt(2.0 * radius * sinkage); }
@@ -98,7 +99,7 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
   const double sliding = std::abs(wheel.tread_speed - wheel.speed);
   g.inertial = sliding / kShearBand * std::sqrt(o.density / g.pressure);
   const double entering = std::abs(wheel.speed) * std::sqrt(2.0 * g.sinkage / tire.radius);
-  g.impact = kSolid * o.density * entering * entering / g.pressure;
+  g.impact = bulk_density(o) * entering * entering / g.pressure;
   return g;
 }
 

@@ -32,6 +32,9 @@ struct DemOptions : TerrainContext {
   double tile = 0.0;  // a new bed is put together of settled pieces about this long and wide, m; 0: of one
   double undisturbed_height = -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
   double settling_friction = -1.0;   // friction while a new bed falls and is pressed, -; negative: friction
+  double settling_drag = -1.0;       // drag while a new bed falls, √(g/radius); negative: 4 1/s
+  double solid_fraction = -1.0;      // of the middle of a new bed, -; negative: what comes of it
+  double bulk_density = -1.0;        // kg/m³, which sets density; negative: not asked for
   double compaction_pressure = 0.0;  // a lid pressed on the settled bed and lifted again, Pa; 0: none
   bool cache = true;                 // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.
@@ -99,6 +102,21 @@ void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
             "Coulomb coefficient between grains while a new bed falls and is pressed; rolling resistance is scaled "
             "likewise. Lower packs denser, higher looser. The bed then settles once more with friction. null: "
             "friction."));
+  visit(s.settling_drag,
+        key("settling_drag", "-", kBoth, from(0, 100).or_null(),
+            "Drag on grains while a new bed falls, in √(g/radius): they come down at √(g radius)/settling_drag. Slower "
+            "grains lie looser; beyond 2 it hardly matters. null: 4 1/s, whatever the radius."));
+  visit(
+      s.solid_fraction,
+      key("solid_fraction", "-", kBoth, from(0.3, 0.74).usual(0.45, 0.65).or_null(),
+          "Solid fraction asked for: volume of the grains over that of the bed in its middle (half of its depth, away "
+          "from walls). The bed is made anew until it has it within 0.003 (0.006 below 0.52, where beds are "
+          "metastable), with settling_friction and settling_drag of its own, or with those that are given if they "
+          "do. A settled bed from a file is compared with it. null: what comes of it."));
+  visit(s.bulk_density,
+        key("bulk_density", "kg/m³", role::key | role::soil, from(1, 1e5).usual(300, 8000).or_null(),
+            "Density of the bed as a whole: density becomes bulk_density / solid_fraction, which must be given. null: "
+            "what density and packing make."));
   visit(s.compaction_pressure,
         key("compaction_pressure", "Pa", kBoth, from(0, 1e9).usual(1e3, 1e6),
             "Pressure of a flat frictionless lid that presses the settled bed and is lifted again before use. 0: no "

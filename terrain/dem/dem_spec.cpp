@@ -1,7 +1,9 @@
 #include "terrain/dem/dem_spec.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/error.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 
 namespace furrow::terrain::dem {
@@ -43,6 +45,15 @@ TerrainDescription describe_grains(const DemOptions& options) {
   if (options.cone_index > 0.0) d.cone_index = options.cone_index;
   d.cohesive = options.cohesion > 0.0;
   return d;
+}
+
+void take_bulk_density(DemOptions& options) {
+  if (options.bulk_density < 0.0) return;
+  if (options.solid_fraction < 0.0)
+    throw input_error(
+        options.scenario, "terrain.bulk_density",
+        fmt::format("is {:g} kg/m³, but terrain.solid_fraction is not given; expected both", options.bulk_density));
+  options.density = options.bulk_density / options.solid_fraction;
 }
 
 std::vector<TerrainFile> bed_files(const DemOptions& options) {

@@ -19,11 +19,14 @@ std::unique_ptr<TerrainSpec> read_dem_spec(const nlohmann::json& section, const 
 /// What the keys say of any engine of these grains: all but its name.
 TerrainDescription describe_grains(const DemOptions& options);
 std::vector<TerrainFile> bed_files(const DemOptions& options);
+/// Sets the density of the grains where that of the bed is asked for. @throws Error(bad_input)
+void take_bulk_density(DemOptions& options);
 /// The keys of a section into `options`, whatever struct lists them, and the bed's file found.
 template <HasFields Options>
 void read_grain_keys(const nlohmann::json& section, const ReadContext& context, Options& options) {
   options.scenario = context.file;
   read_fields(section, options);
+  take_bulk_density(options);
   if (!options.bed.empty()) options.bed = find_file(options.bed, context.key("bed"), context.file).string();
 }
 

@@ -269,7 +269,8 @@ TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
   e.checkpoint_bytes = kBytesPerSavedGrain * static_cast<double>(e.grains);
   const double volume =
       grains * 4.0 / 3.0 * std::numbers::pi * std::pow(options.radius, 3) * dem::mean_volume_ratio(options);
-  e.expected_height = volume / (kLooseFraction * options.length * options.width);
+  const double fraction = options.solid_fraction > 0.0 ? options.solid_fraction : kLooseFraction;
+  e.expected_height = volume / (fraction * options.length * options.width);
   const std::string sizes =
       options.size_spread > 0.0
           ? fmt::format(" (radii {:.3g} to {:.3g} mm, median by mass {:.3g} mm)", 1e3 * dem::smallest_radius(options),

@@ -11,6 +11,7 @@
 #include "terrain/dem/beds/bed_compaction.hpp"
 #include "terrain/dem/beds/bed_csv.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_packing.hpp"
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/close_pairs.hpp"
@@ -50,6 +51,28 @@ TEST(BedStatistics, two_touching_spheres_by_hand) {
   EXPECT_NEAR(s.top, 0.06, 1e-15);
   const double sphere = 4.0 / 3.0 * std::numbers::pi * r * r * r;
   EXPECT_NEAR(s.solid_fraction * 0.2 * 0.1 * s.depth, 3.0 * sphere - lens_volume(r, r, d), 1e-12);
+}
+
+/// The middle of this bed (1 m deep) is 0.5 × 0.5 × 0.5 m, at x = 0.25 to 0.75: a grain in it counts whole, one on its
+/// side by half, two that overlap once.
+TEST(BedStatistics, the_middle_counts_what_of_a_grain_is_in_it) {
+  const double r = 0.04, sphere = 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  const Bin bin{1.0, 1.0, false, false};
+  std::vector<Quad> grains;
+  for (double x = r; x < 1.0; x += 2.0 * r)
+    for (double y = r - 0.5; y < 0.5; y += 2.0 * r) grains.push_back({x, y, 1.0 - r, r});  // the surface
+  const auto solid = [&](std::vector<Quad> inside) {
+    inside.insert(inside.end(), grains.begin(), grains.end());
+    const BedStatistics s = bed_statistics(inside, bin, r);
+    EXPECT_NEAR(s.depth, 1.0, 1e-12);
+    EXPECT_NEAR(s.solid_fraction_bulk, (s.profile[0] + s.profile[1] + s.profile[2] + s.profile[3]) / 4.0, 1e-15);
+    return s.solid_fraction_bulk * 0.125;
+  };
+  EXPECT_NEAR(solid({{0.5, 0.0, 0.5, r}}), sphere, 1e-12);
+  EXPECT_NEAR(solid({{0.25, 0.0, 0.45, r}}), 0.5 * sphere, 1e-12);
+  EXPECT_NEAR(solid({{0.5, 0.25, 0.75, r}}), 0.25 * sphere, 1e-12);
+  EXPECT_NEAR(solid({{0.1, 0.0, 0.5, r}}), 0.0, 1e-15);
+  EXPECT_NEAR(solid({{0.5, 0.0, 0.45, r}, {0.51, 0.0, 0.45, r}}), 2.0 * sphere - lens_volume(r, r, 0.01), 1e-12);
 }
 
 /// Radii 3 and 4 at distance 5 meet in a circle of radius 12/5, at 9/5 and 16/5 from the centres: two caps by hand.
@@ -128,6 +151,55 @@ TEST_F(Beds, grains_that_fall_rougher_than_they_are_lie_looser) {
   EXPECT_LT(after, before - 0.01);
   options_.settling_friction = options_.friction;
   EXPECT_EQ(statistics_of(prepare_bed(options_, {})).depth, statistics_of(plain).depth);
+}
+
+TEST(PackingSearch, finds_the_looseness_of_a_solid_fraction_and_the_ends) {
+  int beds = 0;
+  PackingSearch search([&](double u) {
+    ++beds;
+    return 0.55 - (u > 0.0 ? 0.03 * u : 0.06 * u - 0.04 * u * u) + 1e-3 * std::sin(100.0 * u);  // with some chance
+  });
+  for (const double wanted : {0.53, 0.55, 0.60}) {
+    beds = 0;
+    EXPECT_NEAR(search.at(search.looseness_for(wanted)), wanted, 2e-3);
+    EXPECT_LE(beds, 7);
+  }
+  EXPECT_EQ(search.looseness_for(0.4), 1.0);
+  EXPECT_EQ(search.looseness_for(0.7), -1.0);
+  EXPECT_LT(search.loosest(), 0.522);
+  EXPECT_GT(search.densest(), 0.648);
+}
+
+TEST_F(Beds, have_the_solid_fraction_that_is_asked_for_with_the_friction_of_the_run) {
+  options_.cohesion = 0.0;
+  options_.friction = 0.5;
+  options_.rolling_friction = 0.1;
+  options_.layers = 12;
+  options_.sides = "periodic";
+  options_.periodic_x = true;
+  for (const double wanted : {0.55, 0.60}) {
+    options_.solid_fraction = wanted;
+    PreparedBed bed = prepare_bed(options_, {});
+    const BedStatistics found = statistics_of(bed);
+    std::printf("solid fraction asked %.3f, found %.4f\n", wanted, found.solid_fraction_bulk);
+    EXPECT_NEAR(found.solid_fraction_bulk, wanted, packing_tolerance(wanted));
+    EXPECT_TRUE(bed.settled.settled);
+    GrainSolver solver(settling_params(options_));
+    solver.restore(bed.bed);
+    const DemOptions same = level(options_);
+    EXPECT_LT(std::abs(densified_by_weight(solver, same, {})), 0.005);
+    // As found, it is had at once.
+    const auto& laid = bed.bed.get<double>("bed/packing", 2);
+    DemOptions as = options_;
+    as.settling_friction = laid[0], as.settling_drag = laid[1];
+    EXPECT_EQ(statistics_of(prepare_bed(as, {})).depth, found.depth);
+  }
+  options_.solid_fraction = 0.42;
+  const std::string text = refusal();
+  EXPECT_TRUE(holds(text, "terrain.solid_fraction': is 0.42") && holds(text, "lie between 0.5")) << text;
+  options_.solid_fraction = 0.55;
+  options_.compaction_pressure = 1e4;
+  EXPECT_TRUE(holds(refusal(), "terrain.compaction_pressure"));
 }
 
 /// At rest by forces and energy, whatever the number of contacts.

@@ -44,8 +44,8 @@ std::string bed_digest(const DemOptions& o, const std::string& arithmetic) {
   if (o.piece) hash.add("piece of a tiled bed");
   add(o.seed);
   add(settle_step(o));
-  // Rougher while they fall: beds kept before that was honoured were made without.
-  if (o.settling_friction > o.friction) hash.add("rougher while falling");
+  // Beds kept before were placed anew, without their contacts, once they had fallen.
+  if (o.settling_friction >= 0.0) hash.add("goes on as it lies");
   if (o.gravity != standard_gravity()) hash.add(o.gravity.data(), 3 * sizeof(double));
   if (!o.bed.empty()) add_file(hash, o.bed);
   return hash.hex();

@@ -11,11 +11,16 @@
 #include "terrain/dem/beds/bed_cache.hpp"
 #include "terrain/dem/beds/bed_compaction.hpp"
 #include "terrain/dem/beds/bed_generators.hpp"
+#include "terrain/dem/beds/bed_packing.hpp"
+#include "terrain/dem/beds/bed_statistics.hpp"
 #include "terrain/dem/beds/bed_tiling.hpp"
 #include "terrain/dem/solver_setup.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
+
+constexpr int kMostPackings = 4;   // of a bed whose solid fraction is asked for
+constexpr double kSmallBed = 2.0;  // samples: such a bed is its own sample
 
 std::vector<double> geometry(const DemOptions& o) { return {o.radius, o.density, o.length, o.width}; }
 
@@ -99,23 +104,91 @@ Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, Settl
   return bed_archive(solver, options, result);
 }
 
-Archive made_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
-  if (is_tiled(options)) return tiled_bed(options, progress, result);
+/// A bed that falls as the keys of settling say.
+Archive settled_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
   const DemOptions first = falling(options);
   GrainSolver solver(settling_params(options));
-  solver.place(starting_positions(options, progress));
-  result = settle(solver, first, progress);
-  if (options.compaction_pressure > 0.0 || first.friction != options.friction) {
-    const std::vector<Quad> positions =
-        options.compaction_pressure > 0.0 ? compacted_positions(solver, first, progress) : positions_by_id(solver);
+  const std::vector<Quad> start = starting_positions(options, progress);
+  solver.place(start);
+  const double drag = fall_drag(options), fall = solver.top() * drag / options.gravity.norm();
+  result = settle(solver, first, progress, kMaxSettleTime + fall, drag);
+  const auto go_on = [&](const DemOptions& with) {
     const SettleResult before = result;
-    solver = GrainSolver(settling_params(options));
-    solver.place(positions);
-    result = settle(solver, options, progress);
+    result = settle(solver, with, progress, kMaxSettleTime, kRestDrag);
     result.time += before.time;
     result.steps += before.steps;
+  };
+  if (options.compaction_pressure > 0.0) {
+    const std::vector<Quad> positions = compacted_positions(solver, first, progress);
+    solver = GrainSolver(settling_params(options));
+    solver.place(positions);
+    go_on(options);
+  } else if (first.friction != options.friction || drag > kRestDrag) {
+    go_on(options);
   }
   return bed_archive(solver, options, result);
+}
+
+BedStatistics statistics_of(const GrainSolver& solver, const DemOptions& options) {
+  return bed_statistics(positions_by_id(solver), solver.params().bin, options.radius);
+}
+BedStatistics statistics_of(const Archive& bed, const DemOptions& options) {
+  GrainSolver solver(settling_params(options));
+  solver.restore(bed);
+  return statistics_of(solver, options);
+}
+
+/// A bed of the solid fraction that is asked for. What packs so is looked for on a sample, whose beds are kept like any
+/// other; walls and chance make the bed itself differ a little, so that a few are made, and the nearest is taken.
+Archive packed_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
+  const double wanted = options.solid_fraction, tolerance = packing_tolerance(wanted);
+  DemOptions as = options;
+  as.solid_fraction = -1.0;
+  Archive best;
+  double nearest = INFINITY;
+  const auto settle_it = [&] {  // returns by how much it is too dense
+    SettleResult settled;
+    Archive bed = settled_bed(as, progress, settled);
+    const double excess = statistics_of(bed, as).solid_fraction_bulk - wanted;
+    if (std::abs(excess) < nearest) {
+      nearest = std::abs(excess);
+      best = std::move(bed), result = settled;
+      best.put("bed/packing", std::vector<double>{as.settling_friction, as.settling_drag});
+    }
+    return excess;
+  };
+  const DemOptions sample = sample_of(options);
+  const bool small = expected_grains(options) < kSmallBed * expected_grains(sample);
+  PackingSearch search([&](double looseness) {
+    if (small) {
+      as = laid(as, looseness);
+      return wanted + settle_it();
+    }
+    const DemOptions tried = laid(sample, looseness);
+    return statistics_of(prepare_bed(tried, named("a sample of the bed: ", progress)).bed, tried).solid_fraction_bulk;
+  });
+  if (options.settling_friction >= 0.0 || options.settling_drag >= 0.0) settle_it();
+  if (nearest <= tolerance) return best;
+  double looseness = search.looseness_for(wanted), sum = 0.0;
+  if (std::abs(search.at(looseness) - wanted) > tolerance)
+    throw input_error(options.scenario, "terrain.solid_fraction",
+                      fmt::format("is {:g}, but these grains (friction {:g}, rolling friction {:g}, cohesion {:g} Pa) "
+                                  "lie between {:.3f} and {:.3f}; expected a value between, or other grains",
+                                  wanted, options.friction, options.rolling_friction, options.cohesion,
+                                  search.loosest(), search.densest()));
+  for (int k = 1; k <= kMostPackings && nearest > tolerance; ++k) {
+    as = laid(as, looseness);
+    sum += looseness + settle_it() / search.slope(looseness);
+    looseness = std::clamp(sum / k, -1.0, 1.0);
+  }
+  return best;
+}
+
+Archive made_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
+  if (is_tiled(options)) return tiled_bed(options, progress, result);
+  const bool generated = options.bed.empty();
+  return generated && options.solid_fraction > 0.0 ? packed_bed(options, progress, result)
+                                                   : settled_bed(options, progress, result);
 }
 
 /// Takes from the bed's archive how it was settled.
@@ -158,6 +231,17 @@ DemOptions level(DemOptions o) {
   return o;
 }
 
+double densified_by_weight(const GrainSolver& bed, const DemOptions& options, const ProgressCall& progress) {
+  DemOptions heavier = options;
+  heavier.gravity *= 1.2;
+  Archive state;
+  bed.save(state);
+  GrainSolver solver(settling_params(heavier));
+  solver.restore(state);
+  settle(solver, heavier, named("more gravity: ", progress), kMaxSettleTime, kRestDrag);
+  return statistics_of(solver, options).solid_fraction_bulk - statistics_of(bed, options).solid_fraction_bulk;
+}
+
 bool bed_is_settled_anew(const DemOptions& options) { return options.bed.empty() || is_positions_file(options.bed); }
 
 Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const SettleResult& settled) {
@@ -174,6 +258,7 @@ Archive bed_archive(const GrainSolver& solver, const DemOptions& options, const 
 
 void check_bed_options(const DemOptions& o) {
   check_tiling(o);
+  check_packing(o);
   if (o.compaction_pressure > 0.0 && !bed_is_settled_anew(o))
     throw input_error(o.scenario, "terrain.compaction_pressure",
                       fmt::format("is {:g} Pa but the bed '{}' is a settled one and taken as it is, expected 0",
@@ -207,6 +292,12 @@ PreparedBed load_bed(GrainSolver& solver, const DemOptions& options, const Progr
     prepared = settled_anew(options, prepared.file, progress);
     solver.restore(prepared.bed);
   }
+  if (options.solid_fraction > 0.0 && progress)
+    if (const double is = statistics_of(solver, options).solid_fraction_bulk;
+        std::abs(is - options.solid_fraction) > packing_tolerance(options.solid_fraction))
+      progress(fmt::format("{}the bed has a solid fraction of {:.4f}, terrain.solid_fraction asks for {:g}", kWarning,
+                           is, options.solid_fraction),
+               1.0);
   return prepared;
 }
 

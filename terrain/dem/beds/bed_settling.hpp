@@ -33,7 +33,7 @@ double settle_step(const DemOptions& options);
 SolverCoefficients settle_coefficients(const DemOptions& options);
 
 inline constexpr double kMaxSettleTime = 4.0;  // s
-inline constexpr double kFallDrag = 4.0;       // 1/s, while layers fall
+inline constexpr double kFallDrag = 4.0;       // 1/s, while layers fall, unless settling_drag is given
 inline constexpr double kJointDrag = 60.0;     // 1/s, where the grains lie but for gaps of a grain or two
 inline constexpr double kRestDrag = 20.0;      // 1/s, once the grains lie; those on top must still roll to their places
 inline constexpr double kRestSpeed = 0.002;    // rms, m/s: slower counts as at rest

@@ -1,6 +1,7 @@
 // What can be said of a bed at rest from the positions of its grains.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,9 @@
 
 namespace furrow::terrain::dem {
 
+/// Walls order the grains beside them: the middle of a bed begins so many radii from them, but not beyond a quarter.
+inline constexpr double kWallMargin = 8.0;
+
 struct BedStatistics {
   std::int64_t grains = 0;
   std::int64_t pairs = 0;            // of grains that touch
@@ -18,7 +22,8 @@ struct BedStatistics {
   double depth = 0.0;                // mean surface height: mean over cells of 2 r of the highest grain top, m
   double top = 0.0;                  // highest grain top, m
   double solid_fraction = 0.0;       // of the box up to `depth`, doubly covered volume counted once
-  double solid_fraction_bulk = 0.0;  // of its middle half, depth/4 to 3 depth/4, the same way
+  double solid_fraction_bulk = 0.0;  // of its middle, depth/4 to 3 depth/4 and kWallMargin from walls, the same way
+  std::array<double, 4> profile{};   // of four layers of the middle, from below
   double grain_volume = 0.0;         // of all grains, m³
   double max_overlap = 0.0;          // of two grains, m
   double median_by_mass = 0.0;       // radius: half of the mass is of grains that are not larger, m

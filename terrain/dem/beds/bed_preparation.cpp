@@ -170,7 +170,7 @@ Archive packed_bed(const DemOptions& options, const ProgressCall& progress, Sett
   if (options.settling_friction >= 0.0 || options.settling_drag >= 0.0) settle_it();
   if (nearest <= tolerance) return best;
   double looseness = search.looseness_for(wanted), sum = 0.0;
-  if (std::abs(search.at(looseness) - wanted) > tolerance)
+  if (std::abs(looseness) == 1.0 && std::abs(search.at(looseness) - wanted) > tolerance)
     throw input_error(options.scenario, "terrain.solid_fraction",
                       fmt::format("is {:g}, but these grains (friction {:g}, rolling friction {:g}, cohesion {:g} Pa) "
                                   "lie between {:.3f} and {:.3f}; expected a value between, or other grains",

@@ -38,10 +38,11 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
   j["size_spread"] = o.size_spread;
   // As found, where a packing was asked for.
-  std::vector<double> laid{o.settling_friction, o.settling_drag};
-  if (prepared.bed.has("bed/packing")) laid = prepared.bed.get<double>("bed/packing", 2);
+  std::vector<double> laid{o.settling_friction, o.settling_cohesion, o.settling_drag};
+  if (prepared.bed.has("bed/packing")) laid = prepared.bed.get<double>("bed/packing", 3);
   j["settling_friction"] = laid[0] < 0.0 ? json(nullptr) : json(laid[0]);
-  j["settling_drag"] = laid[1] < 0.0 ? json(nullptr) : json(laid[1]);
+  j["settling_cohesion_Pa"] = laid[1] < 0.0 ? json(nullptr) : json(laid[1]);
+  j["settling_drag"] = laid[2] < 0.0 ? json(nullptr) : json(laid[2]);
   j["compaction_pressure_Pa"] = o.compaction_pressure;
   j["terrain"] = fields_json(o, role::bed);  // all keys that make the bed
   j["grains"] = bed.grains;

@@ -32,6 +32,7 @@ struct DemOptions : TerrainContext {
   double tile = 0.0;  // a new bed is put together of settled pieces about this long and wide, m; 0: of one
   double undisturbed_height = -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
   double settling_friction = -1.0;   // friction while a new bed falls and is pressed, -; negative: friction
+  double settling_cohesion = -1.0;   // cohesion while a new bed falls and is pressed, Pa; negative: cohesion
   double settling_drag = -1.0;       // drag while a new bed falls, √(g/radius); negative: 4 1/s
   double solid_fraction = -1.0;      // of the middle of a new bed, -; negative: what comes of it
   double bulk_density = -1.0;        // kg/m³, which sets density; negative: not asked for
@@ -102,6 +103,10 @@ void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
             "Coulomb coefficient between grains while a new bed falls and is pressed; rolling resistance is scaled "
             "likewise. Lower packs denser, higher looser. The bed then settles once more with friction. null: "
             "friction."));
+  visit(s.settling_cohesion,
+        key("settling_cohesion", "Pa", kBoth, from(0, 1e9).or_null(),
+            "Cohesion of contacts while a new bed falls and is pressed; the bed then settles on with cohesion. Lower "
+            "packs denser. null: cohesion."));
   visit(s.settling_drag,
         key("settling_drag", "-", kBoth, from(0, 100).or_null(),
             "Drag on grains while a new bed falls, in √(g/radius): they come down at √(g radius)/settling_drag. Slower "

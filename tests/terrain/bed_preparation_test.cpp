@@ -174,11 +174,12 @@ TEST_F(Beds, have_the_solid_fraction_that_is_asked_for_with_the_friction_of_the_
   options_.cohesion = 0.0;
   options_.friction = 0.5;
   options_.rolling_friction = 0.1;
-  options_.layers = 12;
+  options_.layers = 10;
   options_.sides = "periodic";
   options_.periodic_x = true;
   for (const double wanted : {0.55, 0.60}) {
     options_.solid_fraction = wanted;
+    options_.cohesion = wanted == 0.60 ? 20e3 : 0.0;
     PreparedBed bed = prepare_bed(options_, {});
     const BedStatistics found = statistics_of(bed);
     std::printf("solid fraction asked %.3f, found %.4f\n", wanted, found.solid_fraction_bulk);
@@ -189,11 +190,12 @@ TEST_F(Beds, have_the_solid_fraction_that_is_asked_for_with_the_friction_of_the_
     const DemOptions same = level(options_);
     EXPECT_LT(std::abs(densified_by_weight(solver, same, {})), 0.005);
     // As found, it is had at once.
-    const auto& laid = bed.bed.get<double>("bed/packing", 2);
+    const auto& laid = bed.bed.get<double>("bed/packing", 3);
     DemOptions as = options_;
-    as.settling_friction = laid[0], as.settling_drag = laid[1];
+    as.settling_friction = laid[0], as.settling_cohesion = laid[1], as.settling_drag = laid[2];
     EXPECT_EQ(statistics_of(prepare_bed(as, {})).depth, found.depth);
   }
+  options_.cohesion = 0.0;
   options_.solid_fraction = 0.42;
   const std::string text = refusal();
   EXPECT_TRUE(holds(text, "terrain.solid_fraction': is 0.42") && holds(text, "lie between 0.5")) << text;

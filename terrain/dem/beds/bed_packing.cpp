@@ -29,8 +29,9 @@ double packing_tolerance(double solid_fraction) {
 
 DemOptions laid(DemOptions o, double looseness) {
   FURROW_ASSERT(std::abs(looseness) <= 1.0, looseness);
-  o.solid_fraction = o.settling_friction = o.settling_drag = -1.0;
+  o.solid_fraction = o.settling_friction = o.settling_cohesion = o.settling_drag = -1.0;
   if (looseness < 0.0) o.settling_friction = (1.0 + looseness) * o.friction;
+  if (looseness < 0.0 && o.cohesion > 0.0) o.settling_cohesion = (1.0 + looseness) * o.cohesion;
   if (looseness > 0.0) {
     const double least = kFallDrag / drag_unit(o);
     o.settling_drag = least * std::pow(std::max(kLoosestDrag / least, 1.0), looseness);

@@ -24,7 +24,7 @@ inline constexpr double kPackingTolerance = 0.003, kLooseTolerance = 0.006;
 /// How far the solid fraction of a bed may be from the one asked for.
 double packing_tolerance(double solid_fraction);
 
-/// From −1, settled without friction, over 0, as the grains are, to 1, settled under kLoosestDrag.
+/// From −1, settled without friction and cohesion, over 0, as the grains are, to 1, settled under kLoosestDrag.
 DemOptions laid(DemOptions options, double looseness);
 
 /// Drag of falling grains of the bed, 1/s.

@@ -73,6 +73,7 @@ bool from_cache(const std::filesystem::path& file, const DemOptions& options, Ar
 /// The grains while they fall. Smoother ones come to rest more closely packed, rougher ones more loosely [Agnolin &
 /// Roux 2007, doi:10.1103/PhysRevE.76.061302].
 DemOptions falling(DemOptions o) {
+  if (o.settling_cohesion >= 0.0) o.cohesion = o.settling_cohesion;
   if (o.settling_friction < 0.0) return o;
   if (o.friction > 0.0) o.rolling_friction *= o.settling_friction / o.friction;
   o.friction = o.settling_friction;
@@ -123,7 +124,7 @@ Archive settled_bed(const DemOptions& options, const ProgressCall& progress, Set
     solver = GrainSolver(settling_params(options));
     solver.place(positions);
     go_on(options);
-  } else if (first.friction != options.friction || drag > kRestDrag) {
+  } else if (first.friction != options.friction || first.cohesion != options.cohesion || drag > kRestDrag) {
     go_on(options);
   }
   return bed_archive(solver, options, result);
@@ -153,7 +154,7 @@ Archive packed_bed(const DemOptions& options, const ProgressCall& progress, Sett
     if (std::abs(excess) < nearest) {
       nearest = std::abs(excess);
       best = std::move(bed), result = settled;
-      best.put("bed/packing", std::vector<double>{as.settling_friction, as.settling_drag});
+      best.put("bed/packing", std::vector<double>{as.settling_friction, as.settling_cohesion, as.settling_drag});
     }
     return excess;
   };
@@ -167,7 +168,7 @@ Archive packed_bed(const DemOptions& options, const ProgressCall& progress, Sett
     const DemOptions tried = laid(sample, looseness);
     return statistics_of(prepare_bed(tried, named("a sample of the bed: ", progress)).bed, tried).solid_fraction_bulk;
   });
-  if (options.settling_friction >= 0.0 || options.settling_drag >= 0.0) settle_it();
+  if (std::max({as.settling_friction, as.settling_cohesion, as.settling_drag}) >= 0.0) settle_it();
   if (nearest <= tolerance) return best;
   double looseness = search.looseness_for(wanted), sum = 0.0;
   if (std::abs(looseness) == 1.0 && std::abs(search.at(looseness) - wanted) > tolerance)

@@ -361,9 +361,8 @@ Json interface_json(const SummaryInput& in) {
   Json json = {{"share", known ? json_number(worst) : Json(nullptr)},
                {"ok", known ? Json(worst <= kGoodShare) : Json()}};
   if (worst > kGoodShare) {
-    double bears = INFINITY;
-    for (const scenario::CouplingStep& one : scenario::coupling_steps(in.scenario)) bears = std::min(bears, one.step);
-    json["better_step_s"] = better_step(in.scenario.run.step, worst, bears);
+    json["better_step_s"] =
+        better_step(in.scenario.run.step, worst, scenario::smallest_coupling_step(in.scenario).step);
   }
   json["entries"] = entries;
   return json;

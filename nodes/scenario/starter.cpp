@@ -285,8 +285,7 @@ Scenario checked(const std::filesystem::path& file, const Json& document) {
 /// As it is typed: 1, 2, 4, 5 or 8 times a power of ten, so that usual times are whole numbers of it.
 double step_of(const Scenario& s) {
   const double stable = kStepShare * s.terrain->estimate(s.terrain_context()).stable_step;
-  double largest = std::min(stable, kLargestStep);
-  for (const CouplingStep& coupling : coupling_steps(s)) largest = std::min(largest, coupling.step);
+  const double largest = std::min({stable, kLargestStep, smallest_coupling_step(s).step});
   const double unit = std::pow(10.0, std::floor(std::log10(largest)));
   double step = unit;
   for (const double digit : {2.0, 4.0, 5.0, 8.0})

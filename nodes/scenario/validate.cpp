@@ -1,6 +1,5 @@
 #include "nodes/scenario/validate.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -83,10 +82,6 @@ std::vector<Bound> all_bounds(const Scenario& s) {
   return bounds;
 }
 
-CouplingStep smallest(const std::vector<CouplingStep>& steps) {
-  return *std::ranges::min_element(steps, {}, &CouplingStep::step);
-}
-
 /// " (front_left, rear_left)"; empty where the rig has one wheel.
 std::string wheels_text(const Bound& bound, std::size_t all) {
   if (bound.wheels.empty()) return "";
@@ -130,8 +125,7 @@ nlohmann::ordered_json validation_report(const Scenario& s, const RunTime* time)
   json["terrain_step_s"] = s.terrain_step();
   json["stable_step_s"] = json_number(e.terrain.stable_step);
   json["stable_step_limited_by"] = e.terrain.stable_reason;
-  const std::vector<CouplingStep> coupling = coupling_steps(s);
-  for (const CouplingStep& one : coupling)
+  for (const CouplingStep& one : coupling_steps(s))
     json["coupling_step"].push_back({{"step_s", json_number(one.step)}, {"limited_by", one.because}});
   json["steps"] = e.steps;
   json["grains"] = e.terrain.grains;
@@ -172,7 +166,7 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
     line("terrain step",
          fmt::format("{:g} s, {:.0f} % of the stable {:.3g} s ({})", s.terrain_step(),
                      100.0 * s.terrain_step() / e.terrain.stable_step, e.terrain.stable_step, e.terrain.stable_reason));
-  if (const CouplingStep least = smallest(coupling_steps(s)); std::isfinite(least.step))
+  if (const CouplingStep least = smallest_coupling_step(s); std::isfinite(least.step))
     line("run step", fmt::format("{:g} s, {:.0f} % of the {:.3g} s that {} allows", s.run.step,
                                  100.0 * s.run.step / least.step, least.step, least.because));
   line("terrain", e.terrain.text);

@@ -256,4 +256,11 @@ std::vector<CouplingStep> coupling_steps(const Scenario& s) {
   return all;
 }
 
+CouplingStep smallest_coupling_step(const Scenario& s) {
+  CouplingStep least;
+  for (const CouplingStep& one : coupling_steps(s))
+    if (one.step < least.step) least = one;
+  return least;
+}
+
 }  // namespace furrow::scenario

@@ -73,5 +73,7 @@ struct CouplingStep {
 
 /// Of each wheel.
 std::vector<CouplingStep> coupling_steps(const Scenario& scenario);
+/// Of the wheel with the smallest.
+CouplingStep smallest_coupling_step(const Scenario& scenario);
 
 }  // namespace furrow::scenario

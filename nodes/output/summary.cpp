@@ -344,7 +344,7 @@ Json interface_json(const SummaryInput& in) {
   for (std::size_t k = 0; k < in.end.wheels.size(); ++k) {
     const Window window = averaging_window(in.tables[k], average_from(in), in.scenario.tires[k]->describe().facets);
     if (window.rows.empty()) continue;
-    const std::string wheel = rig.wheels[k].name.empty() ? fmt::format("wheel {}", k) : rig.wheels[k].name;
+    const std::string wheel = scenario::wheel_name(rig, k);
     const double load = in.end.wheels[k].load, radius = in.cards[1 + k].tire_radius;
     const InterfaceEnergies from = interface_energies(window.before), to = interface_energies(window.rows.back());
     add(wheel + " ground", to.ground - from.ground, to.passed - from.passed, load, radius);

@@ -285,13 +285,13 @@ class RigNode : public Node {
       const auto window =
           lag_[k].add(series_[k].wheel().last(), rig_->report(k).load(), terrain.contact[k].contacts > 0);
       if (!window || window->share <= output::kMostShare) continue;
-      const std::string name = scenario::describe_rig(scenario_).wheels.at(k).name;
       const std::string text = fmt::format(
           "at the interface '{} {}' late forces {} {:.3g} J from {:.4g} to {:.4g} s, {:.0f} % of the work there, "
           "expected "
           "at most {:.0f} %: take a run.step of {} s or less{}",
-          name.empty() ? fmt::format("wheel {}", k) : name, window->interface, window->made > 0.0 ? "made" : "took",
-          std::abs(window->made), window->from, window->to, 100.0 * window->share, 100.0 * output::kMostShare,
+          scenario::wheel_name(scenario::describe_rig(scenario_), k), window->interface,
+          window->made > 0.0 ? "made" : "took", std::abs(window->made), window->from, window->to, 100.0 * window->share,
+          100.0 * output::kMostShare,
           number_text(
               output::better_step(scenario_.run.step, window->share, scenario::coupling_steps(scenario_).at(k).step)),
           window->interface == std::string_view("ground") ? output::other_help(scenario_) : "");

@@ -195,10 +195,13 @@ std::vector<WheelScales> wheel_scales(const Scenario& s) {
   return all;
 }
 
-std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel) {
+std::string wheel_name(const rigs::RigDescription& rig, std::size_t wheel) {
   FURROW_ASSERT(wheel < rig.wheels.size(), wheel, rig.wheels.size());
-  if (rig.wheels.size() == 1) return "";
   return rig.wheels[wheel].name.empty() ? fmt::format("wheel {}", wheel) : rig.wheels[wheel].name;
+}
+
+std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel) {
+  return rig.wheels.size() == 1 ? "" : wheel_name(rig, wheel);
 }
 
 std::vector<Bound> scale_bounds(const Scenario& s) {

@@ -56,7 +56,9 @@ struct Bound {
 };
 std::vector<Bound> scale_bounds(const Scenario& scenario);
 
-/// Of a wheel among several, as results name it: "front_left", "wheel 2"; empty where there is one.
+/// As results name it: "front_left", "wheel 2".
+std::string wheel_name(const rigs::RigDescription& rig, std::size_t wheel);
+/// Of a wheel among several; empty where there is one.
 std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel);
 
 /// How large the communication step may be before forces at the contact of a wheel decide the result by their timing.

@@ -8,8 +8,7 @@
 
 #include "nodes/checkpoint/run_summary.hpp"
 #include "nodes/commands/commands.hpp"
-#include "nodes/output/lag_watch.hpp"
-#include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_text.hpp"
@@ -42,7 +41,8 @@ std::string step_line(const json& summary, const scenario::Scenario& scenario) {
       worst.value("name", ""), number_at(worst, "energy_J") > 0.0 ? "made" : "took",
       std::abs(number_at(worst, "energy_J")), 100.0 * number_at(worst, "share"),
       number_text(number_at(judged, "better_step_s")),
-      worst.value("name", "").ends_with("ground") ? output::other_help(scenario) : "", number_text(scenario.run.step));
+      worst.value("name", "").ends_with("ground") ? scenario::other_help(scenario) : "",
+      number_text(scenario.run.step));
 }
 
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {

@@ -21,13 +21,6 @@ double lag_share(double made, double passed, double load, double radius) {
   return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();  // the motion has no bounds
 }
 
-std::string other_help(const scenario::Scenario& scenario) {
-  const auto helps = [](const auto& tire) {
-    return tire->describe().takes_tangents && !tire->options().contact_tangent;
-  };
-  return std::ranges::any_of(scenario.tires, helps) ? ", or tire.contact_tangent" : "";
-}
-
 double better_step(double step, double share, double bears) {
   FURROW_ASSERT(step > 0.0 && share > 0.0 && bears > 0.0, step, share, bears);
   const double most = bears < step ? std::min(bears, 0.5 * step) : step * std::clamp(kGoodShare / share, 0.1, 0.5);

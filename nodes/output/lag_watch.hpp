@@ -8,10 +8,8 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "nodes/output/wheel_row.hpp"
-#include "nodes/scenario/scenario.hpp"
 #include "protocol/core/fields.hpp"
 
 namespace furrow::output {
@@ -36,9 +34,6 @@ inline InterfaceEnergies interface_energies(const WheelRow& row) {
 
 /// |made| as a share of what passes; infinite where one is not finite. @param load N @param radius m
 double lag_share(double made, double passed, double load, double radius);
-
-/// What else helps at the ground beside a smaller step, for people: ", or tire.contact_tangent"; empty: nothing.
-std::string other_help(const scenario::Scenario& scenario);
 
 /// A step with which late forces keep below kGoodShare, s: a number of one digit. At most what the pair of tire and
 /// ground bears where that is less than the step; else smaller in proportion to the share, as their energy grows with

@@ -294,7 +294,7 @@ class RigNode : public Node {
           100.0 * output::kMostShare,
           number_text(
               output::better_step(scenario_.run.step, window->share, scenario::coupling_steps(scenario_).at(k).step)),
-          window->interface == std::string_view("ground") ? output::other_help(scenario_) : "");
+          window->interface == std::string_view("ground") ? scenario::other_help(scenario_) : "");
       if (scenario_.run.on_lag == "end") throw physics_error(text + ", or run.on_lag 'warn' to go on");
       if (!std::exchange(lag_told_, true) && context_.note) context_.note("warning: " + text);
     }

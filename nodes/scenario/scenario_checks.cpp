@@ -104,21 +104,12 @@ class Checks {
     for (std::size_t k = 0; k < tires_.size(); ++k)
       if (k == 0 || s_.tires[k] != s_.tires[k - 1]) tire_options(k);
     rig_.mount(mounted_tires(s_, tires_));
-    for (std::size_t k = 0; k < tires_.size(); ++k) {
-      const double share = tires_[k].step_share, tau = tires_[k].damping_time;
-      if (share > 0.0 && tau == 0.0)
+    for (std::size_t k = 0; k < tires_.size(); ++k)
+      if (tires_[k].step_share > 0.0 && tires_[k].damping_time == 0.0)
         warn(s_.tire_key(k, "structural_damping"),
              "is 0 s: contact forces come one step late and can feed a tire that damps nothing; expected at "
              "least {} s for a run.step of {} s",
-             number_text(short_decimal(2.0 * s_.run.step / share)), number_text(s_.run.step));
-      else if (share > 0.0 && s_.run.step > share * tau)
-        warn("run.step",
-
-             "{} s is more than {:g} of the tire's damping time of {} s: contact forces come one step late and can "
-             "feed the tire; expected at most {} s{}",
-             number_text(s_.run.step), share, number_text(tau), number_text(short_decimal(share * tau)),
-             tires_[k].takes_tangents && !s_.tires[k]->options().contact_tangent ? ", or tire.contact_tangent" : "");
-    }
+             number_text(short_decimal(2.0 * s_.run.step / tires_[k].step_share)), number_text(s_.run.step));
     coupling();
     const rigs::RigDescription rig = describe();
     if (rig.speeds_up_until > s_.run.average_from + 1e-12)
@@ -126,15 +117,14 @@ class Checks {
            number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until));
   }
 
-  /// Steps at which prompt forces are those of a spring that is stepped over.
+  /// Steps at which forces at the contact of a wheel decide the result by their timing.
   void coupling() {
-    const std::vector<CouplingStep> steps = coupling_steps(s_);
-    CouplingStep least;
-    for (std::size_t k = 0; k < steps.size(); ++k)
-      if (s_.prompt(k) && steps[k].step < least.step) least = steps[k];
+    const CouplingStep least = smallest_coupling_step(s_);
     if (s_.run.step > least.step)
-      warn("run.step", "{} s is more than {} s, with which {} is computed well; expected at most that",
-           number_text(s_.run.step), digits(least.step), least.because);
+      warn("run.step",
+           "{} s is more than the {} s that {} allows: the timing of contact forces would decide the result; "
+           "expected at most that{}",
+           number_text(s_.run.step), digits(least.step), least.because, other_help(s_));
   }
 
   /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.

@@ -266,4 +266,11 @@ CouplingStep smallest_coupling_step(const Scenario& s) {
   return least;
 }
 
+std::string other_help(const Scenario& s) {
+  const auto helps = [](const auto& tire) {
+    return tire->describe().takes_tangents && !tire->options().contact_tangent;
+  };
+  return std::ranges::any_of(s.tires, helps) ? ", or tire.contact_tangent" : "";
+}
+
 }  // namespace furrow::scenario

@@ -77,5 +77,7 @@ struct CouplingStep {
 std::vector<CouplingStep> coupling_steps(const Scenario& scenario);
 /// Of the wheel with the smallest.
 CouplingStep smallest_coupling_step(const Scenario& scenario);
+/// What else helps, for people: ", or tire.contact_tangent"; empty: nothing.
+std::string other_help(const Scenario& scenario);
 
 }  // namespace furrow::scenario

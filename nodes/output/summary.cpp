@@ -2,19 +2,17 @@
 #include <cmath>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/checkpoint/segment.hpp"
 #include "nodes/output/accounts_json.hpp"
 #include "nodes/output/averaging_window.hpp"
-#include "nodes/output/lag_watch.hpp"
+#include "nodes/output/lag_json.hpp"
 #include "nodes/output/regressions.hpp"
 #include "nodes/output/results.hpp"
 #include "nodes/output/steadiness.hpp"
 #include "nodes/scenario/rank_table.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
-#include "nodes/scenario/wheel_scales.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/core/hash.hpp"
@@ -327,47 +325,6 @@ void add_cost(const SummaryInput& in, const WheelRows& rows, Json& json) {
   json["cpu"] = cpu_model();
 }
 
-/// What late forces make or take over the averaging window, interface by interface: ground and rim of each wheel, and
-/// what the rig's own rule leaves over of the work that goes through it.
-Json interface_json(const SummaryInput& in) {
-  Json entries = Json::array();
-  double worst = 0.0, all = 0.0, weight = 0.0;
-  const auto add = [&](const std::string& name, double made, double passed, double load, double radius) {
-    const double share = lag_share(made, passed, load, radius);
-    worst = std::max(worst, share);
-    entries.push_back({{"name", name},
-                       {"energy_J", json_number(made)},
-                       {"work_J", json_number(passed)},
-                       {"share", json_number(share)}});
-  };
-  const rigs::RigDescription rig = scenario::describe_rig(in.scenario);
-  for (std::size_t k = 0; k < in.end.wheels.size(); ++k) {
-    const Window window = averaging_window(in.tables[k], average_from(in), in.scenario.tires[k]->describe().facets);
-    if (window.rows.empty()) continue;
-    const std::string wheel = scenario::wheel_name(rig, k);
-    const double load = in.end.wheels[k].load, radius = in.cards[1 + k].tire_radius;
-    const InterfaceEnergies from = interface_energies(window.before), to = interface_energies(window.rows.back());
-    add(wheel + " ground", to.ground - from.ground, to.passed - from.passed, load, radius);
-    add(wheel + " rim", to.rim - from.rim, to.passed - from.passed, load, radius);
-    all += to.passed - from.passed;
-    weight += load * radius;
-  }
-  const Table& accounts = in.tables.back();
-  const std::vector<double> times = accounts.column("time_s"), left = accounts.column("rig_residual_J");
-  std::size_t first = 0;
-  while (first + 1 < times.size() && times[first + 1] < average_from(in)) ++first;
-  if (!entries.empty() && first + 1 < times.size()) add("driveline", left[first] - left.back(), all, weight, 1.0);
-  const bool known = !entries.empty();
-  Json json = {{"share", known ? json_number(worst) : Json(nullptr)},
-               {"ok", known ? Json(worst <= kGoodShare) : Json()}};
-  if (worst > kGoodShare) {
-    json["better_step_s"] =
-        better_step(in.scenario.run.step, worst, scenario::smallest_coupling_step(in.scenario).step);
-  }
-  json["entries"] = entries;
-  return json;
-}
-
 /// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²
 void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
   const auto table =
@@ -424,7 +381,7 @@ std::string summary_text(const SummaryInput& in) {
     wheels.push_back(wheel_summary({in, static_cast<int>(k), in.tables[k], WheelRows(in.tables[k]), in.end.wheels[k]}));
   if (wheels.size() == 1) json.update(wheels.front());
   if (!in.end.wheels.empty()) json["accounts"] = accounts_json(in.end.accounts, in.tables.back(), average_from(in));
-  if (!in.end.wheels.empty()) json["interface"] = interface_json(in);
+  if (!in.end.wheels.empty()) json["interface"] = lag_json(in, average_from(in));
   add_cost(in, WheelRows(in.tables.front()), json);
   json["wheels"] = wheels;
   for (const Table& table : in.tables.subspan(std::min(in.scenario.tires.size(), in.tables.size()))) {

@@ -14,7 +14,6 @@ struct ContactSums {
   Vec3 force = Vec3::Zero();             // N
   Vec3 normal = Vec3::Zero();            // N
   Vec3 tangential = Vec3::Zero();        // N
-  Vec3 moment = Vec3::Zero();            // about the world origin, N m
   double transfer_force_residual = 0.0;  // |Σ nodal − Σ contact| / Σ|f|, this interval's largest
   double transfer_moment_residual = 0.0;  // |Σ x×nodal − Σ x×contact| / Σ|x×f|, taken about the surface's mean vertex
   double work = 0.0;                      // this interval: Σ_substeps f·Δx̃ of the vertices, J
@@ -25,7 +24,6 @@ void visit_fields(FieldsOf<ContactSums> auto& s, auto&& visit) {
   visit(s.force, Field{"force", "N"});
   visit(s.normal, Field{"normal", "N"});
   visit(s.tangential, Field{"tangential", "N"});
-  visit(s.moment, Field{"moment", "N m"});
   visit(s.transfer_force_residual, Field{"transfer_force_residual"});
   visit(s.transfer_moment_residual, Field{"transfer_moment_residual"});
   visit(s.work, Field{"work", "J"});

@@ -38,7 +38,6 @@ void add(ContactSums& to, const ContactSums& more) {
   to.force += more.force;
   to.normal += more.normal;
   to.tangential += more.tangential;
-  to.moment += more.moment;
   to.transfer_force_residual = std::max(to.transfer_force_residual, more.transfer_force_residual);
   to.transfer_moment_residual = std::max(to.transfer_moment_residual, more.transfer_moment_residual);
   to.work += more.work;

@@ -112,7 +112,6 @@ void NodalForceSum::add_substep(std::span<const SurfaceContactForce> contacts, c
     substep_touched_[v] = 0;
   }
   substep_list_.clear();
-  sums_.moment += dt * (moment + mean.cross(force));
   if (force_scale > 0.0)
     sums_.transfer_force_residual = std::max(sums_.transfer_force_residual, (nodal_force - force).norm() / force_scale);
   if (moment_scale > 0.0)
@@ -135,7 +134,6 @@ void NodalForceSum::finish(double duration, NodalForces& forces, ContactSums& su
   sums = sums_;
   sums.normal /= duration;
   sums.tangential /= duration;
-  sums.moment /= duration;
   sums.force = sums.normal + sums.tangential;
   sums_ = ContactSums{};
 }

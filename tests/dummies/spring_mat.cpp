@@ -127,7 +127,6 @@ class SpringMat final : public Terrain {
     forces.force.push_back(force);
     contact.force += force;
     contact.normal += force;
-    contact.moment += (0.5 * (start + end)).cross(force);
     contact.work += force.dot(end - start);
     contact.contacts += 1;
   }

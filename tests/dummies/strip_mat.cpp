@@ -208,7 +208,6 @@ class StripMat final : public Terrain {
     ContactSums& sums = contact[push.tire];
     sums.force += force;
     sums.normal += force;
-    sums.moment += middle.cross(force);
     sums.work += push.work;
     sums.contacts += 1;
     work_ += push.work;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "protocol/core/constants.hpp"
+#include "tests/nodal_sums.hpp"
 #include "tests/nodes/rolling_tire.hpp"
 #include "tests/rigs/reference_options.hpp"
 #include "tire/wheel_axes.hpp"
@@ -42,6 +43,12 @@ tire::Field consistent_weight(const tire::AncfTire& tire) {
   return weight;
 }
 
+/// Of the ground on the tire over the last interval, about the world's origin.
+Wrench acted(const RollingTire& rolling) {
+  return {sum(rolling.on_tire), 0.5 * (moment_about(Vec3::Zero(), rolling.on_tire, rolling.before) +
+                                       moment_about(Vec3::Zero(), rolling.on_tire, rolling.after))};
+}
+
 TEST(Rolling, spindle_impulse_is_that_of_ground_and_gravity_less_the_tires_momentum_to_1e10_of_the_load) {
   for (const char* name : {"hmmwv_layered.json", "hmmwv_lumped.json"}) {
     rigs::DrawbarRigOptions options = free_rolling(4.0);
@@ -66,11 +73,8 @@ TEST(Rolling, spindle_impulse_is_that_of_ground_and_gravity_less_the_tires_momen
           for (const int s : {0, 3})
             moment += (0.5 * (layout.get(from, i, j, s) + layout.get(to, i, j, s))).cross(layout.get(weight, i, j, s));
         }
-      for (std::size_t k = 0; k < rolling.on_tire.vertex.size(); ++k) {
-        const int v = rolling.on_tire.vertex[k];
-        force += rolling.on_tire.force[k];
-        moment += (0.5 * (rolling.before.position[v] + rolling.after.position[v])).cross(rolling.on_tire.force[k]);
-      }
+      const Wrench from_ground = acted(rolling);
+      force += from_ground.force, moment += from_ground.moment;
       const auto [p1, l1] = momenta(rolling.tire);
       worst = std::max(worst, (p1 - p - kStep * force).norm() / (kStep * load));
       worst_moment = std::max(worst_moment, (l1 - l - kStep * moment).norm() / (kStep * load));  // arm of 1 m
@@ -148,7 +152,8 @@ Wrench mean_wrench(double toe, double camber, double& slip_angle) {
     RimState rim = rolling.rig->rim(0);
     rim.position = 0.5 * (from + rim.position);
     const tire::WheelAxes axes = tire::wheel_axes(rim, Vec3::UnitX(), 0.0);
-    const Wrench now = axes.wrench(rolling.contact.force, rolling.contact.moment, Vec3::Zero());
+    const Wrench from_ground = acted(rolling);
+    const Wrench now = axes.wrench(from_ground.force, from_ground.moment, Vec3::Zero());
     sum.force += now.force, sum.moment += now.moment, ++count;
     slip_angle = axes.slip_angle;
     EXPECT_NEAR(axes.camber_angle, camber, 1e-9);

@@ -120,7 +120,6 @@ TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_int
     r.tire.contact.moment = Vec3(-0.03 * std::cos(toe), -0.03 * std::sin(toe), -0.46 - 1e-4).cross(force);
     // What the terrain computes in the meantime, elsewhere, is no part of it.
     r.contact.force = 2.0 * force;
-    r.contact.moment = Vec3(kSpeed * r.time, 0.0, 0.0).cross(r.contact.force);
     builder.add(r);
     if (n == 1) builder.take();  // nothing came before it: its middle is not known
   }

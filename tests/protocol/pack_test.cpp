@@ -62,7 +62,7 @@ TerrainReport terrain_report() {
   m.state = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   m.state.momenta = {{6, 7, 8}, {9, 10, 11}, {12, 13, 14}, {15, 16, 17}, {18, 19, 20}};
   m.contact.resize(2);
-  m.contact[0] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {10, 11, 12}, 13, 14, 15, 16};
+  m.contact[0] = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10, 11, 12, 13, 14};
   m.contact[1].contacts = 99;
   return m;
 }
@@ -241,7 +241,7 @@ TEST(Pack, fields_arrive_where_they_belong) {
   EXPECT_EQ(motion.rim.orientation.coeffs(), rim_motion().rim.orientation.coeffs());
   EXPECT_EQ(motion.order, Order::stop);
   const auto report = unpack<TerrainReport>(pack(terrain_report()));
-  EXPECT_EQ(report.contact[0].moment, Vec3(10, 11, 12));
+  EXPECT_EQ(report.contact[0].tangential, Vec3(7, 8, 9));
   EXPECT_EQ(report.contact[1].contacts, 99);
   EXPECT_TRUE(std::isnan(unpack<FinalReport>(pack(final_report())).height_before.height[1]));
 }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "terrain/rigid/rigid_ground.hpp"
+#include "tests/nodal_sums.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain {

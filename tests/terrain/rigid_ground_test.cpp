@@ -39,7 +39,7 @@ TEST(RigidGround, presses_a_block_with_stiffness_times_depth_times_area) {
   const Push one = push(*ground, start);
   EXPECT_NEAR(one.sums.force.z() / (options.ground_stiffness * 4e-4 * 0.02), 1.0, 1e-12);
   EXPECT_NEAR(one.sums.tangential.norm(), 0.0, 1e-12);
-  EXPECT_NEAR(one.sums.moment.y() / (-3.0 * one.sums.force.z()), 1.0, 1e-12);
+  EXPECT_NEAR(test::moment_about(Vec3::Zero(), one.forces, start).y() / (-3.0 * one.sums.force.z()), 1.0, 1e-12);
   EXPECT_NEAR(ground->gather_state().elastic_energy / (0.5 * options.ground_stiffness * 1.6e-7 * 0.02), 1.0, 1e-12);
   EXPECT_NEAR(ground->gather_state().floor_force, one.sums.force.z(), 1e-9);
 }
@@ -55,7 +55,8 @@ TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
   const double expected = options.ground_stiffness * 0.1 * 0.5 * depth * length;
   EXPECT_NEAR(one.sums.force.z() / expected, 1.0,
               1e-3);  // the vertical back face adds what it covers: sin² tilt
-  EXPECT_NEAR(-one.sums.moment.y() / one.sums.force.z() / (length / 3.0), 1.0, 1e-3);
+  EXPECT_NEAR(-test::moment_about(Vec3::Zero(), one.forces, start).y() / one.sums.force.z() / (length / 3.0), 1.0,
+              1e-3);
 }
 
 TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
@@ -69,7 +70,9 @@ TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
   const Push from_coarse = slide_steadily(*coarse_ground, a), from_fine = slide_steadily(*fine_ground, b);
   // Exact but for the rounding of velocities, which come from differences of positions.
   EXPECT_LT((from_coarse.sums.force - from_fine.sums.force).norm() / from_fine.sums.force.norm(), 1e-10);
-  EXPECT_LT((from_coarse.sums.moment - from_fine.sums.moment).norm() / from_fine.sums.moment.norm(), 1e-10);
+  const Vec3 of_coarse = test::moment_about(Vec3::Zero(), from_coarse.forces, a),
+             of_fine = test::moment_about(Vec3::Zero(), from_fine.forces, b);
+  EXPECT_LT((of_coarse - of_fine).norm() / of_fine.norm(), 1e-10);
 }
 
 TEST(RigidGround, follows_the_regularised_friction_law) {

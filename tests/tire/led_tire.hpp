@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/core/mean_turn.hpp"
+#include "tests/nodal_sums.hpp"
 #include "tire/rim_trajectory.hpp"
 #include "tire/tire.hpp"
 
@@ -54,19 +55,6 @@ inline double surface_work(const NodalForces& f, const SurfaceState& before, con
   for (std::size_t k = 0; k < f.vertex.size(); ++k)
     work += f.force[k].dot(after.position[f.vertex[k]] - before.position[f.vertex[k]]);
   return work;
-}
-/// Their sum, N.
-inline Vec3 sum(const NodalForces& f) {
-  Vec3 force = Vec3::Zero();
-  for (const Vec3& one : f.force) force += one;
-  return force;
-}
-/// And that of their moments about a point, N m.
-inline Vec3 moment_about(const Vec3& centre, const NodalForces& f, const SurfaceState& surface) {
-  Vec3 moment = Vec3::Zero();
-  for (std::size_t k = 0; k < f.vertex.size(); ++k)
-    moment += (surface.position[f.vertex[k]] - centre).cross(f.force[k]);
-  return moment;
 }
 
 }  // namespace furrow::test

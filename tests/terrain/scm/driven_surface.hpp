@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "terrain/scm/scm_ground.hpp"
+#include "tests/nodal_sums.hpp"
 #include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::testing {
@@ -32,7 +33,7 @@ struct DrivenSurface {
     turn += dt * spin;
   }
   /// Moment of the last interval's forces about the axle, N m.
-  Vec3 moment() const { return sums.moment - position.cross(sums.force); }
+  Vec3 moment() const { return test::moment_about(position, forces, state()); }
 };
 
 /// What the accounts leave over since the beginning, J.

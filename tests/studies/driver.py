@@ -93,12 +93,22 @@ def finished_case(name, words, out):
     return out
 
 
+def content_of(word):
+    """Of the file that a word names: where it is a scenario its digest, which covers what it refers to. None where the
+    word names no file."""
+    file = ROOT / word
+    if not os.path.isfile(file):  # of a setting too long for a name as well
+        return None
+    return file.suffix == ".json" and digest_of([file]) or hashlib.sha256(file.read_bytes()).hexdigest()
+
+
 def kept(out, command, *words, scenario=None, finished_only=False, made_at=None):
     """`out`, which holds what `furrow COMMAND WORDS` makes. It is made unless this build of the program made it of the
-    same words. None where `finished_only` forbids that.
+    same words and of files with the same content. None where `finished_only` forbids that.
     @param scenario a dictionary, which becomes the file OUT.json and the first word"""
     words = [str(word) for word in words]
-    made_of = hashlib.sha256(json.dumps([command, words, scenario]).encode()).hexdigest()[:16]
+    contents = [content_of(word) for word in words]
+    made_of = hashlib.sha256(json.dumps([command, words, contents, scenario]).encode()).hexdigest()[:16]
     record = read_json(out / RECORD)
     if (record.get("build"), record.get("made_of")) == (provenance.build_of(provenance.program()), made_of):
         return out

@@ -5,7 +5,6 @@ run that is finished is used again. Scenarios of many grains are cut short.
 One row per scenario: its step, what `furrow validate` says that the pair of tire and ground bears and why, and the
 largest share of what passes a wheel that late forces made in the averaging window, at ground, rim and driveline.
 """
-import hashlib
 import json
 
 import driver
@@ -21,8 +20,7 @@ CUT = {"cleat_roll": None, "curb": None, "drawbar_pull_scm": None, "first_look":
 def row_of(name, end):
     scenario = f"rigs/{name}.json"
     cut = driver.settings({"run.end": end, "run.average_from": 0.6 * end}) if end else []
-    content = hashlib.sha256((driver.ROOT / scenario).read_bytes()).hexdigest()[:8]  # a changed scenario is run again
-    run = driver.kept(driver.RESULTS / "late_forces" / f"{name}_{content}", "run", scenario, *cut,
+    run = driver.kept(driver.RESULTS / "late_forces" / name, "run", scenario, *cut,
                       *driver.settings({"run.on_lag": "warn", "output.frame_interval": 0}))
     told = json.loads(driver.furrow("validate", scenario, "--json"))
     least = min(told["coupling_step"], key=lambda one: one["step_s"] or float("inf"))

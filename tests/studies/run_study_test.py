@@ -16,12 +16,13 @@ sys.path.insert(0, str(HERE))
 import driver  # noqa: E402
 import provenance  # noqa: E402
 
-# Stands in for the program: counts its runs, and takes the settings for the scenario's digest.
+# Stands in for the program: counts its runs, and takes settings and content for the scenario's digest.
 PROGRAM = """#!/usr/bin/python3
 # build {build}
 import json, pathlib, sys
 words = sys.argv[1:]
 digest = " ".join(word for before, word in zip(words, words[1:]) if before == "--set")
+digest += "".join(pathlib.Path(word).read_text() for word in words[1:] if pathlib.Path(word).is_file())
 if words[0] == "validate":
     print(json.dumps({{"scenario_digest": digest}}))
 else:
@@ -126,6 +127,18 @@ class RunStudy(unittest.TestCase):
         self.assertEqual([runs(scenario={"rig": slip}) for slip in (1, 1, 2)], [3, 3, 4])
         self.build(2)
         self.assertEqual(runs(scenario={"rig": 2}), 5)
+
+    def test_results_are_kept_until_a_file_that_their_words_name_changes(self):
+        os.environ["FURROW"] = str(self.folder / "furrow")
+        self.addCleanup(os.environ.pop, "FURROW")
+        scenario, profile = self.folder / "wheel.json", self.folder / "profile.csv"
+
+        def runs(rig, heights):
+            scenario.write_text(json.dumps({"rig": rig}))
+            profile.write_text(heights)
+            out = driver.kept(self.folder / "kept", "press", scenario, "--profile", profile)
+            return len((out / "runs").read_text().split())
+        self.assertEqual([runs(1, "0"), runs(1, "0"), runs(2, "0"), runs(2, "1"), runs(2, "1")], [1, 1, 2, 3, 3])
 
 
 class Tables(unittest.TestCase):

@@ -15,9 +15,10 @@ using testing::Surface;
 
 constexpr double kStep = 1e-5;  // of an interval, s
 
-/// A quad under the plane z = height that looks down.
-testing::Surface plate(double size, double height) {
-  testing::Surface s = testing::sheet(-0.5 * size, -0.5 * size, size, 1, 1, [=](double, double) { return height; });
+/// A square in the plane z = height that looks down. @param cells along each edge
+testing::Surface plate(double size, double height, int cells = 1) {
+  testing::Surface s =
+      testing::sheet(-0.5 * size, -0.5 * size, size / cells, cells, cells, [=](double, double) { return height; });
   for (auto& triangle : s.mesh.triangles) std::swap(triangle[1], triangle[2]);
   return s;
 }
@@ -25,6 +26,18 @@ testing::Surface plate(double size, double height) {
 SurfaceState moved(const testing::Surface& surface, const Vec3& shift) {
   return {surface.vertex, std::vector<Vec3>(surface.vertex.size(), shift / kStep)};
 }
+
+/// A surface that stood still and of which one vertex, or where it is −1 all, is then moved by `shift`, m.
+struct Move {
+  Vec3 shift = Vec3::Zero();
+  int vertex = -1;
+
+  SurfaceState of(const testing::Surface& surface) const {
+    SurfaceState state = moved(surface, vertex < 0 ? shift : Vec3::Zero());
+    if (vertex >= 0) state.velocity[vertex] = shift / kStep;
+    return state;
+  }
+};
 
 /// Sums of forces and of what the tangents expect, both of the whole surface, whose vertices move alike.
 struct Answer {
@@ -63,21 +76,30 @@ void expect_difference(const testing::Surface& surface, const Vec3& shift, doubl
       << (b.force - a.force).transpose() << " N, expected " << expected.transpose() << " N";
 }
 
-/// A grain too heavy to move, 0.3 mm deep in a plate above it.
-NodalForces push_grain(const testing::Surface& surface, const Vec3& shift, const std::string& law, double friction) {
-  constexpr int kSubsteps = 10;
+constexpr int kSubsteps = 10;
+
+struct Grain {
+  std::string law;
+  double friction = 100.0, rolling_friction = 0.0;  // -
+  double density = 1e9;                             // kg/m³; of a heavy one dampers outweigh springs
+};
+
+/// A grain that is put back after every substep, 0.3 mm deep in a plate above it.
+NodalForces push_grain(const testing::Surface& surface, const Move& move, const Grain& grain) {
   terrain::dem::FewGrains few;
-  few.options.law = law;
-  few.options.density = 1e9;
-  few.options.friction = friction;
+  few.options.law = grain.law;
+  few.options.density = grain.density;
+  few.options.friction = grain.friction;
+  few.options.rolling_friction = grain.rolling_friction;
   few.options.friction_impulse_limit = false;
   few.options.step = kStep / kSubsteps;
-  terrain::dem::GrainSolver solver = few.make({{0.3, 0.0, 0.3, few.options.radius}});
+  const terrain::dem::Quad place{0.3, 0.0, 0.3, few.options.radius};
+  terrain::dem::GrainSolver solver = few.make({place});
   const ContactMaterial material = terrain::dem::grain_material(few.options);
   testing::Surface here = surface;
-  for (Vec3& x : here.vertex) x += Vec3(0.3, 0.0, 0.3 + few.options.radius - 3e-4);
+  for (Vec3& x : here.vertex) x += Vec3(0.3005, 2e-4, 0.3 + few.options.radius - 3e-4);  // off edges and vertices
   solver.surfaces().give_tangents(true);
-  const SurfaceState target = moved(here, shift);
+  const SurfaceState target = move.of(here);
   solver.surfaces().attach(here.mesh, material, few.coefficients().floor, target);
   solver.surfaces().set_targets({&target, 1}, kStep);
   solver.surfaces().restrict_to({Vec3::Zero(), Vec3::Ones()});
@@ -86,6 +108,8 @@ NodalForces push_grain(const testing::Surface& surface, const Vec3& shift, const
   for (int s = 0; s < kSubsteps; ++s) {
     solver.surfaces().move_to(static_cast<double>(s) / kSubsteps);
     solver.step(few.options.step);
+    solver.grains().position[0] = place;
+    solver.grains().velocity[0] = solver.grains().spin[0] = {};
   }
   solver.surfaces().finish(kStep, {&forces, 1}, {&sums, 1});
   for (std::size_t k = 0; k < forces.vertex.size(); ++k)
@@ -97,17 +121,57 @@ TEST(ContactTangent, of_a_grain_is_the_difference_of_its_force) {
   const testing::Surface surface = plate(0.1, 0.0);
   for (const char* law : {"mindlin", "hertz_tanh"})
     for (const Vec3& shift : {Vec3(0, 0, -1e-10), Vec3(0, 0, 1e-10), Vec3(1e-10, 2e-10, -1e-10)})
-      expect_difference(surface, shift, 1e-3, [&](const Vec3& d) { return push_grain(surface, d, law, 100.0); });
+      expect_difference(surface, shift, 1e-3, [&](const Vec3& d) { return push_grain(surface, {d}, {law}); });
 }
 
 TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {
   const testing::Surface surface = plate(0.1, 0.0);
-  const Answer a = sum(push_grain(surface, Vec3::Zero(), "mindlin", 0.0));
+  const Answer a = sum(push_grain(surface, {}, {"mindlin", 0.0}));
   EXPECT_GT(a.tangent.stiffness(2, 2), 1e4);
   EXPECT_EQ(a.tangent.stiffness.leftCols<2>().norm(), 0.0);
   EXPECT_EQ(a.tangent.damping.leftCols<2>().norm(), 0.0);
-  expect_difference(surface, Vec3(0, 0, -1e-10), 1e-3,
-                    [&](const Vec3& d) { return push_grain(surface, d, "mindlin", 0.0); });
+  expect_difference(surface, Vec3(0, 0, -1e-10), 1e-3, [&](const Vec3& d) {
+    return push_grain(surface, {d}, {"mindlin", 0.0});
+  });
+}
+
+/// A light grain that resists rolling.
+Grain rough(const char* law) { return {law, 100.0, 0.3, 2500.0}; }
+
+/// What rolling friction adds to the force on a vertex that moves alone, and what it adds to the tangent of that vertex
+/// makes of its motion. The hit is the same with and without it.
+void expect_couple_difference(const testing::Surface& surface, const char* law, int vertex, const Vec3& shift) {
+  Grain smooth = rough(law);
+  smooth.rolling_friction = 0.0;
+  Vec3 force = Vec3::Zero(), expected = Vec3::Zero();
+  const auto add = [&](const Grain& grain, double sign) {
+    const NodalForces forces = push_grain(surface, {shift, vertex}, grain);
+    for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
+      if (forces.vertex[k] != vertex) continue;
+      const ContactTangent& t = forces.tangent[k];
+      // Within a substep the law stretches its spring before it takes the force.
+      const Vec3 stretch = t.position - surface.vertex[vertex] + kStep / kSubsteps * t.velocity;
+      force += sign * forces.force[k];
+      expected -= sign * (t.stiffness * stretch + t.damping * t.velocity);
+    }
+  };
+  add(rough(law), 1.0), add(smooth, -1.0);
+  EXPECT_GT(expected.norm(), 0.0) << law << ' ' << vertex;
+  EXPECT_LE((force - expected).norm(), 1e-4 * expected.norm())
+      << law << ' ' << vertex << ": " << force.transpose() << " N, expected " << expected.transpose() << " N";
+}
+
+TEST(ContactTangent, of_the_rolling_couple_is_the_difference_of_its_forces) {
+  const Vec3 shift(2e-10, 1e-10, 3e-10);
+  // The couple acts on the vertices of a large facet, and on more than those of one smaller than the grain.
+  for (const auto& [cells, least] : {std::pair{1, 3U}, {50, 20U}})
+    for (const char* law : {"mindlin", "hertz_tanh"}) {
+      const testing::Surface surface = plate(0.1, 0.0, cells);
+      const int middle = cells / 2 * (cells + 2);
+      const std::vector<int> patch = push_grain(surface, {shift, middle}, rough(law)).vertex;
+      EXPECT_GE(patch.size(), least);
+      for (const int vertex : patch) expect_couple_difference(surface, law, vertex, shift);
+    }
 }
 
 /// A plate that has stood 0.4 mm deep in hard ground.

@@ -171,6 +171,44 @@ TEST(VehicleRig, locks_its_differentials_while_its_driver_says_so) {
   EXPECT_NEAR(torque, 2.0 * 100.0, 10.0);
 }
 
+// The brakes hold the wheels that the locks hold together: what each takes of the torque follows from the locks' creep.
+// A lock that is too weak slips and carries its torque across.
+TEST(VehicleRig, locked_axles_turn_alike_when_they_are_braked_on_two_frictions_until_they_stand) {
+  Track grip, ice;
+  ice.friction = 0.2;
+  for (const double lock_torque : {100.0, 2e3}) {
+    rigs::VehicleRigPlan plan = vehicle_plan(
+        "hmmwv.json", {{"inputs",
+                        {{"gear", 0},
+                         {"lock", json::array({{0, 0}, {0.3, 1}})},
+                         {"brake", json::array({{0, 0}, {0.5, 0}, {0.6, 0.1}, {0.9, 0.1}, {1.0, 1.0}})}}}});
+    plan.options.start_speed = 5.0;
+    for (vehicle::DifferentialSpec& one : plan.vehicle.driveline.differentials) one.lock_torque = lock_torque;
+    const auto rig = grip.rig(plan, 0.0);
+    const rigs::RigAccounts start = rig->accounts();
+    double apart = 0.0, across = 0.0;
+    std::vector<Wrench> wrenches(4);
+    for (int i = 0; i < std::lround(2.2 / grip.step); ++i) {
+      for (int k = 0; k < 4; ++k) wrenches[k] = (k % 2 ? ice : grip).wrench(rig->rim(k));
+      const Outcome outcome = rig->advance(wrenches, grip.step, 1);
+      ASSERT_TRUE(outcome.ok) << outcome.message("rig") << " at " << i * grip.step << " s";
+      if (const double time = i * grip.step; time < 0.7 || time > 0.9) continue;
+      for (const int k : {0, 2}) {
+        apart = std::max(apart, std::abs(rig->report(k).spin - rig->report(k + 1).spin));
+        across = std::max(across, std::abs(rig->report(k).drive_torque - rig->report(k + 1).drive_torque));
+      }
+    }
+    EXPECT_LT(std::abs(of_vehicle(*rig, "speed_m_s")), 0.05) << lock_torque;
+    const bool slips = lock_torque == 100.0;
+    EXPECT_EQ(apart < 1e-3, !slips) << apart << " rad/s, " << lock_torque;
+    EXPECT_GT(across, 200.0 * 0.95) << lock_torque;
+    EXPECT_EQ(across < 2.0 * 100.0 * 1.05, slips) << across << ' ' << lock_torque;
+    const rigs::RigAccounts end = rig->accounts();
+    EXPECT_LT(std::abs(energy_residual(start, end)), 1e-3 * start.stored()) << lock_torque;
+    EXPECT_LT(momentum_residual(start, end).norm(), 1e-9 * end.gravity_impulse.norm()) << lock_torque;
+  }
+}
+
 TEST(VehicleRig, drives_backwards_in_reverse_and_not_at_all_in_neutral) {
   const Track track;
   const auto back = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.3}, {"gear", -1}}}}));

@@ -139,6 +139,35 @@ TEST(Clutch, locking_differential_carries_its_capacity_across_and_no_more) {
   EXPECT_NEAR(system.shaft(right).state.speed, (lambda - 100.0) / 0.4 * 0.2, 1e-8);
 }
 
+TEST(Lock, creeps_with_its_share_of_the_torque_and_takes_nothing_where_brakes_hold_both_outputs) {
+  const double J = 0.4, T = 60.0, capacity = 100.0;
+  for (const double h : {1e-3, 4e-5}) {
+    vehicle::System system;
+    const Vec3 y = Vec3::UnitY();
+    const int left = system.add_shaft("left", J, kGround, y, 20.0),
+              right = system.add_shaft("right", J, kGround, y, 20.0);
+    const FrictionCoupling lock = FrictionCoupling::lock(system, "lock", left, right, capacity);
+    const int road = system.add_rate_row({"road", {{left, 1.0}}, {}}, torque(-T));
+    system.assemble(0.0);
+    lock.engage(system, 1.0);
+    const int steps = static_cast<int>(std::lround(0.1 / h));
+    for (int i = 0; i < steps; ++i) ASSERT_TRUE(system.step(h).ok);
+    // Both turn alike: J Ω̇ = −T + λ = −λ.
+    const double creep = -vehicle::kLockCreep * 0.5 * T / capacity;
+    EXPECT_TRUE(lock.holds(system));
+    EXPECT_NEAR(lock.torque(system), 0.5 * T, 1e-9 * T);
+    EXPECT_NEAR(lock.slip(system), creep, 1e-9);
+    EXPECT_NEAR(system.shaft(right).state.speed, 20.0 - 0.5 * T / J * 0.1, 1e-4);
+    EXPECT_NEAR(lock.heat(system), -0.5 * T * creep * 0.1, 0.02 * 0.5 * T * std::abs(creep) * 0.1);
+    system.set_rate_control(road, torque(0.0));
+    for (const int shaft : {left, right}) system.add_rate_row({"brake", {{shaft, 1.0}}, {}}, held(0.0));
+    system.assemble(system.time());
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(system.step(h).ok);
+    EXPECT_NEAR(lock.torque(system), 0.0, 1e-9);
+    EXPECT_NEAR(system.shaft(left).state.speed, 0.0, 1e-12);
+  }
+}
+
 TEST(Brake, four_brakes_on_a_locked_chain_hold_together_and_share_the_load_evenly) {
   vehicle::System system;
   const int shaft = system.add_shaft("shaft", 0.4, kGround, Vec3::UnitY());

@@ -18,6 +18,11 @@ FrictionCoupling FrictionCoupling::clutch(System& system, const std::string& nam
   return {system, {name, {{first, 1.0}, {second, -1.0}}, {}}, capacity};
 }
 
+FrictionCoupling FrictionCoupling::lock(System& system, const std::string& name, int first, int second,
+                                        double capacity) {
+  return {system, {name, {{first, 1.0}, {second, -1.0}}, {}, kLockCreep / capacity}, capacity};
+}
+
 FrictionCoupling FrictionCoupling::brake(System& system, const std::string& name, int a, int b, const Vec3& axis,
                                          double capacity) {
   return {system, {name, {}, {{a, b, axis, 1.0}}}, capacity};

@@ -9,10 +9,15 @@
 
 namespace furrow::vehicle {
 
+inline constexpr double kLockCreep = 1e-4;  // rad/s
+
 class FrictionCoupling {
  public:
   /// A clutch between two shafts.
   static FrictionCoupling clutch(System& system, const std::string& name, int first, int second, double capacity);
+  /// The lock of a differential: a clutch between its outputs that creeps in proportion to its torque, with kLockCreep
+  /// at its capacity. A rigid one and brakes that hold both wheels are rows that nearly depend on each other.
+  static FrictionCoupling lock(System& system, const std::string& name, int first, int second, double capacity);
   /// A brake of body `b` against body `a`, about an axis fixed in b (W now). The torque acts on both.
   static FrictionCoupling brake(System& system, const std::string& name, int a, int b, const Vec3& axis,
                                 double capacity);

@@ -10,7 +10,8 @@
 //   free     nothing
 //   torque   λ is given
 //   hold     u = target with lower ≤ λ ≤ upper. Without bounds it is a gear; with them it is dry friction, as a set:
-//            λ = upper where u < target, λ = lower where u > target, anything between where u = target.
+//            λ = upper where u < target, λ = lower where u > target, anything between where u = target. A row that
+//            gives way holds u = target − give λ instead.
 //   law      λ = f(u, t), set by add_rate_law
 #pragma once
 
@@ -41,6 +42,7 @@ struct RateRow {
   std::string name;
   std::vector<ShaftTerm> shafts;  // no shaft twice
   std::vector<SpinTerm> spins;
+  double give = 0.0;  // while it is held between bounds, rad/s per N m
 };
 
 enum class RateMode { free, torque, hold, law };

@@ -133,7 +133,7 @@ void RateSet::fill_compliance(std::span<double> compliance) const {
     if (stage_ == RateStage::assembly) {
       if (is_ideal(i)) compliance[i] = 0.0;
     } else if (controls_[i].mode == RateMode::hold) {
-      if (states_[i].side == 0 && !fixed(controls_[i])) compliance[i] = 0.0;
+      if (states_[i].side == 0 && !fixed(controls_[i])) compliance[i] = rows_[i].give / half_step_;
     } else if (controls_[i].mode == RateMode::law && stage_ == RateStage::first_half && law_damping_[i] > 0.0) {
       compliance[i] = 1.0 / (half_step_ * law_damping_[i]);
     }
@@ -187,8 +187,8 @@ bool RateSet::residuals(std::span<double> impulses, std::span<const double> comp
         impulses[i] += gap;
       const double largest = std::max(std::abs(impulses[i]), half_step_);
       worst = std::max(worst, std::abs(gap) / largest);
-    } else if (compliance[i] == 0.0) {
-      residual[i] = controls_[i].target - held_speed(i, bodies);
+    } else if (compliance[i] >= 0.0) {
+      residual[i] = controls_[i].target - held_speed(i, bodies) - compliance[i] * impulses[i];
       const double reference = scale(i, bodies) + std::abs(controls_[i].target);
       if (residual[i] != 0.0) worst = std::max(worst, std::abs(residual[i]) / reference);
     }
@@ -209,8 +209,9 @@ bool RateSet::change_sides(std::span<const double> impulses, std::span<const Bod
       if (impulses[i] > half_step_ * control.upper + room) side = 1;
       if (impulses[i] < half_step_ * control.lower - room) side = -1;
     } else {
-      // At the upper bound u may lie below the target, at the lower one above.
-      const double passed = side * (held_speed(i, bodies) - control.target);
+      // At the upper bound u may lie below what it holds, at the lower one above.
+      const double held = control.target - rows_[i].give * (side > 0 ? control.upper : control.lower);
+      const double passed = side * (held_speed(i, bodies) - held);
       if (passed > kSideTolerance * (scale(i, bodies) + std::abs(control.target))) side = 0;
     }
     changed = changed || side != before;

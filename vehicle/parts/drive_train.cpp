@@ -88,7 +88,7 @@ void DriveTrain::add_gears(System& system) {
     const int first = shaft(d.outputs[0]), second = shaft(d.outputs[1]);
     add_differential(system, d.name, shaft(d.box), first, second, d.share);
     if (d.lock_torque)
-      locks_.push_back(FrictionCoupling::clutch(system, d.name + " lock", first, second, *d.lock_torque));
+      locks_.push_back(FrictionCoupling::lock(system, d.name + " lock", first, second, *d.lock_torque));
   }
 }
 

@@ -281,7 +281,7 @@ void RankContacts::touch_tire(const OwnGrains& grains, int g, int k, std::span<c
   const Triple<double> v = triple(grains.velocity[g]), w = triple(grains.spin[g]);
   for (const SurfaceHit& hit : hits) {
     const Triple<double> arm = dem::triple(Vec3(hit.point - centre));
-    const auto patch = tire.patch_at(hit, kRolling);
+    const auto patch = tire.patch_at(hit, kRolling && c.rolling_arm > 0.0);
     const dem::ContactMotion<double> motion = dem::motion_at(tire.collider, patch ? &*patch : nullptr, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     double cosine = dem::kSameNormal;

@@ -136,7 +136,7 @@ void SurfaceContacts::touch(const Grains& grains, SurfaceStrip& mine, int k, int
   for (int h = 0; h < count; ++h) {
     const SurfaceHit& hit = hits[h];
     const Triple<double> arm = triple(Vec3(hit.point - centre));
-    const auto patch = surface.patch_at(hit, rolling_);
+    const auto patch = surface.patch_at(hit, c.rolling_arm > 0.0);
     const ContactMotion<double> motion = motion_at(surface.collider, patch ? &*patch : nullptr, hit, arm, v, w);
     ContactHistory<double> history{{0, 0, 0}, 0.0, {0, 0, 0}};
     if (const SurfaceHistory* past = nearest(old, from - old.begin(), to - old.begin(), hit.normal)) {

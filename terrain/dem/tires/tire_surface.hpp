@@ -59,7 +59,7 @@ struct TireSurface {
     near = collider.bounds();
     near.lo.array() -= largest, near.hi.array() += largest;
   }
-  /// On which a couple at the point acts, none where nothing resists rolling.
+  /// On which a couple at the point acts, none where the surface does not resist rolling.
   std::optional<PatchTurn> patch_at(const SurfaceHit& hit, bool rolling) const {
     if (!rolling) return std::nullopt;
     return std::optional<PatchTurn>(std::in_place, sum.patches().of(hit.triangle), collider.positions());

@@ -1,6 +1,7 @@
-// A grain rolls on the floor under a plate that presses on it and moves along x, across the borders between the ranks:
-// its motion, and the forces on the plate, are those of one rank. A second time the borders move beneath it. Each rank
-// computes the case of one rank beside the other. Under mpirun; prints what differs and ends with 1.
+// A grain rolls on the floor under a plate that presses on it, resists its rolling and moves along x, across the
+// borders between the ranks: its motion, and the forces on the plate, are those of one rank. A second time the borders
+// move beneath it. Each rank computes the case of one rank beside the other. Under mpirun; prints what differs and ends
+// with 1.
 #include <mpi.h>
 
 #include <algorithm>
@@ -44,6 +45,7 @@ ContactMaterial plate_material() {
   m.poisson_ratio = 0.3;
   m.friction = 0.5;
   m.restitution = 0.2;
+  m.rolling_friction = 0.05;
   return m;
 }
 

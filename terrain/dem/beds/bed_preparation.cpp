@@ -109,13 +109,12 @@ Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, Settl
 Archive settled_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
   const DemOptions first = falling(options);
   GrainSolver solver(settling_params(options));
-  const std::vector<Quad> start = starting_positions(options, progress);
-  solver.place(start);
+  solver.place(starting_positions(options, progress));
   const double drag = fall_drag(options), fall = solver.top() * drag / options.gravity.norm();
   result = settle(solver, first, progress, kMaxSettleTime + fall, drag);
-  const auto go_on = [&](const DemOptions& with) {
+  const auto go_on = [&](double drag_then) {
     const SettleResult before = result;
-    result = settle(solver, with, progress, kMaxSettleTime, kRestDrag);
+    result = settle(solver, options, progress, kMaxSettleTime, drag_then);
     result.time += before.time;
     result.steps += before.steps;
   };
@@ -123,9 +122,9 @@ Archive settled_bed(const DemOptions& options, const ProgressCall& progress, Set
     const std::vector<Quad> positions = compacted_positions(solver, first, progress);
     solver = GrainSolver(settling_params(options));
     solver.place(positions);
-    go_on(options);
+    go_on(kFallDrag);
   } else if (first.friction != options.friction || first.cohesion != options.cohesion || drag > kRestDrag) {
-    go_on(options);
+    go_on(kRestDrag);
   }
   return bed_archive(solver, options, result);
 }

@@ -89,7 +89,7 @@ class StripMat final : public Terrain {
       forces[k].clear();
       contact[k] = {};
     }
-    for (const Push& push : all) add(push, targets, duration, forces, contact);
+    for (const Push& push : all) add(push, duration, forces, contact);
     contacts_ = static_cast<std::int64_t>(all.size());
     for (std::size_t k = 0; k < guests_.size(); ++k)
       for (std::size_t v = 0; v < guests_[k].position.size(); ++v)
@@ -198,8 +198,7 @@ class StripMat final : public Terrain {
       height_[i] += kEvening * (before[i - 1] - 2.0 * before[i] + before[i + 1]);
   }
 
-  void add(const Push& push, std::span<const SurfaceState> targets, double duration, std::span<NodalForces> forces,
-           std::span<ContactSums> contact) {
+  void add(const Push& push, double duration, std::span<NodalForces> forces, std::span<ContactSums> contact) {
     const Vec3 force(0.0, 0.0, push.force);
     const Vec3 middle =
         0.5 * (guests_[push.tire].position[push.vertex] + target(targets[push.tire], push.vertex, duration));

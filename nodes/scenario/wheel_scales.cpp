@@ -22,9 +22,11 @@ constexpr double kG = kStandardGravity;
 constexpr double kAngle = 26.0 * std::numbers::pi / 180.0, kAngleOfRolling = 25.0 * std::numbers::pi / 180.0;
 constexpr double kRough = 0.5;           // friction from which the angle does not grow any more
 constexpr double kCohesionShare = 0.08;  // of the contact cohesion
-constexpr double kSolid = 0.55;          // solid fraction of a bed where none is asked for
-constexpr double kShearBand = 10.0;      // grain diameters
-constexpr double kTimesToSettle = 4.0;   // z/v: F grows with depth while the damper lets the wheel down
+// Solid fraction of a bed as it falls, less with rolling friction; of one without friction; how the angle grows with it.
+constexpr double kFallen = 0.585, kFallenOfRolling = 0.075, kSmooth = 0.65;
+constexpr double kAngleOfPacking = 110.0 * std::numbers::pi / 180.0;  // per solid fraction
+constexpr double kShearBand = 10.0;                                   // grain diameters
+constexpr double kTimesToSettle = 4.0;  // z/v: F grows with depth while the damper lets the wheel down
 // μ(I) = μ_s + (μ_2 − μ_s)/(1 + I_0/I) [Jop, Forterre & Pouliquen 2006, doi:10.1038/nature04801].
 constexpr double kStatic = 0.38, kFast = 0.64, kInertial0 = 0.279;
 
@@ -42,12 +44,21 @@ struct Strength {
   double cohesion = 0.0, angle = 0.0, weight = 0.0;  // Pa; rad; N/m³
 };
 
-double bulk_density(const DemOptions& o) { return o.density * (o.solid_fraction > 0.0 ? o.solid_fraction : kSolid); }
+double fallen_fraction(const DemOptions& o) { return kFallen - kFallenOfRolling * std::sqrt(o.rolling_friction); }
+
+double solid_fraction(const DemOptions& o) {
+  if (o.solid_fraction > 0.0) return o.solid_fraction;
+  const double fallen = fallen_fraction(o);
+  if (o.settling_friction < 0.0 || o.settling_friction >= o.friction) return fallen;
+  return kSmooth - (kSmooth - fallen) * std::pow(o.settling_friction / o.friction, 0.75);
+}
 
 Strength strength_of(const DemOptions& o) {
   const double rough = std::min(1.0, std::sqrt(o.friction / kRough));
-  return {kCohesionShare * o.cohesion,
-          rough * (kAngle + kAngleOfRolling * std::pow(std::min(o.rolling_friction, kRough), 2)), bulk_density(o) * kG};
+  const double loose = rough * (kAngle + kAngleOfRolling * std::pow(std::min(o.rolling_friction, kRough), 2));
+  const double denser = solid_fraction(o) - fallen_fraction(o);
+  return {kCohesionShare * o.cohesion, std::max(loose + kAngleOfPacking * denser, 0.5 * loose),
+          solid_fraction(o) * o.density * kG};
 }
 
 double contact_length(double radius, double sinkage) { return std::sqrt(2.0 * radius * sinkage); }
@@ -99,7 +110,7 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
   const double sliding = std::abs(wheel.tread_speed - wheel.speed);
   g.inertial = sliding / kShearBand * std::sqrt(o.density / g.pressure);
   const double entering = std::abs(wheel.speed) * std::sqrt(2.0 * g.sinkage / tire.radius);
-  g.impact = bulk_density(o) * entering * entering / g.pressure;
+  g.impact = solid_fraction(o) * o.density * entering * entering / g.pressure;
   return g;
 }
 

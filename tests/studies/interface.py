@@ -6,6 +6,7 @@ is finished is used again.
 One row per rolling friction, plate friction and face: δ of τ = σ tan δ at the end of 20 grain diameters of travel with
 its 95 % half-width, K, ω r/v of the first layer, the share of contacts at the limit of friction, the solid fraction
 within 4 r of the face and the lid's rise, means over beds and stresses. Rows of face `teeth` are the direct shear test.
+Rows of --rolling take the place of those in the table; each row has the commit that made it.
 """
 import json
 
@@ -39,20 +40,29 @@ def rows_of(rolling, friction, soil):
                "solid_fraction_at_face": mean(tests, "solid_fraction_at_face"), "rise_mm": 1e3 * mean(tests, "rise_m")}
 
 
+def finished(rolling):
+    """Rows of the table that are of other rolling frictions."""
+    rows = provenance.read_table(driver.HERE / "interface.csv")
+    return [row for row in rows if float(row["rolling_friction"]) not in rolling]
+
+
 def main():
-    seeds = driver.options(__doc__, seeds={"type": int, "default": 3}).parse_args().seeds
-    results, rows, made = driver.RESULTS / "interface", [], provenance.made_here()
-    for rolling in ROLLING:
-        shear = run(results / f"shear_{rolling:g}", rolling, seeds, "--only", "shear")
-        rows.append({"rolling_friction": rolling, "face": "teeth",
-                     "friction_angle_deg": shear["friction_angle_without_cohesion_deg"],
-                     "janosi_K_mm": 1e3 * shear["janosi_K_m"]})
+    given = driver.options(__doc__, seeds={"type": int, "default": 3},
+                           rolling={"type": float, "nargs": "+", "default": ROLLING}).parse_args()
+    results, made = driver.RESULTS / "interface", provenance.made_here()
+    rows = finished(given.rolling)
+    for rolling in given.rolling:
+        shear = run(results / f"shear_{rolling:g}", rolling, given.seeds, "--only", "shear")
+        new = [{"rolling_friction": rolling, "face": "teeth",
+                "friction_angle_deg": shear["friction_angle_without_cohesion_deg"],
+                "janosi_K_mm": 1e3 * shear["janosi_K_m"]}]
         for friction in FRICTION:
-            soil = run(results / f"{rolling:g}_{friction:g}", rolling, seeds, "--only", "interface",
+            soil = run(results / f"{rolling:g}_{friction:g}", rolling, given.seeds, "--only", "interface",
                        "--friction", friction)
-            rows += rows_of(rolling, friction, soil)
-            driver.write("interface.csv", rows, made)
-            print(*rows[-2:], sep="\n", flush=True)
+            new += rows_of(rolling, friction, soil)
+            print(*new[-2:], sep="\n", flush=True)
+        rows += [{**row, "commit": made["commit"]} for row in new]
+        driver.write("interface.csv", rows, made)
 
 
 if __name__ == "__main__":

@@ -200,8 +200,6 @@ class StripMat final : public Terrain {
 
   void add(const Push& push, double duration, std::span<NodalForces> forces, std::span<ContactSums> contact) {
     const Vec3 force(0.0, 0.0, push.force);
-    const Vec3 middle =
-        0.5 * (guests_[push.tire].position[push.vertex] + target(targets[push.tire], push.vertex, duration));
     forces[push.tire].vertex.push_back(push.vertex);
     forces[push.tire].force.push_back(force);
     ContactSums& sums = contact[push.tire];

@@ -42,8 +42,8 @@ Settings settings_of(const Typed& typed) {
   return settings;
 }
 
-scenario::Scenario load(Typed& typed) {
-  scenario::Scenario scenario = scenario::load_scenario(typed.scenario, settings_of(typed));
+scenario::Scenario load(Typed& typed, scenario::Purpose purpose) {
+  scenario::Scenario scenario = scenario::load_scenario(typed.scenario, settings_of(typed), purpose);
   typed.memory = scenario.memory.all;
   for (const std::string& warning : scenario.warnings) print_warning(warning);
   return scenario;

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "nodes/commands/commands.hpp"
-#include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/load_scenario.hpp"
 
 namespace furrow::commands {
 
@@ -30,7 +30,7 @@ void add_settings(CLI::App& command, Typed& typed);
 Settings settings_of(const Typed& typed);
 
 /// The scenario, with its settings; prints its warnings, and notes the memory that it needs. @throws Error
-scenario::Scenario load(Typed& typed);
+scenario::Scenario load(Typed& typed, scenario::Purpose purpose = scenario::Purpose::run);
 
 /// --out and --overwrite of a command that makes a folder. @param usual its name without --out: "<scenario>-NNN"
 /// @returns --out

@@ -295,7 +295,7 @@ void make_movable(json& document, const Scenario& s) {
 
 }  // namespace
 
-Scenario load_scenario(const std::filesystem::path& name, const Settings& settings) {
+Scenario load_scenario(const std::filesystem::path& name, const Settings& settings, Purpose purpose) {
   // A vehicle's name is found too, and then refused for what it is.
   const std::filesystem::path file = named_file(name, {"rigs", "vehicle/data"});
   Scenario s;
@@ -318,7 +318,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
     const std::shared_ptr<rigs::RigSpec> rig = take_rig(document["rig"], s);
     take_tires(document, s);
     take_terrain(document["terrain"], s);
-    check_scenario(s, *rig);
+    check_scenario(s, *rig, purpose);
     rig->complete(document["rig"]);
   } catch (const Error& error) {  // what looks wrong may be why it does not fit
     throw RefusedScenario(error, unusual);

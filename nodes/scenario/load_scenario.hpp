@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "nodes/scenario/scenario.hpp"
+#include "nodes/scenario/scenario_checks.hpp"
 
 namespace furrow::scenario {
 
-/// Reads, applies `--set key=value` pairs, validates and completes a scenario.
+/// Reads, applies `--set key=value` pairs, validates and completes a scenario. @param purpose what it is read for
 /// @throws Error(bad_input) naming file, key, what is wrong and what is expected; one line per mistake.
-Scenario load_scenario(const std::filesystem::path& file, const Settings& settings);
+Scenario load_scenario(const std::filesystem::path& file, const Settings& settings, Purpose purpose = Purpose::run);
 
 /// Which keys may differ when a run is continued: they say how long, how it is computed and what is written, and leave
 /// the physics alone.

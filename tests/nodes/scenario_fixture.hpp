@@ -18,8 +18,9 @@ class ScenarioFile {
  public:
   explicit ScenarioFile(const std::string& text) : path_(folder_.path() / "test.json") { std::ofstream(path_) << text; }
   const std::filesystem::path& path() const { return path_; }
-  scenario::Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {}) const {
-    return scenario::load_scenario(path_, settings);
+  scenario::Scenario load(const std::vector<std::pair<std::string, std::string>>& settings = {},
+                          scenario::Purpose purpose = scenario::Purpose::run) const {
+    return scenario::load_scenario(path_, settings, purpose);
   }
   /// What load() complains of, without the name of the file complained of (this one); empty when it does not.
   std::string complaint(const std::vector<std::pair<std::string, std::string>>& settings = {},

@@ -321,6 +321,7 @@ TEST_F(Smallest, mistakes_are_named_with_what_is_expected) {
   EXPECT_TRUE(file_.load({{"tire.contact_tangent", "true"}}).terrain_context().contact_tangents);
   EXPECT_EQ(file_.complaint({{"run.step", "1e-3"}}).substr(0, 66),
             ": key 'run.step': 0.001 s is above the stable step of 6.35e-05 s (");
+  EXPECT_NO_THROW(file_.load({{"run.step", "1e-3"}}, scenario::Purpose::soil_tests));
   EXPECT_EQ(file_.complaint(
                 {{"run.step", "1e-3"}, {"output.series_interval", "1e-3"}, {"terrain.allow_unstable_step", "true"}}),
             "");

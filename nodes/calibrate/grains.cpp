@@ -92,7 +92,9 @@ Measured bulk_density(const SoilResults& results) {
       if (k == 0 || tests[k].specimen.seed != tests[k - 1].specimen.seed)
         beds.push_back(tests[k].specimen.bulk_density);
   };
-  take(results.shear), take(results.repose), take(results.plate), take(results.cone);
+  take(results.shear), take(results.repose);
+  for (const auto& tests : results.plate) take(tests);
+  take(results.cone);
   return terrain::soil::mean_of(beds);
 }
 

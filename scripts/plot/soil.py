@@ -48,6 +48,8 @@ def runs(table, *keys):
 
 def plate(soil):
     table = soil.table("plate.csv")
+    if "diameter_m" in table:
+        return plates_in_metres(soil, table)
     figure, (axis,) = soil.figure("plate sinkage")
     widths = list(dict.fromkeys(table["width_m"]))
     for (_, width), rows in runs(table, "seed", "width_m"):
@@ -63,6 +65,29 @@ def plate(soil):
     axis.set_title(f"Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} "
                    f"kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²", fontsize=9)
     axis.legend(loc="upper left")
+    return figure
+
+
+def plates_in_metres(soil, table):
+    """Discs and strips, on beds of several depths: each bed's curve with the power law of its size."""
+    figure, (axis,) = soil.figure("plate sinkage")
+    plates = (soil.values.get("plate") or {}).get("plates") or []
+    for i, plate in enumerate(plates):
+        colour, depths = COLOURS[i % len(COLOURS)], [test["bed_depth_m"] for test in plate["tests"]]
+        diameter = plate["size_m"] if plate["shape"] == "disc" else 0.0
+        for depth in depths:
+            rows = (np.isclose(table["width_m"], plate["b_m"]) & np.isclose(table["diameter_m"], diameter)
+                    & np.isclose(table["bed_depth_m"], depth))
+            axis.plot(1e3 * table["sinkage_m"][rows], 1e-3 * table["pressure_Pa"][rows], lw=0.8, alpha=0.55,
+                      color=colour)
+        if plate["n"] is not None:
+            z = np.linspace(0.0, table["sinkage_m"].max(), 200)[1:]
+            axis.plot(1e3 * z, 1e-3 * plate["k"] * z**plate["n"], color=colour, lw=2.2,
+                      label=f"{plate['shape']} {1e3 * plate['size_m']:g} mm, bed {1e3 * np.mean(depths):.0f} mm deep, "
+                      f"n {plate['n']:.3g}")
+    axis.set(xlim=0.0, ylim=0.0, xlabel="sinkage below the mean surface, mm", ylabel="pressure, kPa",
+             title="Thin: each bed. Thick: p = k zⁿ of each size and depth")
+    axis.legend(loc="lower right")
     return figure
 
 
@@ -100,11 +125,16 @@ def shear(soil):
 
 
 def cone(soil):
-    table = soil.table("cone.csv")
+    table = soil.table("cones.csv" if (soil.directory / "cones.csv").exists() else "cone.csv")
     figure, (axis,) = soil.figure("cone penetration")
-    for _, rows in runs(table, "seed"):
-        axis.plot(1e-3 * table["pressure_Pa"][rows], 1e3 * table["depth_m"][rows], lw=1.0, color=BLUE, alpha=0.6)
     about = soil.values.get("cone") or {}
+    keys = ["base_diameter_m", "seed"] if "base_diameter_m" in table else ["seed"]  # earlier results have one cone
+    sizes = list(dict.fromkeys(table[keys[0]])) if len(keys) > 1 else []
+    for (size, *_), rows in runs(table, *keys):
+        i = sizes.index(size) if sizes else 0
+        first = bool(sizes) and not any(line.get_color() == COLOURS[i % len(COLOURS)] for line in axis.lines)
+        axis.plot(1e-3 * table["pressure_Pa"][rows], 1e3 * table["depth_m"][rows], lw=1.0, alpha=0.6,
+                  color=COLOURS[i % len(COLOURS)], label=f"base {1e3 * size:.4g} mm" if first else None)
     if about.get("index_depth_m"):
         axis.axhspan(*(1e3 * depth for depth in about["index_depth_m"]), color=BLUE, alpha=0.08, lw=0,
                      label="cone index: mean over this depth")

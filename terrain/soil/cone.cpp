@@ -2,12 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "terrain/soil/fits.hpp"
 #include "terrain/soil/tools.hpp"
 
 namespace furrow::terrain::soil {
+namespace {
+
+constexpr double kLeastReach = 0.5;  // diameters that the base must come below the surface
+
+}  // namespace
 
 ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work) {
   FURROW_ASSERT(test.samples > 0 && test.speed > 0.0 && test.diameter > 0.0, test.samples, test.speed, test.diameter);
@@ -17,8 +26,14 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
   const auto terrain = specimen.terrain([&] { work(share); });
   const double top = terrain->gather_top_height(middle - reach, middle + reach, -reach, reach);
   const double cone = cone_height(diameter, kConeAngle), surface = specimen.height();
-  const double path = top - surface + cone + test.depth * r;
-  Tool tool = cone_on_shaft(Vec3(middle, 0.0, top), diameter, kConeAngle, kConeShaft, test.depth * r + 4.0 * r);
+  const double deepest = std::min(test.depth * r, surface - cone - diameter);
+  if (deepest < kLeastReach * diameter)
+    throw Error(ExitCode::bad_input,
+                fmt::format("cone penetration test: the bed is {:.3g} m deep, expected at least {:.3g} m for a cone of "
+                            "{:.3g} m",
+                            surface, cone + (1.0 + kLeastReach) * diameter, diameter));
+  const double path = top - surface + cone + deepest;
+  Tool tool = cone_on_shaft(Vec3(middle, 0.0, top), diameter, kConeAngle, kConeShaft, deepest + 4.0 * r);
   terrain->attach(tool.mesh(), smooth_material(specimen.options()), tool.state());
   tool.set_velocity(Vec3(0.0, 0.0, -test.speed));
 
@@ -41,6 +56,14 @@ ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, cons
     ++counted;
   }
   result.index /= std::max(counted, 1);
+  const auto in = std::find_if(result.depth.begin(), result.depth.end(), [](double depth) { return depth >= 0.0; });
+  const auto first = static_cast<std::size_t>(in - result.depth.begin());
+  const std::span<const double> depth = std::span(result.depth).subspan(first),
+                                pressure = std::span(result.pressure).subspan(first);
+  if (depth.size() < 2) return result;
+  result.reached = deepest;
+  result.mean = mean_of(pressure).value;
+  result.gradient = fit_line(depth, pressure).slope;
   return result;
 }
 

@@ -27,9 +27,13 @@ struct ConeResult {
   std::vector<double> depth;     // of the base, m; negative while the cone is not in yet
   std::vector<double> pressure;  // Pa
   double index = 0.0;            // cone index, Pa
+  // Over all depths of the base from 0 on.
+  double mean = 0.0;      // Pa
+  double gradient = 0.0;  // of a line fitted to the pressure over the depth, Pa/m
+  double reached = 0.0;   // the last of these depths, m: that of the test, or a diameter above the floor for the point
 };
 
-/// @throws Error(physics) when the grains fail
+/// @throws Error(physics) when the grains fail, Error(bad_input) when the bed is too shallow for the cone
 ConeResult cone_penetration(const Specimen& specimen, const ConeTest& test, const WorkCall& work);
 
 }  // namespace furrow::terrain::soil

@@ -24,6 +24,48 @@ double mean(std::span<const double> values) {
 
 double square(double x) { return x * x; }
 
+/// n and ln k_i of p = k_i zⁿ for each curve.
+struct CommonExponent {
+  double n = 0.0;
+  std::vector<double> log_k;
+};
+
+bool usable(const PlateCurve& c, std::size_t k) { return c.sinkage[k] > 0.0 && c.pressure[k] > 0.0; }
+
+CommonExponent fit_exponent(std::span<const PlateCurve> plates) {
+  FURROW_ASSERT(std::all_of(plates.begin(), plates.end(),
+                            [](const PlateCurve& c) {
+                              return c.width > 0.0 && c.sinkage.size() == c.pressure.size() && c.sinkage.size() >= 2;
+                            }),
+                plates.size());
+  // Normal equations of Σ_i Σ p² (ln p − ln k_i − n ln z)²: with the weighted means x̄_i of ln z and ȳ_i of ln p of
+  // plate i,  n = Σ_i Σ p² (ln z − x̄_i)(ln p − ȳ_i) / Σ_i Σ p² (ln z − x̄_i)²,   ln k_i = ȳ_i − n x̄_i.
+  struct Sums {
+    double w = 0.0, x = 0.0, y = 0.0;
+  };
+  std::vector<Sums> sums(plates.size());
+  double xx = 0.0, xy = 0.0;
+  for (std::size_t i = 0; i < plates.size(); ++i) {
+    const PlateCurve& c = plates[i];
+    Sums& s = sums[i];
+    for (std::size_t k = 0; k < c.sinkage.size(); ++k)
+      if (usable(c, k)) {
+        const double w = square(c.pressure[k]);
+        s.w += w, s.x += w * std::log(c.sinkage[k]), s.y += w * std::log(c.pressure[k]);
+      }
+    s.x /= s.w, s.y /= s.w;
+    for (std::size_t k = 0; k < c.sinkage.size(); ++k)
+      if (usable(c, k)) {
+        const double w = square(c.pressure[k]), dx = std::log(c.sinkage[k]) - s.x;
+        xx += w * dx * dx, xy += w * dx * (std::log(c.pressure[k]) - s.y);
+      }
+  }
+  CommonExponent fit;
+  fit.n = xy / xx;
+  for (const Sums& s : sums) fit.log_k.push_back(s.y - fit.n * s.x);
+  return fit;
+}
+
 }  // namespace
 
 double Measured::half_interval() const {
@@ -47,40 +89,13 @@ BekkerFit fit_bekker(std::span<const PlateCurve> plates) {
   FURROW_ASSERT(
       std::any_of(plates.begin(), plates.end(), [&](const PlateCurve& c) { return c.width != plates[0].width; }),
       plates[0].width);
-  FURROW_ASSERT(std::all_of(plates.begin(), plates.end(),
-                            [](const PlateCurve& c) {
-                              return c.width > 0.0 && c.sinkage.size() == c.pressure.size() && c.sinkage.size() >= 2;
-                            }),
-                plates.size());
-  // Normal equations of Σ_i Σ p² (ln p − ln k_i − n ln z)²: with the weighted means x̄_i of ln z and ȳ_i of ln p of
-  // plate i,  n = Σ_i Σ p² (ln z − x̄_i)(ln p − ȳ_i) / Σ_i Σ p² (ln z − x̄_i)²,   ln k_i = ȳ_i − n x̄_i.
-  struct Sums {
-    double w = 0.0, x = 0.0, y = 0.0;
-  };
-  const auto usable = [](const PlateCurve& c, std::size_t k) { return c.sinkage[k] > 0.0 && c.pressure[k] > 0.0; };
-  std::vector<Sums> sums(plates.size());
-  double xx = 0.0, xy = 0.0;
-  for (std::size_t i = 0; i < plates.size(); ++i) {
-    const PlateCurve& c = plates[i];
-    Sums& s = sums[i];
-    for (std::size_t k = 0; k < c.sinkage.size(); ++k)
-      if (usable(c, k)) {
-        const double w = square(c.pressure[k]);
-        s.w += w, s.x += w * std::log(c.sinkage[k]), s.y += w * std::log(c.pressure[k]);
-      }
-    s.x /= s.w, s.y /= s.w;
-    for (std::size_t k = 0; k < c.sinkage.size(); ++k)
-      if (usable(c, k)) {
-        const double w = square(c.pressure[k]), dx = std::log(c.sinkage[k]) - s.x;
-        xx += w * dx * dx, xy += w * dx * (std::log(c.pressure[k]) - s.y);
-      }
-  }
+  const CommonExponent common = fit_exponent(plates);
   BekkerFit fit;
-  fit.n = xy / xx;
+  fit.n = common.n;
   // k_i = k_c/b_i + k_φ: a line through the plates, exact for two.
   std::vector<double> inverse;
   for (std::size_t i = 0; i < plates.size(); ++i) {
-    fit.k.push_back(std::exp(sums[i].y - fit.n * sums[i].x));
+    fit.k.push_back(std::exp(common.log_k[i]));
     inverse.push_back(1.0 / plates[i].width);
   }
   const Line line = fit_line(inverse, fit.k);
@@ -97,6 +112,14 @@ BekkerFit fit_bekker(std::span<const PlateCurve> plates) {
       total += square(plates[i].pressure[k] - average);
     }
   fit.goodness = total > 0.0 ? 1.0 - off / total : 1.0;
+  return fit;
+}
+
+PowerFit fit_power(std::span<const PlateCurve> plates) {
+  FURROW_ASSERT(!plates.empty(), plates.size());
+  const CommonExponent common = fit_exponent(plates);
+  PowerFit fit{common.n, 0.0};
+  for (const double log_k : common.log_k) fit.k += std::exp(log_k) / static_cast<double>(plates.size());
   return fit;
 }
 

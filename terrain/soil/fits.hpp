@@ -26,7 +26,7 @@ Measured mean_of(std::span<const double> samples);
 
 /// A pressure–sinkage curve of one plate.
 struct PlateCurve {
-  double width = 0.0;            // b, the smaller side, m
+  double width = 0.0;            // b, the smaller side or the radius of a disc [Wong 2008], m
   std::vector<double> sinkage;   // z > 0, m
   std::vector<double> pressure;  // p > 0, Pa
 };
@@ -43,6 +43,14 @@ struct BekkerFit {
 /// error of the pressure itself small, not that of its logarithm. Points with z ≤ 0 or p ≤ 0 are left out.
 /// @pre two plates or more of different widths, each with two usable points or more
 BekkerFit fit_bekker(std::span<const PlateCurve> plates);
+
+/// p = k zⁿ of plates of one size, by the same least squares.
+struct PowerFit {
+  double n = 0.0;
+  double k = 0.0;  // Pa/mⁿ
+};
+/// @pre one plate or more of the same width, each with two usable points or more
+PowerFit fit_power(std::span<const PlateCurve> plates);
 
 /// τ = τ_max (1 − exp(−j/K)).
 struct JanosiFit {

@@ -20,6 +20,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
+constexpr double kBrixiusDepth = 0.15;           // of the mean cone index, m
+constexpr double kOpenAccount = 0.1;             // of the displaced volume, that is not accounted for
 constexpr double kLeastFreedom = 2.0;            // of an interval: with one, it is wider than what is known without
 constexpr double kWidestAngle = 10.0 * kDegree;  // half an interval of an angle that says something, rad
 constexpr char kQuickWarning[] =
@@ -74,7 +76,9 @@ json box_json(const SpecimenFacts& s, const Box& box) {
           {"grains", s.grains},
           {"solid_fraction", s.solid_fraction},
           {"bulk_density_kg_m3", s.bulk_density},
-          {"periodic", box.periodic_x   ? box.periodic_y ? "xy" : "x"
+          {"own_bed", box.own},
+          {"periodic", box.own          ? s.periodic_y ? "y" : "none"
+                       : box.periodic_x ? box.periodic_y ? "xy" : "x"
                        : box.periodic_y ? "y"
                                         : "none"},
           {"step_s", s.step}};
@@ -87,20 +91,81 @@ bool all_settled(const Tests& tests) {
   return true;
 }
 
-json plate_json(const SoilRun& run, double goodness) {
-  const auto& tests = run.results.plate;
-  const PlateTest& test = run.plan.plates.front();
-  json j = {{"what", "rigid rough strip pushed in at constant speed; plane strain"},
-            {"box", box_json(tests.front().specimen, run.plan.plate_box)},
-            {"beds_settled", all_settled(tests)},
+const char* shape_name(const PlateTest& test) { return test.disc ? "disc" : "strip"; }
+
+json volume_json(const VolumeAccount& volume) {
+  return {{"displaced_m3", volume.displaced},
+          {"heaved_m3", volume.heaved},
+          {"compacted_m3", volume.compacted},
+          {"volume_residual_m3", volume.residual()},
+          {"solid_fraction_below_before", volume.solid_before},
+          {"solid_fraction_below_after", volume.solid_after}};
+}
+
+/// p = k zⁿ of each plate, and where the soil went.
+json each_plate_json(const SoilRun& run, const SoilParameters& p) {
+  const double r = run.options.material.radius;
+  json list = json::array();
+  for (const PlateParameters& of : p.plates) {
+    const PlateTest& test = run.plan.plate_beds[of.bed].plates[of.plate];
+    json plate = {{"shape", shape_name(test)},
+                  {"size_m", test.width * r},
+                  {"b_m", (test.disc ? 0.5 : 1.0) * test.width * r},
+                  {"bed", of.bed}};
+    Parameters parameters(plate, run.options.quick);
+    parameters.add("k", of.k);
+    parameters.add("n", of.n);
+    parameters.add("heaved_share", of.loaded.heaved);
+    parameters.add("compacted_share", of.loaded.compacted);
+    parameters.add("volume_residual_share", of.loaded.residual);
+    parameters.add("unloaded_heaved_share", of.unloaded.heaved);
+    parameters.add("unloaded_compacted_share", of.unloaded.compacted);
+    parameters.add("unloaded_volume_residual_share", of.unloaded.residual);
+    parameters.finish();
+    const auto& tests = run.results.plate[of.bed];
+    for (std::size_t at = of.plate; at < tests.size(); at += run.plan.plate_beds[of.bed].plates.size()) {
+      const PlateResult& result = tests[at].result;
+      json one = {{"seed", tests[at].specimen.seed}, {"bed_depth_m", tests[at].specimen.height}};
+      one.update(volume_json(result.volume));
+      one["floor_force_error"] = number(result.balance_error);
+      one["unloaded"] = test.unload ? volume_json(result.unloaded) : json(nullptr);
+      if (test.unload) one["unloaded"]["rebound_m"] = result.rebound;
+      plate["tests"].push_back(one);
+    }
+    list.push_back(plate);
+  }
+  return list;
+}
+
+json plate_json(const SoilRun& run, const SoilParameters& p) {
+  const double r = run.options.material.radius;
+  const PlateTest& test = run.plan.plate_beds.front().plates.front();
+  json j = {{"what", run.plan.plate_beds.front().exact
+                         ? "rigid rough plates in metres pushed in at constant speed; b of a disc is its radius"
+                         : "rigid rough strip pushed in at constant speed; plane strain"},
+            {"box", box_json(run.results.plate.front().front().specimen, run.plan.plate_beds.front().box)},
+            {"beds_settled", true},
             {"speed_m_s", test.speed},
-            {"sinkage_m", test.sinkage * run.options.material.radius},
-            {"fitted_from_m", run.plan.plate_from * run.options.material.radius},
-            {"r_squared", goodness}};
+            {"sinkage_m", test.sinkage * r},
+            {"fitted_from_m", run.plan.plate_from * r},
+            {"r_squared", p.bekker_goodness}};
   double worst = 0.0;
-  for (const auto& t : tests) worst = std::max(worst, t.result.balance_error);
-  for (const PlateTest& p : run.plan.plates) j["widths_m"].push_back(p.width * run.options.material.radius);
-  j["floor_force_error"] = worst;
+  for (std::size_t bed = 0; bed < run.results.plate.size(); ++bed) {
+    const auto& tests = run.results.plate[bed];
+    if (!all_settled(tests)) j["beds_settled"] = false;
+    for (const auto& t : tests) worst = t.result.balance_error < worst ? worst : t.result.balance_error;  // NaN stays
+    json one = {{"box", box_json(tests.front().specimen, run.plan.plate_beds[bed].box)},
+                {"r_squared", p.beds[bed].k_c.samples > 0 ? json(p.beds[bed].goodness) : json(nullptr)}};
+    Parameters parameters(one, run.options.quick);
+    parameters.add("k_c", p.beds[bed].k_c);
+    parameters.add("k_phi", p.beds[bed].k_phi);
+    parameters.add("n", p.beds[bed].n);
+    parameters.finish();
+    j["beds"].push_back(one);
+  }
+  for (const PlateTest& plate : run.plan.plate_beds.front().plates) j["widths_m"].push_back(plate.width * r);
+  j["plates"] = each_plate_json(run, p);
+  j["floor_force_error"] = number(worst);
   return j;
 }
 
@@ -180,17 +245,48 @@ json interface_json(const SoilRun& run, const SoilParameters& p) {
   return j;
 }
 
-json cone_json(const SoilRun& run) {
+/// The least and the largest of the cones' values.
+json band(const std::vector<ConeParameters>& cones, Measured ConeParameters::*value) {
+  const auto less = [&](const ConeParameters& a, const ConeParameters& b) {
+    return (a.*value).value < (b.*value).value;
+  };
+  const auto [least, most] = std::minmax_element(cones.begin(), cones.end(), less);
+  return {number(((*least).*value).value), number(((*most).*value).value)};
+}
+
+json cone_json(const SoilRun& run, const SoilParameters& p) {
   const double r = run.options.material.radius;
-  const ConeTest& test = run.plan.cone;
-  return {{"what", "30° cone after ASABE S313.3, base diameter in grains, polished (friction at most 0.3)"},
-          {"box", box_json(run.results.cone.front().specimen, run.plan.cone_box)},
-          {"beds_settled", all_settled(run.results.cone)},
-          {"speed_m_s", test.speed},
-          {"base_diameter_m", test.diameter * r},
-          {"base_diameter_grains", 0.5 * test.diameter},
-          {"shaft_diameter_m", soil::kConeShaft * test.diameter * r},
-          {"index_depth_m", {test.index_from * r, test.index_to * r}}};
+  const ConeTest& test = run.plan.cones.front();
+  const auto& tests = run.results.cone;
+  // Of all cones alike, so that their values are of the same depths.
+  double reached = tests.front().result.reached;
+  for (const auto& t : tests) reached = std::min(reached, t.result.reached);
+  json j = {{"what", "30° cone after ASABE S313.3, base diameter in grains, polished (friction at most 0.3)"},
+            {"box", box_json(tests.front().specimen, run.plan.cone_box)},
+            {"beds_settled", all_settled(tests)},
+            {"speed_m_s", test.speed},
+            {"base_diameter_m", test.diameter * r},
+            {"base_diameter_grains", 0.5 * test.diameter},
+            {"shaft_diameter_m", soil::kConeShaft * test.diameter * r},
+            {"index_depth_m", {test.index_from * r, std::min(test.index_to * r, reached)}},
+            {"mean_depth_m", {0.0, reached}},
+            {"mean_depth_is", reached > 0.999 * kBrixiusDepth
+                                  ? "0 to 150 mm"
+                                  : "from 0 to where the cones were pushed in this bed, not to 150 mm"}};
+  for (std::size_t k = 0; k < p.cones.size(); ++k) {
+    json cone = {{"base_diameter_m", run.plan.cones[k].diameter * r},
+                 {"base_diameter_grains", 0.5 * run.plan.cones[k].diameter}};
+    Parameters parameters(cone, run.options.quick);
+    parameters.add("index_Pa", p.cones[k].index);
+    parameters.add("mean_Pa", p.cones[k].mean);
+    parameters.add("gradient_Pa_per_m", p.cones[k].gradient);
+    parameters.finish();
+    j["cones"].push_back(cone);
+  }
+  j["band"] = {{"index_Pa", band(p.cones, &ConeParameters::index)},
+               {"mean_Pa", band(p.cones, &ConeParameters::mean)},
+               {"gradient_Pa_per_m", band(p.cones, &ConeParameters::gradient)}};
+  return j;
 }
 
 json repose_json(const SoilRun& run) {
@@ -274,10 +370,10 @@ json soil_json(const SoilRun& run) {
                  {"compaction_pressure_Pa", o.compaction_pressure}};
   j["terrain"] = fields_json(o, role::soil);  // all that soil files may say: of the grains,
   add_empirical(p, j["terrain"]);             // and of the soil as a whole
-  if (run.options.plate) j["plate"] = plate_json(run, p.bekker_goodness);
+  if (run.options.plate) j["plate"] = plate_json(run, p);
   if (run.options.shear) j["shear"] = shear_json(run, p.coulomb_goodness);
   if (run.options.interface) j["interface"] = interface_json(run, p);
-  if (run.options.cone) j["cone"] = cone_json(run);
+  if (run.options.cone) j["cone"] = cone_json(run, p);
   if (run.options.repose) j["repose"] = repose_json(run);
   j["threads"] = run.options.threads;
   j["wall_s"] = run.wall_s;
@@ -292,11 +388,22 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
     });
     write_whole_file(folder / name, text);
   };
-  write(run.options.plate, "plate.csv", "seed,width_m,sinkage_m,pressure_Pa\n", [&](const auto& row) {
-    for (const auto& t : run.results.plate)
-      for (std::size_t k = 0; k < t.result.curve.sinkage.size(); ++k)
-        row(t, {t.result.curve.width, t.result.curve.sinkage[k], t.result.curve.pressure[k]});
-  });
+  // Plates in metres differ in more than their b.
+  const bool metres = !run.plan.plate_beds.empty() && run.plan.plate_beds.front().exact;
+  write(run.options.plate, "plate.csv",
+        metres ? "seed,width_m,sinkage_m,pressure_Pa,diameter_m,bed_depth_m\n" : "seed,width_m,sinkage_m,pressure_Pa\n",
+        [&](const auto& row) {
+          for (const auto& tests : run.results.plate)
+            for (const auto& t : tests)
+              for (std::size_t k = 0; k < t.result.curve.sinkage.size(); ++k) {
+                const PlateResult& r = t.result;
+                const double width = r.curve.width, z = r.curve.sinkage[k], p = r.curve.pressure[k];
+                if (metres)
+                  row(t, {width, z, p, r.disc ? r.size : 0.0, t.specimen.height});
+                else
+                  row(t, {width, z, p});
+              }
+        });
   write(run.options.shear, "shear.csv",
         "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m\n", [&](const auto& row) {
           for (const auto& t : run.results.shear)
@@ -311,10 +418,22 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
               row(t, {t.result.face == Face::glued ? 1.0 : 0.0, t.result.normal_nominal, t.result.travel[k],
                       t.result.shear[k], t.result.normal[k], t.result.rise[k]});
         });
-  write(run.options.cone, "cone.csv", "seed,depth_m,pressure_Pa\n", [&](const auto& row) {
-    for (const auto& t : run.results.cone)
-      for (std::size_t k = 0; k < t.result.depth.size(); ++k) row(t, {t.result.depth[k], t.result.pressure[k]});
-  });
+  // That of the index alone, and all sizes.
+  const auto cones = [&](const auto& row, bool all) {
+    const std::size_t each = run.plan.cones.size();
+    for (std::size_t at = 0; at < run.results.cone.size(); at += all ? 1 : each) {
+      const auto& t = run.results.cone[at];
+      const double diameter = run.plan.cones[at % each].diameter * run.options.material.radius;
+      for (std::size_t k = 0; k < t.result.depth.size(); ++k)
+        if (all)
+          row(t, {diameter, t.result.depth[k], t.result.pressure[k]});
+        else
+          row(t, {t.result.depth[k], t.result.pressure[k]});
+    }
+  };
+  write(run.options.cone, "cone.csv", "seed,depth_m,pressure_Pa\n", [&](const auto& row) { cones(row, false); });
+  write(run.options.cone, "cones.csv", "seed,base_diameter_m,depth_m,pressure_Pa\n",
+        [&](const auto& row) { cones(row, true); });
   write(run.options.repose, "repose.csv", "seed,cohesion_Pa,x_m,height_before_m,height_after_m\n",
         [&](const auto& row) {
           const auto rows = [&](const auto& tests, double cohesion) {
@@ -326,6 +445,38 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
           rows(run.results.dry, 0.0);
         });
 }
+
+namespace {
+
+std::string plate_text(const json& plate) {
+  double displaced = 0.0, depth = 0.0, count = 0.0;
+  for (const json& test : plate["tests"])
+    displaced += test["displaced_m3"].get<double>(), depth += test["bed_depth_m"].get<double>(), count += 1.0;
+  const auto shares = [&](const std::string& of) {
+    const auto share = [&](const char* name) { return 1e2 * plate[of + name].get<double>(); };
+    return fmt::format("heaved {:.0f} %, compacted {:.0f} %, not accounted for {:.1f} %", share("heaved_share"),
+                       share("compacted_share"), share("volume_residual_share"));
+  };
+  const bool open = std::abs(plate["volume_residual_share"].get<double>()) > kOpenAccount;
+  return fmt::format(
+      "furrow: {} {:.4g} mm on {:.3g} mm: p = {:.4g} kPa (z/10 mm)^{:.3g}; displaced {:.3g} cm³: {}{}{}\n",
+      plate["shape"].get<std::string>(), 1e3 * plate["size_m"].get<double>(), 1e3 * depth / count,
+      1e-3 * plate["k"].get<double>() * std::pow(0.01, plate["n"].get<double>()), plate["n"].get<double>(),
+      1e6 * displaced / count, shares(""),
+      plate["unloaded_heaved_share"].is_number() ? "; unloaded: " + shares("unloaded_") : "",
+      open ? "; the account does not close: too few grains across the plate, or too little sinkage" : "");
+}
+
+std::string cone_text(const json& cone) {
+  if (cone["cones"].size() < 2) return "";
+  const json &mean = cone["band"]["mean_Pa"], &gradient = cone["band"]["gradient_Pa_per_m"];
+  return fmt::format(
+      "furrow: cones of {} sizes: mean from 0 to {:.3g} mm {:.3g} to {:.3g} kPa, gradient {:.3g} to {:.3g} MPa/m\n",
+      cone["cones"].size(), 1e3 * cone["mean_depth_m"][1].get<double>(), 1e-3 * mean[0].get<double>(),
+      1e-3 * mean[1].get<double>(), 1e-6 * gradient[0].get<double>(), 1e-6 * gradient[1].get<double>());
+}
+
+}  // namespace
 
 std::string soil_text(const json& soil) {
   const bool quick = soil.value("quick", false);
@@ -342,6 +493,8 @@ std::string soil_text(const json& soil) {
   if (soil["k_phi"].is_number())
     text += fmt::format("furrow: plate sinkage: n {}, k_c {} kN/m^(n+1), k_φ {} kN/m^(n+2)\n", value("n", 1.0),
                         value("k_c", 1e-3), value("k_phi", 1e-3));
+  if (soil.contains("plate"))
+    for (const json& plate : soil["plate"]["plates"]) text += plate_text(plate);
   if (soil["cohesion_Pa"].is_number())
     text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm; with c = 0: φ {}°\n",
                         value("cohesion_Pa", 1e-3), value("friction_angle_deg", 1.0), value("janosi_K_m", 1e3),
@@ -354,10 +507,11 @@ std::string soil_text(const json& soil) {
                       1e3 * face["janosi_K_m"].get<double>(), face["roll"].get<double>());
   if (soil["cone_index_Pa"].is_number())
     text += fmt::format(
-        "furrow: cone index {} kPa, the mean from {:g} to {:g} mm of depth; as terrain.cone_index it "
-        "shows regressions of traction beside a run\n",
-        value("cone_index_Pa", 1e-3), 1e3 * soil["cone"]["index_depth_m"][0].get<double>(),
-        1e3 * soil["cone"]["index_depth_m"][1].get<double>());
+                "furrow: cone index {} kPa, the mean from {:.4g} to {:.4g} mm of depth; as terrain.cone_index it "
+                "shows regressions of traction beside a run\n",
+                value("cone_index_Pa", 1e-3), 1e3 * soil["cone"]["index_depth_m"][0].get<double>(),
+                1e3 * soil["cone"]["index_depth_m"][1].get<double>()) +
+            cone_text(soil["cone"]);
   if (soil["repose_angle_deg"].is_number()) {
     bool slumped = true;
     for (const json& test : soil["repose"]["tests"])

@@ -22,24 +22,51 @@ struct SoilOptions {
   std::vector<double> stresses;  // of the shear tests, Pa; empty: soil_plan() chooses
   bool plate = true, shear = true, cone = true, repose = true, interface = false;
   double face_friction = -1.0;  // of the interface test, -; negative: as among the grains
+  // Plates, cones and their beds in metres; empty and 0: those in grain radii.
+  std::vector<double> discs, strips;  // diameters, widths, m
+  std::vector<double> cones;          // diameters of the base, m
+  std::vector<double> depths;         // of the beds; empty: kDepths largest plates, m
+  double sinkage = 0.0;               // 0: kSinkage of the smallest plate, m
+  double bed_width = 0.0;             // 0: kWidths of the largest plate or cone, m
+  bool own_bed = false;               // plates and cones stand on the scenario's bed
 };
+inline constexpr double kWidths = 5.0, kDepths = 3.0, kSinkage = 0.25;
+
+/// Plates of several sizes that are pushed into a bed, one after another, each when it is as it was.
+struct PlateBed {
+  Box box{100.0, 10.0, 40.0};
+  std::vector<PlateTest> plates;
+  bool exact = false;  // of the depth that the box says, whatever the packing
+};
+
+/// A plate of this size that is pushed in by `sinkage`, m.
+PlateTest plate_test(const SoilOptions& options, double size, bool disc, double sinkage);
+/// A bed for these plates, `depth` m deep: kWidths of the largest wide, or as the options say.
+PlateBed plate_bed(const SoilOptions& options, const std::vector<PlateTest>& plates, double depth);
 
 /// Sizes of boxes and tools in grain radii, of the loads in Pa.
 struct SoilPlan {
-  Box plate_box{100.0, 10.0, 40.0};
+  std::vector<PlateBed> plate_beds;
   Box shear_box{36.0, 16.0, 16.0};
   Box cone_box{36.0, 36.0, 36.0};
   Box repose_box{120.0, 10.0, 28.0, false, true};
-  std::vector<PlateTest> plates;  // two widths
   std::vector<ShearTest> shears;  // three loads
   std::vector<ShearTest> faces;   // of the interface test: by face, then load
-  ConeTest cone;
+  std::vector<ConeTest> cones;    // that of the index first
+  bool exact_cone_depth = false;  // as of PlateBed
   ReposeTest repose;
-  double plate_from = 0.5;  // sinkage from which Bekker's curve is fitted, radii
+  double plate_from = 0.5;  // sinkage from which curves are fitted, radii
+  /// Of the deepest bed of plates: k_c, k_φ and n are those of plates on it.
+  std::size_t deepest() const;
 };
-/// Sizes do not depend on the grains; normal stresses are the ones asked for, or 20, 50 and 100 kPa, less for soft
-/// grains (at most E/200).
+/// Sizes do not depend on the grains unless they are given in metres. Normal stresses are the ones asked for, or 20, 50
+/// and 100 kPa, less for soft grains (at most E/200).
 SoilPlan soil_plan(const SoilOptions& options);
+/// Grains of the largest bed that the plan needs, and grain-steps of all of it, about.
+struct SoilWork {
+  double grains = 0.0, grain_steps = 0.0;
+};
+SoilWork soil_work(const SoilOptions& options, const SoilPlan& plan);
 
 struct SpecimenFacts {
   std::uint64_t seed = 0;
@@ -49,6 +76,7 @@ struct SpecimenFacts {
   double solid_fraction = 0.0;                     // volume of the grains over that below the surface
   double bulk_density = 0.0;                       // kg/m³
   bool settled = true;
+  bool periodic_y = true;  // of the bed
 };
 template <class Result>
 struct Tested {
@@ -57,12 +85,12 @@ struct Tested {
 };
 
 struct SoilResults {
-  std::vector<Tested<PlateResult>> plate;    // by seed, then width
-  std::vector<Tested<ShearResult>> shear;    // by seed, then load
-  std::vector<Tested<ShearResult>> faces;    // by seed, then as the plan's
-  std::vector<Tested<ConeResult>> cone;      // by seed
-  std::vector<Tested<ReposeResult>> repose;  // by seed
-  std::vector<Tested<ReposeResult>> dry;     // the same grains without cohesion; empty where they have none
+  std::vector<std::vector<Tested<PlateResult>>> plate;  // of each bed by seed, then plate
+  std::vector<Tested<ShearResult>> shear;               // by seed, then load
+  std::vector<Tested<ShearResult>> faces;               // by seed, then as the plan's
+  std::vector<Tested<ConeResult>> cone;                 // by seed, then size
+  std::vector<Tested<ReposeResult>> repose;             // by seed
+  std::vector<Tested<ReposeResult>> dry;                // the same grains without cohesion; empty where they have none
 };
 
 /// Runs the tests that are asked for, several at a time; the results do not depend on how many.
@@ -78,9 +106,31 @@ struct Interface {
   Measured roll, sliding;    // as of ShearResult
 };
 
+/// Shares of the displaced volume.
+struct VolumeShares {
+  Measured heaved, compacted, residual;
+};
+/// Plates of one size on one bed: p = k zⁿ, and where the soil went.
+struct PlateParameters {
+  std::size_t bed = 0, plate = 0;  // of the plan
+  Measured k, n;                   // Pa/mⁿ, -
+  VolumeShares loaded, unloaded;   // no samples where the plate was not lifted
+};
+/// p = (k_c/b + k_φ) zⁿ of the plates on one bed.
+struct BedParameters {
+  Measured k_c, k_phi, n;  // errors from fits of each seed alone; no samples where all plates have one b
+  double goodness = 0.0;
+};
+/// Cones of one size.
+struct ConeParameters {
+  Measured index, mean, gradient;  // Pa, Pa, Pa/m
+};
+
 /// The parameters; those of tests that were not run have no samples.
 struct SoilParameters {
-  Measured k_c, k_phi, n;  // errors from fits of each seed alone
+  std::vector<PlateParameters> plates;  // by bed, then plate
+  std::vector<BedParameters> beds;
+  Measured k_c, k_phi, n;  // of the deepest bed
   double bekker_goodness = 0.0;
   Measured cohesion, phi;  // of the fitted τ_max, Pa, rad
   Measured phi_alone;      // of the fitted τ_max if there is no cohesion, rad
@@ -88,8 +138,9 @@ struct SoilParameters {
   Measured final_cohesion, final_phi;  // of the stress at the end of the travel
   Measured K;                          // mean over all shear tests, m
   std::vector<Interface> interfaces;
-  Measured cone_index;          // Pa
-  Measured repose, repose_dry;  // rad
+  Measured cone_index;                // Pa
+  std::vector<ConeParameters> cones;  // by size
+  Measured repose, repose_dry;        // rad
 };
 SoilParameters soil_parameters(const SoilResults& results, const SoilPlan& plan, double radius);
 

@@ -1,11 +1,13 @@
 #include "terrain/soil/specimen.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
 
 #include "protocol/core/assert.hpp"
+#include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 
@@ -22,24 +24,13 @@ double test_step(const dem::DemOptions& material) {
 }
 
 Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work)
-    : options_(material) {
-  FURROW_ASSERT(box.length > 0.0 && box.width > 0.0 && box.depth > 0.0, box.length, box.width, box.depth);
+    : options_(dem::level(material)) {
+  FURROW_ASSERT(box.own || (box.length > 0.0 && box.width > 0.0 && box.depth > 0.0), box.length, box.width, box.depth);
   FURROW_ASSERT(material.radius > 0.0, material.radius);
-  const double r = material.radius;
-  options_.bed.clear();
-  options_.tile = 0.0;
-  options_.cache = false;
   options_.activity = false;  // tools move slowly: what they shear must not fall asleep
   options_.seed = seed;
-  options_.length = box.length * r;
-  options_.width = box.width * r;
-  const double widest = dem::largest_radius(material) / r;  // grains of a layer keep its distance
-  const double layer = kLayerHeight * dem::mean_volume_ratio(material) / (widest * widest);
-  options_.layers = static_cast<int>(std::ceil(box.depth / layer));
-  options_.periodic_x = box.periodic_x;
-  options_.sides = box.periodic_y ? "periodic" : "walls";
-  options_.threads = options_.settle_threads = 1;
-  options_.activity = false;  // small beds, sheared throughout
+  options_.threads = options_.settle_threads = std::max(1, material.threads);
+  if (!box.own) put_in(box);
   options_.step = test_step(options_);
   const auto made = make_dem_terrain(options_);
   made->prepare([&](const std::string& what, double share) {
@@ -53,6 +44,20 @@ Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_
   const double half = 0.5 * options_.width;
   height_ = made->gather_mean_height(0.0, options_.length, -half, half);
   top_ = made->gather_top_height(0.0, options_.length, -half, half);
+}
+
+void Specimen::put_in(const Box& box) {
+  const double r = options_.radius;
+  options_.bed.clear();
+  options_.tile = 0.0;
+  options_.cache = false;
+  options_.length = box.length * r;
+  options_.width = box.width * r;
+  const double widest = dem::largest_radius(options_) / r;  // grains of a layer keep its distance
+  const double layer = kLayerHeight * dem::mean_volume_ratio(options_) / (widest * widest);
+  options_.layers = box.layers > 0 ? box.layers : static_cast<int>(std::ceil(box.depth / layer));
+  options_.periodic_x = box.periodic_x;
+  options_.sides = box.periodic_y ? "periodic" : "walls";
 }
 
 std::unique_ptr<Terrain> Specimen::terrain(std::function<void()> each_substep) const {

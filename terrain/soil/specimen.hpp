@@ -1,4 +1,4 @@
-// A small bed of a scenario's grains to test: a box sized in grain radii, settled like the scenario's own bed.
+// A bed of a scenario's grains to test: a box sized in grain radii, settled like the scenario's own bed, or that bed.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,8 @@ using WorkCall = std::function<void(double share)>;
 struct Box {
   double length = 0.0, width = 0.0, depth = 0.0;  // wanted, in grain radii
   bool periodic_x = true, periodic_y = true;
+  int layers = 0;    // of grains dropped; 0: about as many as the depth wants
+  bool own = false;  // the scenario's bed instead, whatever its size: from its file, the cache, or settled now
 };
 
 /// The step that tests of these grains take: a fixed share of the stable one, s; the scenario's own where unstable
@@ -26,7 +28,8 @@ double test_step(const dem::DemOptions& material);
 
 class Specimen {
  public:
-  /// Fills the box and lets it settle, with the generator and the compaction of `material`; never from a file.
+  /// Fills the box and lets it settle, with the generator and the compaction of `material`; from a file only where
+  /// the box is the scenario's own. Takes material.threads.
   Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work);
 
   /// The settled bed, ready for tools. Each call gives a new one in the same state.
@@ -46,6 +49,8 @@ class Specimen {
   const std::vector<dem::Quad>& positions() const { return positions_; }
 
  private:
+  void put_in(const Box& box);
+
   dem::DemOptions options_;
   Archive bed_;
   std::vector<dem::Quad> positions_;

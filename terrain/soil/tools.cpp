@@ -11,6 +11,7 @@ namespace furrow::terrain::soil {
 namespace {
 
 constexpr int kFacets = 24;             // around the cone
+constexpr int kDiscSides = 48;          // even
 constexpr double kSteelFriction = 0.3;  // of the cone
 
 void quad(SurfaceMesh& mesh, int a, int b, int c, int d) {
@@ -31,6 +32,30 @@ Tool strip_plate(double centre, double width, double half, double z, double heig
   // 0…3 at −half: top left, bottom left, bottom right, top right; 4…7 at +half. Outside: left, down, right.
   for (int k = 0; k < 3; ++k) quad(mesh, k, k + 4, k + 5, k + 1);
   return {std::move(mesh), std::move(x)};
+}
+
+Tool disc_plate(double x, double y, double diameter, double z, double height) {
+  FURROW_ASSERT(diameter > 0.0 && height > 0.0, diameter, height);
+  // n/2 R² sin(2π/n) = π D²/4
+  const double turn = 2.0 * std::numbers::pi / kDiscSides;
+  const double radius = 0.5 * diameter * std::sqrt(turn / std::sin(turn));
+  SurfaceMesh mesh;
+  std::vector<Vec3> at;
+  for (const double level : {z, z + height})
+    for (int k = 0; k < kDiscSides; ++k)
+      at.emplace_back(x + radius * std::cos(k * turn), y + radius * std::sin(k * turn), level);
+  for (int k = 0; k < kDiscSides; ++k) {
+    const int next = (k + 1) % kDiscSides;
+    quad(mesh, k, next, next + kDiscSides, k + kDiscSides);
+  }
+  // The face between chords along y, from the corner at +x to that at −x: no corner has more than four triangles.
+  for (int k = 0; 2 * k < kDiscSides - 2; ++k) {
+    const int a = k, b = k + 1, c = (kDiscSides - k) % kDiscSides, d = kDiscSides - k - 1;  // c below a, d below b
+    if (a != c) mesh.triangles.push_back({a, c, d});
+    if (b != d) mesh.triangles.push_back({a, d, b});
+  }
+  mesh.triangles.push_back({kDiscSides / 2 - 1, kDiscSides / 2 + 1, kDiscSides / 2});
+  return {std::move(mesh), std::move(at)};
 }
 
 Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign) {

@@ -38,6 +38,8 @@ class Tool {
 
 /// A plate b wide along x about x = centre, from y = −half to half, its lower face at z, with sides `height` high.
 Tool strip_plate(double centre, double width, double half, double z, double height);
+/// A round plate about (x, y), its lower face at z, with sides `height` high: a polygon of the area of the circle.
+Tool disc_plate(double x, double y, double diameter, double z, double height);
 
 /// A sheet from x = from to `to` and y = −half to half with ridges across x, one every `pitch`, of a triangular
 /// section 2·`tooth` wide and `tooth` high; flats at z. Outside is up (sign 1) or down (sign −1); teeth point there.

@@ -97,7 +97,8 @@ class Soil(WithCache):
         soil, told = self.run_json("soil", path, "--quick", "--speed", "0.3", "--out", "out")
         self.assertLess(time.monotonic() - begin, 60.0)
         self.assertEqual(soil, read_json(self.work / "out" / "soil.json"))
-        names = {".furrow-run", "soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "repose.csv"}
+        names = {".furrow-run", "soil.json", "scenario.json", "plate.csv", "shear.csv", "cone.csv", "cones.csv",
+                 "repose.csv"}
         if "no plots" not in told:
             names |= {"plate.png", "shear.png", "cone.png", "repose.png", "report.html"}
         self.assertEqual({p.name for p in (self.work / "out").iterdir()}, names)
@@ -124,6 +125,17 @@ class Soil(WithCache):
             self.assertEqual(soil[test]["speed_m_s"], 0.3)
             self.assertGreater(soil[test]["box"]["grains"], 50)
         self.assertLess(soil["shear"]["floor_force_error"], 0.05)
+        # Cones of three sizes, between the same depths.
+        cones = soil["cone"]["cones"]
+        self.assertEqual(len(cones), 3)
+        self.assertEqual(cones[0]["index_Pa"], soil["cone_index_Pa"])
+        for key, band in soil["cone"]["band"].items():
+            self.assertEqual(band, [min(c[key] for c in cones), max(c[key] for c in cones)])
+        for plate in soil["plate"]["plates"]:
+            self.assertEqual(plate["shape"], "strip")
+            test = plate["tests"][0]
+            self.assertAlmostEqual(test["displaced_m3"], test["heaved_m3"] + test["compacted_m3"]
+                                   + test["volume_residual_m3"])
         for name, header in (("plate", "seed,width_m,sinkage_m,pressure_Pa"), ("cone", "seed,depth_m,pressure_Pa"),
                              ("shear",
                               "seed,nominal_normal_stress_Pa,travel_m,shear_stress_Pa,normal_stress_Pa,rise_m"),
@@ -150,6 +162,36 @@ class Soil(WithCache):
         refused = furrow("soil", path, "--stress", "1e3", cwd=self.work)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--stress", refused.stderr)
+
+    def test_discs_in_metres_on_beds_of_two_depths_whatever_the_step_of_the_scenario(self):
+        path = write_scenario(self.work)
+        self.furrow("validate", path, "--set", "run.step=1e-2", cwd=self.work, env=self.env, code=2)
+        soil, told = self.run_json("soil", path, "--set", "run.step=1e-2", "--only", "plate", "--disc", "0.4",
+                                   "--depth", "0.4", "--depth", "0.5", "--sinkage", "0.12", "--bed-width", "1.2", "--seeds", "1",
+                                   "--speed", "0.5", "--out", "out")
+        self.assertIn("disc 400 mm", told)
+        beds, plates = soil["plate"]["beds"], soil["plate"]["plates"]
+        self.assertEqual([plate["bed"] for plate in plates], [0, 1])
+        for bed, depth in zip(beds, (0.4, 0.5)):
+            self.assertAlmostEqual(bed["box"]["height_m"], depth, delta=0.1 * depth)
+            self.assertIsNone(bed["k_c"])  # of one size
+        self.assertTrue(all(plate["b_m"] == 0.2 and plate["k"] > 0 for plate in plates), plates)
+        self.assertEqual((self.work / "out" / "plate.csv").read_text().splitlines()[0],
+                         "seed,width_m,sinkage_m,pressure_Pa,diameter_m,bed_depth_m")
+        refused = furrow("soil", path, "--disc", "0.4", "--sinkage", "0.01", cwd=self.work)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--sinkage", refused.stderr)
+
+    def test_the_own_bed_is_the_one_of_the_cache(self):
+        path = write_scenario(self.work)
+        deeper = ["--set", "terrain.layers=8"]
+        bed, _ = self.run_json("bed", path, *deeper)
+        soil, _ = self.run_json("soil", path, *deeper, "--own-bed", "--disc", "0.3", "--sinkage", "0.08", "--seeds",
+                                "1", "--speed", "0.5", "--out", "out")
+        box = soil["plate"]["box"]
+        self.assertTrue(box["own_bed"])
+        self.assertEqual([box["grains"], box["height_m"]], [bed["grains"], bed["depth_m"]])
+        self.assertNotIn("shear", soil)
 
     def test_soil_files_with_grains_of_several_sizes_fit_the_small_boxes(self):
         path = write_scenario(self.work)

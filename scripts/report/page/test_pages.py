@@ -42,6 +42,38 @@ def soil_values(soil):
     return {"id": "answer", "title": "Result", "blocks": made}
 
 
+def soil_volumes(soil):
+    """Where the soil under each plate went, means over the beds."""
+    rows = []
+    for plate in (soil.values.get("plate") or {}).get("plates") or []:
+        tests = plate["tests"]
+        depth, displaced = (sum(test[key] for test in tests) / len(tests) for key in ("bed_depth_m", "displaced_m3"))
+        row = [plate["shape"], f"{1e3 * plate['size_m']:.4g}", f"{1e3 * depth:.3g}", f"{1e6 * displaced:.3g}"]
+        for of in ("", "unloaded_"):
+            for share in ("heaved_share", "compacted_share", "volume_residual_share"):
+                value = plate.get(of + share)
+                row.append(f"{100 * value:.0f} %" if is_number(value) else "–")
+        rows.append(row)
+    if not rows:
+        raise Missing("no plate was pushed in")
+    head = ["plate", "size, mm", "bed, mm", "displaced, cm³", "heaved", "compacted", "not accounted for",
+            "unloaded: heaved", "compacted", "not accounted for"]
+    return {"id": "volumes", "title": "Displaced volume", "blocks": [blocks.table(head, rows)]}
+
+
+def soil_cones(soil):
+    rows = []
+    for cone in (soil.values.get("cone") or {}).get("cones") or []:
+        values = [(cone[key], factor) for key, factor in (("index_Pa", 1e-3), ("mean_Pa", 1e-3),
+                                                          ("gradient_Pa_per_m", 1e-6))]
+        rows.append([f"{1e3 * cone['base_diameter_m']:.4g}", f"{cone['base_diameter_grains']:.3g}",
+                     *(f"{factor * value:.4g}" if is_number(value) else "–" for value, factor in values)])
+    if not rows:
+        raise Missing("no cone was pushed in")
+    head = ["base, mm", "base, grains", "index, kPa", "mean, kPa", "gradient, MPa/m"]
+    return {"id": "cones", "title": "Cones of several sizes", "blocks": [blocks.table(head, rows)]}
+
+
 def soil_curves(soil, arrays):
     items = []
     for file, title, keys, x, y in TESTS:
@@ -50,6 +82,7 @@ def soil_curves(soil, arrays):
         except Missing:
             continue
         (x_words, x_unit, x_factor), (words, unit, factor) = naming(x), naming(y)
+        keys += tuple(key for key in ("diameter_m", "bed_depth_m") if key in table)
         lines = []
         for mark, which in runs(table, *keys):
             label = ", ".join(f"{name.replace('nominal ', '')} {scale * value:g} {of}".strip()
@@ -75,7 +108,8 @@ def provenance(values):
 def soil(page, arrays, run, sections):
     page["title"] = f"{run.values.get('scenario', run.directory.name)} · soil tests"
     page["badges"] = [{"text": "quick look", "kind": "warn"}] if run.values.get("quick") else []
-    sections(page, [("result", lambda: soil_values(run)), ("curves", lambda: soil_curves(run, arrays)),
+    sections(page, [("result", lambda: soil_values(run)), ("displaced volume", lambda: soil_volumes(run)),
+                    ("cones", lambda: soil_cones(run)), ("curves", lambda: soil_curves(run, arrays)),
                     ("scenario", lambda: kept_scenario(run.directory)), ("all values", lambda: provenance(run.values))])
 
 

@@ -60,6 +60,18 @@ TEST(Fits, repeated_plates_average_their_moduli) {
   EXPECT_NEAR(fit.k_c, 15e3, 1.0);
 }
 
+TEST(Fits, power_law_of_plates_of_one_size_comes_back) {
+  PlateCurve curve;
+  curve.width = 0.03;
+  for (int k = 0; k <= 40; ++k)
+    curve.sinkage.push_back(5e-4 * k), curve.pressure.push_back(3e5 * std::pow(5e-4 * k, 0.8));
+  PlateCurve harder = curve;
+  for (double& p : harder.pressure) p *= 1.5;
+  const PowerFit fit = fit_power(std::vector{curve, harder});
+  EXPECT_NEAR(fit.n, 0.8, 1e-12);
+  EXPECT_NEAR(fit.k, 1.25 * 3e5, 1e-6);
+}
+
 TEST(Fits, janosi_parameters_of_an_exact_curve_come_back) {
   for (const double K : {0.002, 0.02, 0.2}) {
     std::vector<double> j, tau;

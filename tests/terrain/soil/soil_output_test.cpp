@@ -40,11 +40,12 @@ class Draws {
     for (int s = 0; s < options.seeds; ++s) {
       for (const ShearTest& test : plan.shears) results.shear.push_back({{}, shear(test.normal_stress)});
       const double k_c = of("k_c"), k_phi = of("k_phi");
-      for (const PlateTest& test : plan.plates)
-        results.plate.push_back({{}, {plate(test.width * options.material.radius, k_c, k_phi)}});
+      results.plate.resize(1);
+      for (const PlateTest& test : plan.plate_beds[0].plates)
+        results.plate[0].push_back({{}, plate(test.width * options.material.radius, k_c, k_phi)});
       ConeResult cone;
       cone.index = of("cone_index_Pa");
-      results.cone.push_back({{}, cone});
+      for (std::size_t k = 0; k < plan.cones.size(); ++k) results.cone.push_back({{}, cone});
       ReposeResult repose;
       repose.angle = of("repose_angle_deg") * kDegree;
       results.repose.push_back({{}, repose});
@@ -74,14 +75,16 @@ class Draws {
     r.rise = {0.0};
     return r;
   }
-  static PlateCurve plate(double width, double k_c, double k_phi) {
-    PlateCurve curve;
+  static PlateResult plate(double width, double k_c, double k_phi) {
+    PlateResult result;
+    PlateCurve& curve = result.curve;
     curve.width = width;
     for (int i = 1; i <= 50; ++i) {
       curve.sinkage.push_back(2e-3 * i);
       curve.pressure.push_back((k_c / width + k_phi) * std::pow(curve.sinkage.back(), kSinkageExponent));
     }
-    return curve;
+    result.volume.displaced = width * 0.1;
+    return result;
   }
 
   std::mt19937 bits_{1};

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/soil/cone.hpp"
 #include "terrain/soil/direct_shear.hpp"
 #include "terrain/soil/plate_sinkage.hpp"
@@ -47,6 +48,8 @@ Vec3 area_vector(const Tool& tool) {
 
 TEST(SoilTools, faces_look_outwards) {
   EXPECT_NEAR((area_vector(strip_plate(0.5, 0.2, 0.1, 0.3, 0.1)) - Vec3(0.0, 0.0, -0.04)).norm(), 0.0, 1e-15);
+  const Vec3 circle(0.0, 0.0, -std::numbers::pi * 0.01);
+  EXPECT_NEAR((area_vector(disc_plate(0.5, 0.1, 0.2, 0.3, 0.1)) - circle).norm(), 0.0, 1e-15);
   EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, 1)) - Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((area_vector(toothed_sheet(0.0, 1.2, 0.1, 0.0, 0.06, 0.015, -1)) + Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((area_vector(flat_sheet(0.0, 1.2, 0.1, 0.3)) + Vec3(0, 0, 0.24)).norm(), 0.0, 1e-15);
@@ -128,6 +131,20 @@ TEST(PlateSinkage, floor_bears_plate_and_soil_and_pressure_grows) {
   EXPECT_NEAR(r.curve.width, 0.08, 1e-15);
 }
 
+TEST(PlateSinkage, floor_bears_a_disc_and_displaced_volume_is_heaved_or_compacted) {
+  const Specimen specimen(coarse(0.0), {40.0, 40.0, 14.0}, 1, ignore);
+  PlateTest test{.width = 12.0, .sinkage = 3.0, .speed = 0.2, .samples = 60, .disc = true, .unload = true};
+  const PlateResult r = plate_sinkage(specimen, test, ignore);
+  EXPECT_LT(r.balance_error, 0.05);
+  EXPECT_NEAR(r.curve.width, 0.06, 1e-15);  // b is the radius
+  EXPECT_NEAR(r.volume.displaced, std::numbers::pi * 0.0036 * 0.03, 1e-9);
+  EXPECT_LT(std::abs(r.volume.residual()), 0.1 * r.volume.displaced);
+  EXPECT_LT(std::abs(r.unloaded.residual()), 0.15 * r.unloaded.displaced);
+  EXPECT_GT(r.rebound, 0.0);
+  EXPECT_NEAR(r.unloaded.displaced, r.volume.displaced - std::numbers::pi * 0.0036 * r.rebound, 1e-9);
+  EXPECT_GT(r.volume.solid_after, r.volume.solid_before);
+}
+
 TEST(ConePenetration, pressure_grows_from_nothing) {
   const Specimen specimen(coarse(), {20.0, 20.0, 18.0}, 1, ignore);
   ConeTest test;
@@ -137,6 +154,14 @@ TEST(ConePenetration, pressure_grows_from_nothing) {
   EXPECT_LT(std::abs(r.pressure.front()), 0.2 * r.index);
   EXPECT_GT(r.index, 10e3);
   EXPECT_NEAR(r.depth.back(), 0.02, 2e-3);  // the last interval's middle
+  EXPECT_NEAR(r.reached, 0.02, 1e-12);
+  EXPECT_GT(r.gradient, 0.0);
+  EXPECT_TRUE(0.0 < r.mean && r.mean < r.index) << r.mean;
+  test.depth = 100.0;  // the point stays a diameter above the floor
+  const double height = specimen.height() - cone_height(0.04, kConeAngle);
+  EXPECT_NEAR(cone_penetration(specimen, test, ignore).reached, height - 0.04, 1e-12);
+  test.diameter = 10.0;
+  EXPECT_THROW(cone_penetration(specimen, test, ignore), Error);
 }
 
 TEST(Repose, slope_of_a_plane_comes_back_and_a_cut_is_steep) {
@@ -199,10 +224,46 @@ TEST(SoilTests, the_quick_cone_index_is_of_the_same_depths) {
   SoilOptions whole = quick(1);
   whole.quick = false;
   const SoilPlan small = soil_plan(quick(1)), full = soil_plan(whole);
-  EXPECT_EQ(small.cone.index_from, full.cone.index_from);
-  EXPECT_EQ(small.cone.index_to, full.cone.index_to);
-  EXPECT_GE(small.cone.depth, small.cone.index_to);
-  EXPECT_GT(small.cone_box.depth, 2.0 * small.cone.depth);
+  ASSERT_EQ(small.cones.size(), full.cones.size());
+  for (std::size_t k = 0; k < small.cones.size(); ++k) {
+    EXPECT_EQ(small.cones[k].index_from, full.cones[k].index_from);
+    EXPECT_EQ(small.cones[k].index_to, full.cones[k].index_to);
+    EXPECT_GE(small.cones[k].depth, small.cones[k].index_to);
+    EXPECT_GT(small.cone_box.depth, 2.0 * small.cones[k].depth);
+  }
+}
+
+TEST(SoilTests, plates_in_metres_stand_on_beds_of_the_wanted_depths) {
+  SoilOptions o = quick(1);
+  o.quick = o.shear = o.repose = false;
+  o.plate = true;
+  o.material.size_spread = 0.3;
+  o.discs = {0.08, 0.12}, o.depths = {0.12, 0.2}, o.sinkage = 0.025, o.bed_width = 0.3;
+  const SoilPlan plan = soil_plan(o);
+  ASSERT_EQ(plan.plate_beds.size(), 2u);
+  EXPECT_EQ(plan.deepest(), 1u);
+  EXPECT_NEAR(plan.plate_beds[0].box.length, 30.0, 1e-12);
+  const SoilResults results = run_soil_tests(o, plan, {});
+  for (std::size_t bed = 0; bed < 2; ++bed) {
+    ASSERT_EQ(results.plate[bed].size(), 2u);
+    EXPECT_NEAR(results.plate[bed][0].specimen.height, o.depths[bed], 0.06 * o.depths[bed]);
+  }
+  const SoilParameters p = soil_parameters(results, plan, 0.01);
+  ASSERT_EQ(p.plates.size(), 4u);
+  EXPECT_EQ(p.k_c.value, p.beds[1].k_c.value);
+  // Both fits are of the same points.
+  EXPECT_NEAR(p.plates[3].k.value * std::pow(0.025, p.plates[3].n.value),
+              results.plate[1][1].result.curve.pressure.back(), 0.3 * results.plate[1][1].result.curve.pressure.back());
+}
+
+TEST(SoilTests, the_scenarios_own_bed_is_taken_as_it_is) {
+  dem::DemOptions o = coarse(0.0);
+  o.length = 0.5, o.width = 0.3, o.layers = 6, o.cache = false;
+  const Specimen specimen(o, {.own = true}, 1, ignore);
+  const auto bed = make_dem_terrain(o);
+  bed->prepare({});
+  EXPECT_EQ(specimen.grains(), bed->size());
+  EXPECT_EQ(specimen.height(), bed->gather_mean_height(0.0, 0.5, -0.15, 0.15));
 }
 
 TEST(SoilTests, loads_suit_soft_grains) {

@@ -4,7 +4,8 @@
 //   "start": "drawbar_pull_small.json", "set": {"terrain.material": "loose_sand.json"},   a scenario with grains
 //   "tests": {"seeds": 2, "stresses": [5e3, 15e3, 40e3], "speed": 0.1},
 //   "targets": [{"quantity": "friction_angle_deg", "data": "lete_sand.json", "sigma": 1.0},     value of a soil file
-//               {"quantity": "bulk_density_kg_m3", "value": 1500, "sigma": 30}]
+//               {"quantity": "bulk_density_kg_m3", "value": 1500, "sigma": 30},
+//               {"data": "plate_60mm.csv", "disc": 0.06, "depth": 0.15, "relative_sigma": 0.1}]    p(z) of a plate
 //
 // Parameters are keys of the section `terrain`, quantities are figures of soil.json. A prediction is what `furrow soil`
 // gives for the start with the parameters as settings, to the last bit, with its standard errors between beds. Only
@@ -26,6 +27,7 @@
 #include "nodes/study/study.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/csv_file.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/fields_json.hpp"
 #include "protocol/files/json_text.hpp"
@@ -45,8 +47,15 @@ constexpr int kMostSeeds = 100;
 constexpr double kMostSpeed = 10.0;  // m/s, as of `furrow soil`
 constexpr double kMostStress = 1e7;  // Pa, as of `furrow soil`
 constexpr std::size_t kMostStresses = 10;
+constexpr int kMostPoints = 20;  // of a curve
+constexpr int kUsualPoints = 5;
+constexpr double kUsualRelativeSigma = 0.1;
+constexpr double kMostSize = 10.0;   // m, as of `furrow soil`
+constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that counts
+constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are one
+constexpr double kWindow = 0.25;     // diameters of a grain to either side of a point that is read off a curve
 
-const auto kRules = std::to_array<ParameterRule>({
+const auto kAllRules = std::to_array<ParameterRule>({
     {"friction", "-", 0.0, 10.0, 0.2, 1.0, false},
     {"rolling_friction", "-", 0.0, 10.0, 0.0, 0.8, false},
     {"cohesion", "Pa", 0.0, 1e9, 0.0, 60e3, false},
@@ -57,7 +66,43 @@ const auto kRules = std::to_array<ParameterRule>({
     {"compaction_pressure", "Pa", 0.0, 1e7, 0.0, 50e3, false},
     {"density", "kg/m³", 100.0, 2e4, 2000.0, 3000.0, false},
     {"young_modulus", "Pa", 1e5, 1e11, 1e7, 1e8, true},
+    {"solid_fraction", "-", 0.3, 0.75, 0.5, 0.65, false},
+    {"bulk_density", "kg/m³", 50.0, 2e4, 1200.0, 1800.0, false},
 });
+
+/// Those that are numbers of the section `terrain`.
+const std::vector<ParameterRule>& known_rules() {
+  static const std::vector<ParameterRule> rules = [] {
+    std::vector<ParameterRule> known;
+    const DemOptions grains;
+    for (const ParameterRule& rule : kAllRules)
+      if (number_named(grains, rule.name)) known.push_back(rule);
+    return known;
+  }();
+  return rules;
+}
+
+// ---- curves of plates
+
+/// Mean of p(z) over `half` to either side of z, as far as the curve goes. @pre rising z, two points or more
+double pressure_at(std::span<const double> sinkage, std::span<const double> pressure, double z, double half) {
+  const double from = std::max(z - half, sinkage.front()), to = std::min(z + half, sinkage.back());
+  double area = 0.0;
+  for (std::size_t k = 1; k < sinkage.size(); ++k) {
+    const double a = std::max(sinkage[k - 1], from), b = std::min(sinkage[k], to), step = sinkage[k] - sinkage[k - 1];
+    if (a >= b) continue;
+    const double middle = (0.5 * (a + b) - sinkage[k - 1]) / step;
+    area += (b - a) * (pressure[k - 1] + middle * (pressure[k] - pressure[k - 1]));
+  }
+  return area / (to - from);
+}
+
+/// A plate on a bed, and where its curve is compared.
+struct PlateTarget {
+  bool disc = false;
+  double size = 0.0, depth = 0.0;  // m
+  std::vector<double> sinkage;     // rising, m
+};
 
 // ---- what the tests measure
 
@@ -136,7 +181,7 @@ class GrainModel final : public CalibrationModel {
     set_ = study::settings_of(input.whole.object_or_empty("set"));
     tests_ = read_tests(input.whole);
     try {
-      const scenario::Scenario scenario = scenario::load_scenario(start_, set_);
+      const scenario::Scenario scenario = scenario::load_scenario(start_, set_, scenario::Purpose::soil_tests);
       grains_ = scenario.grains("only grains can be tested");
       state_ = scenario.digest;
     } catch (const Error& error) {
@@ -148,7 +193,12 @@ class GrainModel final : public CalibrationModel {
         throw input_error(input.study.string(), "set." + key, "is a parameter too, expected its 'start' there");
     state_ += fmt::format(" {} {:.17g} {}", tests_.seeds, tests_.speed, fmt::join(tests_.stresses, " "));
     for (const TargetSet set : kBothSets)
-      for (OrderedJsonReader& reader : input.targets[set]) read(reader, input.study, set);
+      for (OrderedJsonReader& reader : input.targets[set]) {
+        if (reader.has("disc") || reader.has("strip"))
+          read_curve(reader, input.study, set);
+        else
+          read(reader, input.study, set);
+      }
     leave_out_small_K(input);
   }
 
@@ -156,7 +206,7 @@ class GrainModel final : public CalibrationModel {
     std::vector<double> values;
     for (const std::string& name : names_) {
       const double value = *number_named(grains_, name);
-      values.push_back(name == "settling_friction" && value < 0.0 ? NAN : value);
+      values.push_back(value < 0.0 ? NAN : value);  // null
     }
     return values;
   }
@@ -170,10 +220,9 @@ class GrainModel final : public CalibrationModel {
     // All figures are kept; those of the set are asked for.
     Prediction part;
     part.processor_time = set == TargetSet::fitted ? found.processor_time : 0.0;
-    for (const Quantity* quantity : quantities_[set]) {
-      const auto at = static_cast<std::size_t>(quantity - kQuantities.data());
-      part.values.push_back(found.values[at]), part.errors.push_back(found.errors[at]);
-    }
+    for (const Measures& target : measures_[set])
+      for (std::size_t k = 0; k < target.count; ++k)
+        part.values.push_back(found.values[target.first + k]), part.errors.push_back(found.errors[target.first + k]);
     return part;
   }
 
@@ -193,7 +242,54 @@ class GrainModel final : public CalibrationModel {
     return all;
   }
   DemOptions grains_of(std::span<const double> values) const {
-    return scenario::load_scenario(start_, settings(values)).grains("only grains can be tested");
+    return scenario::load_scenario(start_, settings(values), scenario::Purpose::soil_tests)
+        .grains("only grains can be tested");
+  }
+
+  /// What a target is compared with: a quantity, or the points of a curve.
+  struct Measures {
+    const Quantity* quantity = nullptr;  // null: a curve
+    std::size_t first = 0, count = 1;    // among all figures
+  };
+
+  /// The beds that the curves need: one of each depth, with one plate of each size.
+  std::vector<terrain::soil::PlateBed> beds_of_curves(const SoilOptions& options) const {
+    std::map<double, std::map<std::pair<bool, double>, double>> deepest;  // by depth and plate: sinkage, m
+    for (const PlateTarget& curve : curves_) {
+      double& sinkage = deepest[curve.depth][{curve.disc, curve.size}];
+      sinkage = std::max(sinkage, curve.sinkage.back() + window());
+    }
+    std::vector<terrain::soil::PlateBed> beds;
+    for (const auto& [depth, sizes] : deepest) {
+      std::vector<terrain::soil::PlateTest> plates;
+      for (const auto& [plate, sinkage] : sizes) {
+        plates.push_back(terrain::soil::plate_test(options, plate.second, plate.first, sinkage));
+        plates.back().unload = false;
+      }
+      beds.push_back(terrain::soil::plate_bed(options, plates, depth));
+    }
+    return beds;
+  }
+  double window() const { return kWindow * 2.0 * grains_.radius; }  // m
+
+  /// The pressures of all curves, after the quantities. @param beds of the plan, before those of the curves
+  void add_curves(const terrain::soil::SoilPlan& plan, const SoilResults& results, std::size_t beds, double radius,
+                  Prediction& found) const {
+    for (const PlateTarget& curve : curves_) {
+      std::vector<std::vector<double>> at(curve.sinkage.size());  // by point, then seed
+      for (std::size_t bed = beds; bed < plan.plate_beds.size(); ++bed) {
+        if (std::abs(plan.plate_beds[bed].box.depth * radius - curve.depth) > kSame) continue;
+        for (const auto& [specimen, test] : results.plate[bed]) {
+          if (test.disc != curve.disc || std::abs(test.size - curve.size) > kSame) continue;
+          for (std::size_t k = 0; k < at.size(); ++k)
+            at[k].push_back(pressure_at(test.curve.sinkage, test.curve.pressure, curve.sinkage[k], window()));
+        }
+      }
+      for (const std::vector<double>& seeds : at) {
+        const Measured pressure = terrain::soil::mean_of(seeds);
+        found.values.push_back(pressure.value), found.errors.push_back(pressure.standard_error);
+      }
+    }
   }
 
   /// All figures of the tests that some target needs; NaN for those of others.
@@ -208,11 +304,17 @@ class GrainModel final : public CalibrationModel {
       options.shear = options.repose = options.plate = options.cone = false;
       for (const Quantity& quantity : kQuantities)
         if (quantity.test && needed(quantity)) options.*quantity.test = true;
+      const bool strips = options.plate;
+      options.plate |= !curves_.empty();
       if (!options.repose && !options.plate && !options.cone) options.shear = true;  // of the density alone
-      const terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
+      terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
+      if (!strips) plan.plate_beds.clear();
+      const std::size_t beds = plan.plate_beds.size();
+      for (terrain::soil::PlateBed& bed : beds_of_curves(options)) plan.plate_beds.push_back(std::move(bed));
       const SoilResults results = terrain::soil::run_soil_tests(options, plan, progress);
       SoilParameters p = terrain::soil::soil_parameters(results, plan, options.material.radius);
       if (p.repose_dry.samples == 0) p.repose_dry = p.repose;
+      if (strips) p.k_c = p.beds.front().k_c, p.k_phi = p.beds.front().k_phi, p.n = p.beds.front().n;
       for (const Quantity& quantity : kQuantities) {
         const bool is = !quantity.test || options.*quantity.test;
         const Measured figure = quantity.measured ? p.*quantity.measured : bulk_density(results);
@@ -221,6 +323,7 @@ class GrainModel final : public CalibrationModel {
         if (needed(quantity) && !std::isfinite(figure.value))
           found.problem = fmt::format("the tests give no {}", quantity.name);
       }
+      add_curves(plan, results, beds, options.material.radius, found);
     } catch (const Error& error) {
       if (error.code() != ExitCode::bad_input && error.code() != ExitCode::physics) throw;
       found.problem = error.what();
@@ -232,7 +335,8 @@ class GrainModel final : public CalibrationModel {
 
   bool needed(const Quantity& quantity) const {
     return std::any_of(std::begin(kBothSets), std::end(kBothSets), [&](TargetSet set) {
-      return std::find(quantities_[set].begin(), quantities_[set].end(), &quantity) != quantities_[set].end();
+      return std::any_of(measures_[set].begin(), measures_[set].end(),
+                         [&](const Measures& target) { return target.quantity == &quantity; });
     });
   }
 
@@ -282,14 +386,89 @@ class GrainModel final : public CalibrationModel {
     target.labels.push_back(named);
     target.state = named + " " + state_;
     targets_[set].push_back(target);
-    quantities_[set].push_back(&quantity);
+    measures_[set].push_back({&quantity, static_cast<std::size_t>(&quantity - kQuantities.data())});
+  }
+
+  /// A curve p(z) of a plate, in CSV.
+  void read_curve(OrderedJsonReader& reader, const std::filesystem::path& study, TargetSet set) {
+    TargetKeys keys = read_target_keys(reader, study);
+    Target& target = keys.target;
+    PlateTarget curve;
+    curve.disc = takes(reader, "disc");
+    if (takes(reader, "strip") == curve.disc)
+      reader.fail("disc", "expected either 'disc', a diameter, or 'strip', a width, m");
+    const auto length = [&](const char* key) {
+      if (!reader.given(key)) reader.fail(key, "is missing, expected the depth of the bed, m");
+      const double value = reader.positive(key);
+      if (value > kMostSize) reader.fail(key, "is {} m, expected above 0 up to {:g} m", number_text(value), kMostSize);
+      return value;
+    };
+    curve.size = length(curve.disc ? "disc" : "strip"), curve.depth = length("depth");
+    const double relative = takes(reader, "relative_sigma") ? reader.positive("relative_sigma") : kUsualRelativeSigma;
+    if (reader.given("relative_sigma") && keys.sigma > 0.0)
+      reader.fail("relative_sigma", "is given with 'sigma', expected one of them");
+    const int points = takes(reader, "points") ? reader.count("points", 2, kMostPoints) : kUsualPoints;
+    reader.finish();
+    target.what =
+        fmt::format("{} {:g} mm on {:g} mm", curve.disc ? "disc" : "strip", 1e3 * curve.size, 1e3 * curve.depth);
+    target.x_name = "sinkage_m", target.y_name = "pressure_Pa";
+    take_points(target, curve, points);
+    std::vector<double> sigma;
+    if (keys.sigma == 0.0)
+      for (const double p : target.y) sigma.push_back(relative * p);
+    set_sigma(keys, sigma);
+    target.state = fmt::format("{} {} {:.17g} {:.17g} {}", target.y_name, curve.disc, curve.size, curve.depth, state_);
+    targets_[set].push_back(target);
+    std::size_t first = kQuantities.size();
+    for (const PlateTarget& before : curves_) first += before.sinkage.size();
+    measures_[set].push_back({nullptr, first, curve.sinkage.size()});
+    curves_.push_back(curve);
+  }
+
+  /// Evenly spaced sinkages from the diameter of a grain to the end of the measured curve, with its pressures there.
+  void take_points(Target& target, PlateTarget& curve, int points) const {
+    const CsvFile table(target.data, "a plate-sinkage test in CSV",
+                        {"sinkage_m", "pressure_Pa", "seed", "width_m", "diameter_m", "bed_depth_m"});
+    if (!table.has("pressure_Pa")) throw table.wrong(0, "has no column 'pressure_Pa' above it, expected one");
+    std::map<double, double> measured;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      const char* size = curve.disc ? "diameter_m" : "width_m";
+      if (table.has(size) && std::abs(table.number(row, size) - curve.size) > 1e-6) continue;
+      const double z = table.number(row, "sinkage_m");
+      if (z >= 0.0) measured[z] = table.number(row, "pressure_Pa");
+    }
+    const std::string file = target.data.string();
+    if (measured.size() < 2)
+      throw input_error(file, "", "has {} points of this plate with a sinkage of 0 or more, expected two or more",
+                        measured.size());
+    std::vector<double> sinkage, pressure;
+    for (const auto& [z, p] : measured) sinkage.push_back(z), pressure.push_back(p);
+    const double diameter = 2.0 * grains_.radius, from = std::max(diameter, sinkage.front()), to = sinkage.back();
+    if (to < kLeastReach * from)
+      throw input_error(file, "sinkage_m",
+                        "ends at {} m, expected {:.3g} m or more: curves are compared from the diameter of a grain on",
+                        number_text(to), kLeastReach * from);
+    if (to >= 0.5 * curve.depth)
+      throw input_error(file, "sinkage_m", "ends at {} m, expected less than half of the depth of the bed, {} m",
+                        number_text(to), number_text(curve.depth));
+    for (int k = 0; k < points; ++k) {
+      const double z = from + (to - from) * k / (points - 1);
+      curve.sinkage.push_back(z);
+      target.x.push_back(z), target.y.push_back(pressure_at(sinkage, pressure, z, window()));
+      if (!(target.y.back() > 0.0))
+        throw input_error(file, "pressure_Pa",
+                          "is {:.3g} Pa at {:.3g} m, expected above 0 from the diameter of a grain on", target.y.back(),
+                          z);
+      target.labels.push_back(fmt::format("{} pressure_Pa at {:.3g} mm", target.name, 1e3 * z));
+    }
   }
 
   /// A K that such grains cannot have is compared, and not fitted: it would spoil what can be.
   void leave_out_small_K(const CalibrationInput& input) {
-    auto& [of_fitted, of_held_out] = quantities_;
-    const auto at = std::find_if(of_fitted.begin(), of_fitted.end(),
-                                 [](const Quantity* q) { return q->measured == &SoilParameters::K; });
+    auto& [of_fitted, of_held_out] = measures_;
+    const auto at = std::find_if(of_fitted.begin(), of_fitted.end(), [](const Measures& of) {
+      return of.quantity && of.quantity->measured == &SoilParameters::K;
+    });
     if (at == of_fitted.end() || fits("radius")) return;
     const auto target = targets_.fitted.begin() + (at - of_fitted.begin());
     const double least = kLeastK * 2.0 * grains_.radius;
@@ -309,14 +488,15 @@ class GrainModel final : public CalibrationModel {
   TestSettings tests_;
   DemOptions grains_;
   std::string state_;
-  PerSet<std::vector<const Quantity*>> quantities_;
+  PerSet<std::vector<Measures>> measures_;           // of the targets
+  std::vector<PlateTarget> curves_;                  // of both sets, in the order of their figures
   std::map<std::vector<double>, Prediction> known_;  // all figures, of this process
 };
 
 }  // namespace
 
 CalibrationKind grain_kind() {
-  CalibrationKind kind{"grains", "a scenario with grains", kRules, read_model<GrainModel>, optimize_noisy,
+  CalibrationKind kind{"grains", "a scenario with grains", known_rules(), read_model<GrainModel>, optimize_noisy,
                        true,     {"set", "tests"}};
   for (const Quantity& q : kQuantities) kind.quantities.push_back({q.name, q.least, q.most});
   return kind;

@@ -161,7 +161,8 @@ class ScmModel final : public CalibrationModel {
   static std::map<double, std::vector<Point>> tests_of(const std::filesystem::path& file, bool plate,
                                                        OrderedJsonReader& reader, const char* key) {
     const CsvFile table(file, plate ? "a plate-sinkage test in CSV" : "a shear test in CSV",
-                        plate ? std::vector<std::string>{"sinkage_m", "pressure_Pa", "width_m", "seed", "sigma_Pa"}
+                        plate ? std::vector<std::string>{"sinkage_m", "pressure_Pa", "width_m", "seed", "sigma_Pa",
+                                                         "diameter_m", "bed_depth_m"}
                               : std::vector<std::string>{"travel_m", "shear_stress_Pa", "normal_stress_Pa",
                                                          "nominal_normal_stress_Pa", "seed", "rise_m", "sigma_Pa"});
     const char *x = plate ? "sinkage_m" : "travel_m", *y = plate ? "pressure_Pa" : "shear_stress_Pa",

@@ -2,6 +2,8 @@
 // tests give.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -148,6 +150,72 @@ TEST_F(CalibrateGrains, a_prediction_is_what_the_soil_tests_give_and_the_result_
   EXPECT_EQ(soil["rolling_friction"], 0.3);
   EXPECT_EQ(soil["cohesion"], 20e3);
   EXPECT_EQ(soil["size_spread"], 0.3);
+}
+
+/// A curve of `furrow soil` on the grains of the start, and a study that has it as its target.
+class CalibrateGrainsOnCurves : public CalibrateGrains {
+ protected:
+  static json curve_study() {
+    json study = good();
+    study["tests"].erase("stresses");
+    study["parameters"] = {{"friction", {{"lower", 0.2}, {"upper", 0.9}}}, {"settling_friction", {{"start", 0.1}}}};
+    study["targets"] = {{{"data", "plate.csv"}, {"disc", 0.08}, {"depth", 0.13}, {"points", 4}}};
+    return study;
+  }
+};
+
+TEST_F(CalibrateGrainsOnCurves, a_measured_curve_is_recovered_by_the_grains_that_made_it) {
+  const std::vector<double> truth{0.5, 0.2};  // another packing than without settling_friction
+  terrain::soil::SoilOptions options;
+  options.material = scenario::load_scenario("drawbar_pull_small.json", {{"terrain.material", "loose_sand.json"},
+                                                                         {"terrain.settling_friction", "0.2"}})
+                         .grains("");
+  options.seeds = 1, options.speed = 1.0;
+  options.shear = options.cone = options.repose = false;
+  terrain::soil::SoilPlan plan;
+  plan.plate_beds = {plate_bed(options, {plate_test(options, 0.08, true, 0.05)}, 0.13)};
+  const auto results = terrain::soil::run_soil_tests(options, plan, {});
+  std::string csv = "sinkage_m,pressure_Pa\n";
+  const terrain::soil::PlateCurve& curve = results.plate[0][0].result.curve;
+  for (std::size_t k = 0; k < curve.sinkage.size(); ++k)
+    csv += fmt::format("{:.9g},{:.9g}\n", curve.sinkage[k], curve.pressure[k]);
+  write("plate.csv", csv);
+
+  const Calibration c = load(curve_study());
+  const Target& target = c.model->targets(TargetSet::fitted)[0];
+  EXPECT_EQ(target.what, "disc 80 mm on 130 mm");
+  ASSERT_EQ(target.y.size(), 4u);
+  EXPECT_NEAR(target.x.front(), 0.02, 1e-12);  // the diameter of a grain
+  EXPECT_EQ(target.sigma[2], 0.1 * target.y[2]);
+  const Prediction there = c.model->predict(truth, TargetSet::fitted, {}),
+                   elsewhere = c.model->predict(std::vector{0.5, 0.0}, TargetSet::fitted, {});
+  ASSERT_TRUE(there.problem.empty()) << there.problem;
+  ASSERT_EQ(there.values.size(), 4u);
+  double off = 0.0, farther = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    off = std::max(off, std::abs(there.values[k] / target.y[k] - 1.0));
+    farther = std::max(farther, std::abs(elsewhere.values[k] / target.y[k] - 1.0));
+  }
+  EXPECT_LT(off, 0.02);  // the plate is pushed a little less deep, so that its samples are others
+  EXPECT_GT(farther, 0.2);
+}
+
+TEST_F(CalibrateGrainsOnCurves, wrong_curves_are_refused_with_file_and_key) {
+  write("plate.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,5000\n0.05,9000\n");
+  write("short.csv", "sinkage_m,pressure_Pa\n0,0\n0.01,5000\n");
+  write("pulled.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,-500\n0.05,9000\n");
+  EXPECT_EQ(load(curve_study()).model->targets(TargetSet::fitted)[0].y.back(), 9000.0 - 0.5 * 0.005 * 4000.0 / 0.03);
+  expect_refused(curve_study(),
+                 {
+                     {"/targets/0/depth", nullptr, "key 'targets[0].depth': is missing, expected the depth of the bed"},
+                     {"/targets/0/depth", 0.05, "plate.csv: key 'sinkage_m': ends at 0.05 m, expected less than half"},
+                     {"/targets/0/strip", 0.1, "key 'targets[0].disc': expected either 'disc', a diameter, or 'strip'"},
+                     {"/targets/0/disc", -1, "key 'targets[0].disc'"},
+                     {"/targets/0/points", 1, "key 'targets[0].points': is 1, expected a whole number from 2 to 20"},
+                     {"/targets/0/data", "short.csv", "short.csv: key 'sinkage_m': ends at 0.01 m, expected 0.024 m"},
+                     {"/targets/0/data", "pulled.csv", "pulled.csv: key 'pressure_Pa': is"},
+                     {"/targets/0/quantity", "n", "key 'targets[0].quantity': is unknown"},
+                 });
 }
 
 }  // namespace

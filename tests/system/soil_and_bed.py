@@ -167,8 +167,8 @@ class Soil(WithCache):
         path = write_scenario(self.work)
         self.furrow("validate", path, "--set", "run.step=1e-2", cwd=self.work, env=self.env, code=2)
         soil, told = self.run_json("soil", path, "--set", "run.step=1e-2", "--only", "plate", "--disc", "0.4",
-                                   "--depth", "0.4", "--depth", "0.5", "--sinkage", "0.12", "--bed-width", "1.2", "--seeds", "1",
-                                   "--speed", "0.5", "--out", "out")
+                                   "--depth", "0.4", "--depth", "0.5", "--sinkage", "0.12", "--bed-width", "1.2",
+                                   "--seeds", "1", "--speed", "0.5", "--out", "out")
         self.assertIn("disc 400 mm", told)
         beds, plates = soil["plate"]["beds"], soil["plate"]["plates"]
         self.assertEqual([plate["bed"] for plate in plates], [0, 1])

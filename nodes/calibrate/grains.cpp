@@ -66,7 +66,6 @@ const auto kAllRules = std::to_array<ParameterRule>({
     {"compaction_pressure", "Pa", 0.0, 1e7, 0.0, 50e3, false},
     {"density", "kg/m³", 100.0, 2e4, 2000.0, 3000.0, false},
     {"young_modulus", "Pa", 1e5, 1e11, 1e7, 1e8, true},
-    {"solid_fraction", "-", 0.3, 0.75, 0.5, 0.65, false},
     {"bulk_density", "kg/m³", 50.0, 2e4, 1200.0, 1800.0, false},
 });
 

@@ -55,7 +55,7 @@ constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that c
 constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are one
 constexpr double kWindow = 0.25;     // diameters of a grain to either side of a point that is read off a curve
 
-const auto kAllRules = std::to_array<ParameterRule>({
+const auto kRules = std::to_array<ParameterRule>({
     {"friction", "-", 0.0, 10.0, 0.2, 1.0, false},
     {"rolling_friction", "-", 0.0, 10.0, 0.0, 0.8, false},
     {"cohesion", "Pa", 0.0, 1e9, 0.0, 60e3, false},
@@ -68,18 +68,6 @@ const auto kAllRules = std::to_array<ParameterRule>({
     {"young_modulus", "Pa", 1e5, 1e11, 1e7, 1e8, true},
     {"bulk_density", "kg/m³", 50.0, 2e4, 1200.0, 1800.0, false},
 });
-
-/// Those that are numbers of the section `terrain`.
-const std::vector<ParameterRule>& known_rules() {
-  static const std::vector<ParameterRule> rules = [] {
-    std::vector<ParameterRule> known;
-    const DemOptions grains;
-    for (const ParameterRule& rule : kAllRules)
-      if (number_named(grains, rule.name)) known.push_back(rule);
-    return known;
-  }();
-  return rules;
-}
 
 // ---- curves of plates
 
@@ -495,7 +483,7 @@ class GrainModel final : public CalibrationModel {
 }  // namespace
 
 CalibrationKind grain_kind() {
-  CalibrationKind kind{"grains", "a scenario with grains", known_rules(), read_model<GrainModel>, optimize_noisy,
+  CalibrationKind kind{"grains", "a scenario with grains", kRules, read_model<GrainModel>, optimize_noisy,
                        true,     {"set", "tests"}};
   for (const Quantity& q : kQuantities) kind.quantities.push_back({q.name, q.least, q.most});
   return kind;

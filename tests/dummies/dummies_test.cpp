@@ -77,7 +77,7 @@ scenario::Scenario small_scenario() {
 std::string checked(scenario::Scenario s) {
   const std::shared_ptr<rigs::RigSpec> rig = kRig.read(json::object(), {"scenario.json", "rig"});
   try {
-    scenario::check_scenario(s, *rig);
+    scenario::check_scenario(s, *rig, scenario::Purpose::run);
   } catch (const Error& error) {
     return error.what();
   }

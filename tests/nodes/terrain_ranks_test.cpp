@@ -107,7 +107,7 @@ TEST(TerrainRanks, an_engine_that_cannot_use_them_is_refused_by_key) {
   s.file = "scenario.json";
   s.run.average_from = 0.1;
   const std::shared_ptr<rigs::RigSpec> rig = std::const_pointer_cast<rigs::RigSpec>(s.rig);
-  EXPECT_EQ(refusal(ExitCode::bad_input, [&] { scenario::check_scenario(s, *rig); }),
+  EXPECT_EQ(refusal(ExitCode::bad_input, [&] { scenario::check_scenario(s, *rig, scenario::Purpose::run); }),
             "scenario.json: key 'terrain.ranks': is 9, expected 1 to 8: engine 'strip_mat' runs on no more");
 }
 

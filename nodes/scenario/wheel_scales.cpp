@@ -22,7 +22,7 @@ constexpr double kG = kStandardGravity;
 constexpr double kAngle = 26.0 * std::numbers::pi / 180.0, kAngleOfRolling = 25.0 * std::numbers::pi / 180.0;
 constexpr double kRough = 0.5;           // friction from which the angle does not grow any more
 constexpr double kCohesionShare = 0.08;  // of the contact cohesion
-// Solid fraction of a bed as it falls, less with rolling friction; of one without friction; how the angle grows with it.
+// Solid fraction of a bed as it falls, less with rolling friction, and without friction; how the angle grows with it.
 constexpr double kFallen = 0.585, kFallenOfRolling = 0.075, kSmooth = 0.65;
 constexpr double kAngleOfPacking = 110.0 * std::numbers::pi / 180.0;  // per solid fraction
 constexpr double kShearBand = 10.0;                                   // grain diameters

@@ -5,7 +5,7 @@
 //   W = b ℓ (c N_c + γ z N_q + ½ γ min(b, ℓ) N_γ),   ℓ = √(2 R z), the contact in front of the axle
 // with the strength that soil tests of this program found for its grains: φ = 26° (26.5 ± 1.0° at friction 0.9, 26.8 ±
 // 0.7° at 0.5 with rolling friction 0.2, 34 ± 2° with 0.5), c = 0.08 × the contact cohesion (6.8 ± 1.4 kPa at 80 kPa).
-// A denser bed has more: 30.2 ± 1.6° at a solid fraction of 0.6 with friction 0.5 and rolling friction 0.1, whose grains
+// A denser bed has more: 30.2 ± 1.6° at a solid fraction of 0.6 with friction 0.5 and rolling friction 0.1; such grains
 // fall to 0.56 (tests/studies/packing.csv, calibrated_lete_sand.csv).
 // Beside runs of the reference wheel, 4.6 kN: 15 mm at 80 kPa (runs: 15 to 20 mm, 30 mm on a bed twice as deep), 42 mm
 // at 40 kPa (35), 80 mm at 20 kPa (77 on a deep bed).

@@ -71,9 +71,14 @@ const auto kRules = std::to_array<ParameterRule>({
 
 // ---- curves of plates
 
-/// Mean of p(z) over `half` to either side of z, as far as the curve goes. @pre rising z, two points or more
-double pressure_at(std::span<const double> sinkage, std::span<const double> pressure, double z, double half) {
-  const double from = std::max(z - half, sinkage.front()), to = std::min(z + half, sinkage.back());
+/// Where a curve is read.
+struct Window {
+  double from = 0.0, to = 0.0;  // m
+};
+
+/// Mean of p(z) over the window, as far as the curve goes. @pre rising z, two points or more
+double pressure_in(Window window, std::span<const double> sinkage, std::span<const double> pressure) {
+  const double from = std::max(window.from, sinkage.front()), to = std::min(window.to, sinkage.back());
   double area = 0.0;
   for (std::size_t k = 1; k < sinkage.size(); ++k) {
     const double a = std::max(sinkage[k - 1], from), b = std::min(sinkage[k], to), step = sinkage[k] - sinkage[k - 1];
@@ -89,6 +94,7 @@ struct PlateTarget {
   bool disc = false;
   double size = 0.0, depth = 0.0;  // m
   std::vector<double> sinkage;     // rising, m
+  std::vector<Window> windows;     // about them, as far as the measured curve goes
 };
 
 // ---- what the tests measure
@@ -269,7 +275,7 @@ class GrainModel final : public CalibrationModel {
         for (const auto& [specimen, test] : results.plate[bed]) {
           if (test.disc != curve.disc || std::abs(test.size - curve.size) > kSame) continue;
           for (std::size_t k = 0; k < at.size(); ++k)
-            at[k].push_back(pressure_at(test.curve.sinkage, test.curve.pressure, curve.sinkage[k], window()));
+            at[k].push_back(pressure_in(curve.windows[k], test.curve.sinkage, test.curve.pressure));
         }
       }
       for (const std::vector<double>& seeds : at) {
@@ -441,7 +447,8 @@ class GrainModel final : public CalibrationModel {
     for (int k = 0; k < points; ++k) {
       const double z = from + (to - from) * k / (points - 1);
       curve.sinkage.push_back(z);
-      target.x.push_back(z), target.y.push_back(pressure_at(sinkage, pressure, z, window()));
+      curve.windows.push_back({std::max(z - window(), sinkage.front()), std::min(z + window(), to)});
+      target.x.push_back(z), target.y.push_back(pressure_in(curve.windows.back(), sinkage, pressure));
       if (!(target.y.back() > 0.0))
         throw input_error(file, "pressure_Pa",
                           "is {:.3g} Pa at {:.3g} m, expected above 0 from the diameter of a grain on", target.y.back(),

@@ -196,7 +196,7 @@ TEST_F(CalibrateGrainsOnCurves, a_measured_curve_is_recovered_by_the_grains_that
     off = std::max(off, std::abs(there.values[k] / target.y[k] - 1.0));
     farther = std::max(farther, std::abs(elsewhere.values[k] / target.y[k] - 1.0));
   }
-  EXPECT_LT(off, 0.1);  // the plate is pushed a little less deep: other samples, steps, and a bed that goes another way
+  EXPECT_LT(off, 0.02);  // the plate is pushed a little less deep, so that its samples are others
   EXPECT_GT(farther, 0.2);
 }
 

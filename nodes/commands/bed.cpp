@@ -27,6 +27,7 @@ using json = nlohmann::ordered_json;
 json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, const terrain::dem::PreparedBed& prepared,
               const terrain::dem::BedStatistics& bed, std::optional<double> denser, double wall_s) {
   const double mass = o.density * bed.grain_volume;
+  const auto number_or_null = [](double value) { return value < 0.0 ? json(nullptr) : json(value); };
   const auto text_or_null = [](const std::string& text) { return text.empty() ? json(nullptr) : json(text); };
   json j;
   j["format_version"] = 1;
@@ -40,9 +41,9 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   // As found, where a packing was asked for.
   std::vector<double> laid{o.settling_friction, o.settling_cohesion, o.settling_drag};
   if (prepared.bed.has("bed/packing")) laid = prepared.bed.get<double>("bed/packing", 3);
-  j["settling_friction"] = laid[0] < 0.0 ? json(nullptr) : json(laid[0]);
-  j["settling_cohesion_Pa"] = laid[1] < 0.0 ? json(nullptr) : json(laid[1]);
-  j["settling_drag"] = laid[2] < 0.0 ? json(nullptr) : json(laid[2]);
+  j["settling_friction"] = number_or_null(laid[0]);
+  j["settling_cohesion_Pa"] = number_or_null(laid[1]);
+  j["settling_drag"] = number_or_null(laid[2]);
   j["compaction_pressure_Pa"] = o.compaction_pressure;
   j["terrain"] = fields_json(o, role::bed);  // all keys that make the bed
   j["grains"] = bed.grains;
@@ -53,7 +54,7 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   j["solid_fraction"] = bed.solid_fraction;
   j["solid_fraction_bulk"] = bed.solid_fraction_bulk;
   j["solid_fraction_profile"] = bed.profile;
-  j["solid_fraction_asked"] = o.solid_fraction < 0.0 ? json(nullptr) : json(o.solid_fraction);
+  j["solid_fraction_asked"] = number_or_null(o.solid_fraction);
   j["solid_fraction_more_at_1_2_g"] = denser ? json(*denser) : json(nullptr);
   j["bulk_density_kg_m3"] = mass / (o.length * o.width * bed.depth);
   j["coordination_number"] = bed.coordination;
@@ -86,7 +87,8 @@ ExitCode make_bed(const scenario::Scenario& scenario) {
       terrain::dem::bed_statistics(terrain::dem::positions_by_id(solver), solver.params().bin, grains.radius, progress);
   std::optional<double> denser;
   if (grains.solid_fraction > 0.0)
-    denser = terrain::dem::densified_by_weight(solver, terrain::dem::level(grains), progress);
+    denser = terrain::dem::solid_fraction_under_weight(solver, terrain::dem::level(grains), progress) -
+             statistics.solid_fraction_bulk;
   const double wall = wall_clock() - begin;
   display.clear();
   if (!prepared.settled.settled)

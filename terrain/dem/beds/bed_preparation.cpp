@@ -19,8 +19,9 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr int kMostPackings = 4;   // of a bed whose solid fraction is asked for
-constexpr double kSmallBed = 2.0;  // samples: such a bed is its own sample
+constexpr const char* kReached = "bed/solid_fraction";  // of a bed that was asked for one
+constexpr int kMostPackings = 4;                        // of a bed whose solid fraction is asked for
+constexpr double kSmallBed = 2.0;                       // samples: such a bed is its own sample
 
 std::vector<double> geometry(const DemOptions& o) { return {o.radius, o.density, o.length, o.width}; }
 
@@ -149,11 +150,12 @@ Archive packed_bed(const DemOptions& options, const ProgressCall& progress, Sett
   const auto settle_it = [&] {  // returns by how much it is too dense
     SettleResult settled;
     Archive bed = settled_bed(as, progress, settled);
-    const double excess = statistics_of(bed, as).solid_fraction_bulk - wanted;
+    const double reached = statistics_of(bed, as).solid_fraction_bulk, excess = reached - wanted;
     if (std::abs(excess) < nearest) {
       nearest = std::abs(excess);
       best = std::move(bed), result = settled;
       best.put("bed/packing", std::vector<double>{as.settling_friction, as.settling_cohesion, as.settling_drag});
+      best.put(kReached, reached);
     }
     return excess;
   };
@@ -231,7 +233,7 @@ DemOptions level(DemOptions o) {
   return o;
 }
 
-double densified_by_weight(const GrainSolver& bed, const DemOptions& options, const ProgressCall& progress) {
+double solid_fraction_under_weight(const GrainSolver& bed, const DemOptions& options, const ProgressCall& progress) {
   DemOptions heavier = options;
   heavier.gravity *= 1.2;
   Archive state;
@@ -239,7 +241,7 @@ double densified_by_weight(const GrainSolver& bed, const DemOptions& options, co
   GrainSolver solver(settling_params(heavier));
   solver.restore(state);
   settle(solver, heavier, named("more gravity: ", progress), kMaxSettleTime, kRestDrag);
-  return statistics_of(solver, options).solid_fraction_bulk - statistics_of(bed, options).solid_fraction_bulk;
+  return statistics_of(solver, options).solid_fraction_bulk;
 }
 
 bool bed_is_settled_anew(const DemOptions& options) { return options.bed.empty() || is_positions_file(options.bed); }
@@ -292,12 +294,14 @@ PreparedBed load_bed(GrainSolver& solver, const DemOptions& options, const Progr
     prepared = settled_anew(options, prepared.file, progress);
     solver.restore(prepared.bed);
   }
-  if (options.solid_fraction > 0.0 && progress)
-    if (const double is = statistics_of(solver, options).solid_fraction_bulk;
-        std::abs(is - options.solid_fraction) > packing_tolerance(options.solid_fraction))
+  if (options.solid_fraction > 0.0 && progress) {
+    const double is = prepared.bed.has(kReached) ? prepared.bed.get_double(kReached)
+                                                 : statistics_of(solver, options).solid_fraction_bulk;
+    if (std::abs(is - options.solid_fraction) > packing_tolerance(options.solid_fraction))
       progress(fmt::format("{}the bed has a solid fraction of {:.4f}, terrain.solid_fraction asks for {:g}", kWarning,
                            is, options.solid_fraction),
                1.0);
+  }
   return prepared;
 }
 

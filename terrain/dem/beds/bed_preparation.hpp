@@ -26,8 +26,8 @@ PreparedBed prepare_bed(const DemOptions& options, const ProgressCall& progress)
 /// made again. @throws Error(io) naming the user's file when that does not
 PreparedBed load_bed(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress);
 
-/// By how much the middle of the bed becomes denser under 20 % more gravity: a look at whether it would fall in.
-double densified_by_weight(const GrainSolver& bed, const DemOptions& options, const ProgressCall& progress);
+/// Solid fraction of the middle of the bed under 20 % more gravity: a look at whether it would fall in.
+double solid_fraction_under_weight(const GrainSolver& bed, const DemOptions& options, const ProgressCall& progress);
 
 /// False for a settled bed from the user's file, which is taken as it is.
 bool bed_is_settled_anew(const DemOptions& options);

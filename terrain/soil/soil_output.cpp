@@ -70,6 +70,7 @@ class Parameters {
 };
 
 json box_json(const SpecimenFacts& s, const Box& box) {
+  const std::string periodic = std::string(s.periodic_x ? "x" : "") + (s.periodic_y ? "y" : "");
   return {{"length_m", s.length},
           {"width_m", s.width},
           {"height_m", s.height},
@@ -77,10 +78,7 @@ json box_json(const SpecimenFacts& s, const Box& box) {
           {"solid_fraction", s.solid_fraction},
           {"bulk_density_kg_m3", s.bulk_density},
           {"own_bed", box.own},
-          {"periodic", box.own          ? s.periodic_y ? "y" : "none"
-                       : box.periodic_x ? box.periodic_y ? "xy" : "x"
-                       : box.periodic_y ? "y"
-                                        : "none"},
+          {"periodic", periodic.empty() ? "none" : periodic},
           {"step_s", s.step}};
 }
 

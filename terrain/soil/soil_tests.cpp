@@ -124,7 +124,7 @@ SpecimenFacts facts(const Specimen& s) {
   f.bulk_density = s.weight() / (s.options().gravity.norm() * s.length() * s.width() * s.height());
   f.solid_fraction = f.bulk_density / s.options().density;
   f.settled = s.settled();
-  f.periodic_y = s.options().periodic_y();
+  f.periodic_x = s.options().periodic_x, f.periodic_y = s.options().periodic_y();
   return f;
 }
 

@@ -76,7 +76,7 @@ struct SpecimenFacts {
   double solid_fraction = 0.0;                     // volume of the grains over that below the surface
   double bulk_density = 0.0;                       // kg/m³
   bool settled = true;
-  bool periodic_y = true;  // of the bed
+  bool periodic_x = true, periodic_y = true;
 };
 template <class Result>
 struct Tested {

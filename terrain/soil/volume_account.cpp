@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSpacing = 0.5;     // of the points, radii
 constexpr double kMostPoints = 3e8;  // more widely spaced where there would be more
-constexpr std::uint8_t kHull = 1, kSolid = 2;
+constexpr std::uint8_t kAny = 0, kHull = 1, kSolid = 2;
 
 /// Points on a grid over the region, from the floor up.
 class Points {
@@ -34,7 +34,7 @@ class Points {
           mark_one({p.x + i * length - region_.x_min, p.y + j * width - region_.y_min, p.z, p.w}, p.w + reach);
   }
 
-  /// Volume of the points with this mark for which inside(x, y, z) holds, m³.
+  /// Volume of the points with this mark, or of all with kAny, for which inside(x, y, z) holds, m³.
   template <class Inside>
   double volume(std::uint8_t mark, const Inside& inside) const {
     std::int64_t count = 0;
@@ -42,18 +42,9 @@ class Points {
       for (int j = 0; j < ny_; ++j) {
         const double x = region_.x_min + (i + 0.5) * dx_, y = region_.y_min + (j + 0.5) * dy_;
         const std::uint8_t* column = &marks_[(static_cast<std::size_t>(i) * ny_ + j) * nz_];
-        for (int k = 0; k < nz_; ++k) count += (column[k] & mark) != 0 && inside(x, y, (k + 0.5) * dz_);
-      }
-    return static_cast<double>(count) * dx_ * dy_ * dz_;
-  }
-  /// Volume of all points for which inside(x, y, z) holds, m³.
-  template <class Inside>
-  double space(const Inside& inside) const {
-    std::int64_t count = 0;
-    for (int i = 0; i < nx_; ++i)
-      for (int j = 0; j < ny_; ++j)
         for (int k = 0; k < nz_; ++k)
-          count += inside(region_.x_min + (i + 0.5) * dx_, region_.y_min + (j + 0.5) * dy_, (k + 0.5) * dz_);
+          count += (mark == kAny || (column[k] & mark) != 0) && inside(x, y, (k + 0.5) * dz_);
+      }
     return static_cast<double>(count) * dx_ * dy_ * dz_;
   }
 
@@ -134,7 +125,7 @@ VolumeAccount volume_account(const Region& region, const Footprint& plate, doubl
   // Grains lie looser along a flat face, within their diameter of it, whatever the soil.
   const double high = face - 2.0 * radius, deep = std::max(0.0, high - plate.size);
   const auto below = [&](double x, double y, double z) { return z > deep && z < high && plate.covers(x, y); };
-  const double space = points.space(below);
+  const double space = points.volume(kAny, below);
 
   points.mark(before.grains, radius);
   const double bulk = points.volume(kHull, [](double, double, double) { return true; });

@@ -6,13 +6,12 @@ usage: wheel_runs.py fit | predict | write  MEASURED
 MEASURED is a folder with what was measured: training_points.csv and conditions.csv. fit: three training points over the
 friction between wheel and sand, two beds each; writes fit.csv and prints the friction that they give. predict: the
 smooth wheel straight ahead at the other rim speeds, with that friction: three beds of the sand as calibrated, and one
-or two each of a looser and a denser sand, of smaller grains, and of slower travel; writes runs.csv. write:
-predictions.csv of runs.csv, with 95 % intervals.
+each of a looser and a denser sand, of smaller grains, and of slower travel; writes runs.csv. write: predictions.csv of
+runs.csv, with 95 % intervals.
 
 The ratio of rim to travel speed is that of the measurement; the wheel travels ten times as fast. Finished runs stay in
 results/studies/measured_wheel: the script goes on where it was stopped.
 """
-import csv
 import math
 import pathlib
 import statistics
@@ -31,6 +30,7 @@ FRACTIONS = {"loose": 0.490, "dense": 0.515}
 TRIAL = {"pull": 0.3, "sinkage": 0.0008}  # standard deviations of three trials
 T95 = 2.0  # Student's t of many degrees of freedom: most of the width is not the beds'
 ZERO = 0.002  # of the sinkage, m, one standard deviation
+HERE = pathlib.Path(__file__).resolve().parent
 RESULTS = driver.RESULTS / "measured_wheel"
 
 
@@ -63,8 +63,8 @@ def run(variant, rim, load, friction, seed):
 
 def straight(name):
     """Rows of the smooth wheel straight ahead, of a measured file."""
-    with open(MEASURED / name, encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["wheel"] == "smooth" and float(row["slip_angle_deg"]) == 0]
+    rows = [row for row in provenance.read_table(MEASURED / name)
+            if row["wheel"] == "smooth" and float(row["slip_angle_deg"]) == 0]
     return [{key: float(value) for key, value in row.items() if key != "wheel"} for row in rows]
 
 
@@ -89,8 +89,7 @@ def fitted(rows):
 
 
 def table(name):
-    with open(pathlib.Path(__file__).parent / name, encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    rows = provenance.read_table(HERE / name)
     return [{k: v if k == "variant" else float(v) for k, v in row.items()} for row in rows]
 
 

@@ -111,6 +111,7 @@ struct TireDescription {
   /// Of a tire whose contact is its own, under its nominal load: N/m upwards, N/m along where slip relaxes over a
   /// length, N s/m along where it does not. 0: it has no such thing.
   double vertical_stiffness = 0.0, grip_stiffness = 0.0, grip_damping = 0.0;
+  double most_load = 0.0;  // that its file was measured up to, N; 0: not known
   /// Why this tire can be pressed but not made and run: "whose key 'integrator' is …"; empty: it can.
   std::string static_only;
   NamedValues model;  // what else there is to know of this model: "layers"

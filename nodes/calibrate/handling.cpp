@@ -55,13 +55,14 @@ double said(const MagicFormula& tire, const SweepPoint& p) {
   return tire::handling::evaluate_formula(tire, p.state).*kForce;
 }
 
-/// R_l = R_0 − ρ with F_z = C_z ρ/cos γ (tire/handling/rolling_contact.hpp).
+/// R_l = R_0 − ρ with F_z = F(ρ)/cos γ (tire/handling/rolling_contact.hpp).
 double loaded_radius(const MagicFormula& tire, const SweepPoint& p) {
-  return tire.dimension.unloaded_radius - p.state.load * std::cos(p.state.camber) / tire.vertical.vertical_stiffness;
+  return tire.dimension.unloaded_radius -
+         tire::handling::spring_deflection(tire, p.state.load * std::cos(p.state.camber));
 }
 
 double rolling_radius(const MagicFormula& tire, const SweepPoint& p) {
-  return tire::handling::rolling_radius(tire, p.state.load / tire.vertical.vertical_stiffness);
+  return tire::handling::rolling_radius(tire, tire::handling::spring_deflection(tire, p.state.load));
 }
 
 constexpr auto kQuantities = std::to_array<Quantity>({

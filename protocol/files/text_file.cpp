@@ -91,7 +91,7 @@ std::string text_hash(const std::string& text) {
   return hash.hex();
 }
 
-std::string read_text_file(const std::filesystem::path& file, const std::string& expected) {
+std::string read_text_file(const std::filesystem::path& file, const std::string& expected, bool utf8) {
   const std::string name = file.string();
   check_text_file(file, expected);
   errno = 0;
@@ -106,7 +106,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   if (text.size() > kMaxText) throw input_error(name, "", "is too large, expected {} of at most 16 MB", expected);
   if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }))
     throw input_error(name, "", "is empty, expected " + expected);
-  if (const std::size_t bad = find_invalid_utf8(text); bad != std::string::npos)
+  if (const std::size_t bad = find_invalid_utf8(text); utf8 && bad != std::string::npos)
     throw input_error(name + ":" + place_in_text(text, bad), "", "byte 0x{:02x} is not UTF-8, expected {} in UTF-8",
                       static_cast<unsigned char>(text[bad]), expected);
   return text;

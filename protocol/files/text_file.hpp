@@ -17,9 +17,9 @@ inline constexpr std::uintmax_t kMaxText = 16 << 20;
 std::string read_whole_file(const std::filesystem::path& file, std::uintmax_t most = UINTMAX_MAX);
 
 /// The bytes of a text file in UTF-8 that a user wrote.
-/// @param expected what should be there, for messages: "a scenario in JSON"
+/// @param expected what should be there, for messages: "a scenario in JSON" @param utf8 false: the caller judges bytes
 /// @throws Error(bad_input) when it is missing, a directory, a device, empty, too large, or not UTF-8
-std::string read_text_file(const std::filesystem::path& file, const std::string& expected);
+std::string read_text_file(const std::filesystem::path& file, const std::string& expected, bool utf8 = true);
 
 /// Adds all bytes of a file of any size. @throws Error(io)
 void add_file(Hash& hash, const std::filesystem::path& file);

@@ -1,10 +1,15 @@
-// The coefficients of the Magic Formula as tire property files (.tir) name them, MF-Tyre 5.2: dimensionless unless a
-// unit is said. One list serves reading, writing and fitting.
+// The coefficients of the Magic Formula as tire property files (.tir) name them, MF-Tyre 5.2, PAC2002 and Magic Formula
+// 6.1: dimensionless unless a unit is said. One list serves reading, writing and fitting. In each struct the fields
+// from kLater on came after version 5.2: they are written for 6.1, and where they differ from what a file without them has.
 //
 // Sources: [1] H. B. Pacejka, Tire and Vehicle Dynamics, 3rd edition, Butterworth-Heinemann 2012, section 4.3.2 (the
 // names of the coefficients: appendix 3); 2nd edition 2006 alike. [2] TNO Automotive, MF-Tyre User Manual, version 5.2,
 // 2001: names and sections of the file.
 #pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "protocol/core/fields.hpp"
 
@@ -16,6 +21,8 @@ struct ScalingFactors {
          lmuy = 1.0, ley = 1.0, lky = 1.0, lhy = 1.0, lvy = 1.0, lgay = 1.0, ltr = 1.0, lres = 1.0, lgaz = 1.0,
          lxal = 1.0, lyka = 1.0, lvyka = 1.0, ls = 1.0, lsgkp = 1.0, lsgal = 1.0, lgyr = 1.0, lmx = 1.0, lvmx = 1.0,
          lmy = 1.0;
+  static constexpr int kLater = 28;
+  double lkyc = 1.0, lkzc = 1.0, lcz = 1.0, lip = 1.0;
 };
 void visit_fields(FieldsOf<ScalingFactors> auto& s, auto&& visit) {
   visit(s.lfzo, Field{"LFZO"});
@@ -46,6 +53,10 @@ void visit_fields(FieldsOf<ScalingFactors> auto& s, auto&& visit) {
   visit(s.lmx, Field{"LMX"});
   visit(s.lvmx, Field{"LVMX"});
   visit(s.lmy, Field{"LMY"});
+  visit(s.lkyc, Field{"LKYC"});
+  visit(s.lkzc, Field{"LKZC"});
+  visit(s.lcz, Field{"LCZ"});
+  visit(s.lip, Field{"LIP"});
 }
 
 /// Of F_x: p of pure slip, r of combined slip, ptx of the relaxation length.
@@ -53,6 +64,8 @@ struct LongitudinalCoefficients {
   double pcx1 = 0.0, pdx1 = 0.0, pdx2 = 0.0, pdx3 = 0.0, pex1 = 0.0, pex2 = 0.0, pex3 = 0.0, pex4 = 0.0, pkx1 = 0.0,
          pkx2 = 0.0, pkx3 = 0.0, phx1 = 0.0, phx2 = 0.0, pvx1 = 0.0, pvx2 = 0.0, rbx1 = 0.0, rbx2 = 0.0, rcx1 = 0.0,
          rex1 = 0.0, rex2 = 0.0, rhx1 = 0.0, ptx1 = 0.0, ptx2 = 0.0, ptx3 = 0.0;
+  static constexpr int kLater = 24;
+  double ppx1 = 0.0, ppx2 = 0.0, ppx3 = 0.0, ppx4 = 0.0, rbx3 = 0.0;
 };
 void visit_fields(FieldsOf<LongitudinalCoefficients> auto& s, auto&& visit) {
   visit(s.pcx1, Field{"PCX1"});
@@ -79,16 +92,36 @@ void visit_fields(FieldsOf<LongitudinalCoefficients> auto& s, auto&& visit) {
   visit(s.ptx1, Field{"PTX1"});
   visit(s.ptx2, Field{"PTX2"});
   visit(s.ptx3, Field{"PTX3"});
+  visit(s.ppx1, Field{"PPX1"});
+  visit(s.ppx2, Field{"PPX2"});
+  visit(s.ppx3, Field{"PPX3"});
+  visit(s.ppx4, Field{"PPX4"});
+  visit(s.rbx3, Field{"RBX3"});
 }
 
 /// Of M_x.
 struct OverturningCoefficients {
   double qsx1 = 0.0, qsx2 = 0.0, qsx3 = 0.0;
+  static constexpr int kLater = 3;
+  double qsx4 = 0.0, qsx5 = 0.0, qsx6 = 0.0, qsx7 = 0.0, qsx8 = 0.0, qsx9 = 0.0, qsx10 = 0.0, qsx11 = 0.0, qsx12 = 0.0,
+         qsx13 = 0.0, qsx14 = 0.0, ppmx1 = 0.0;
 };
 void visit_fields(FieldsOf<OverturningCoefficients> auto& s, auto&& visit) {
   visit(s.qsx1, Field{"QSX1"});
   visit(s.qsx2, Field{"QSX2"});
   visit(s.qsx3, Field{"QSX3"});
+  visit(s.qsx4, Field{"QSX4"});
+  visit(s.qsx5, Field{"QSX5"});
+  visit(s.qsx6, Field{"QSX6"});
+  visit(s.qsx7, Field{"QSX7"});
+  visit(s.qsx8, Field{"QSX8"});
+  visit(s.qsx9, Field{"QSX9"});
+  visit(s.qsx10, Field{"QSX10"});
+  visit(s.qsx11, Field{"QSX11"});
+  visit(s.qsx12, Field{"QSX12"});
+  visit(s.qsx13, Field{"QSX13"});
+  visit(s.qsx14, Field{"QSX14"});
+  visit(s.ppmx1, Field{"PPMX1"});
 }
 
 /// Of F_y, likewise.
@@ -97,6 +130,9 @@ struct LateralCoefficients {
          pky2 = 0.0, pky3 = 0.0, phy1 = 0.0, phy2 = 0.0, phy3 = 0.0, pvy1 = 0.0, pvy2 = 0.0, pvy3 = 0.0, pvy4 = 0.0,
          rby1 = 0.0, rby2 = 0.0, rby3 = 0.0, rcy1 = 0.0, rey1 = 0.0, rey2 = 0.0, rhy1 = 0.0, rhy2 = 0.0, rvy1 = 0.0,
          rvy2 = 0.0, rvy3 = 0.0, rvy4 = 0.0, rvy5 = 0.0, rvy6 = 0.0, pty1 = 0.0, pty2 = 0.0;
+  static constexpr int kLater = 34;
+  double pey5 = 0.0, pky4 = 2.0, pky5 = 0.0, pky6 = 0.0, pky7 = 0.0, ppy1 = 0.0, ppy2 = 0.0, ppy3 = 0.0, ppy4 = 0.0,
+         ppy5 = 0.0, rby4 = 0.0;
 };
 void visit_fields(FieldsOf<LateralCoefficients> auto& s, auto&& visit) {
   visit(s.pcy1, Field{"PCY1"});
@@ -133,17 +169,34 @@ void visit_fields(FieldsOf<LateralCoefficients> auto& s, auto&& visit) {
   visit(s.rvy6, Field{"RVY6"});
   visit(s.pty1, Field{"PTY1"});
   visit(s.pty2, Field{"PTY2"});
+  visit(s.pey5, Field{"PEY5"});
+  visit(s.pky4, Field{"PKY4"});
+  visit(s.pky5, Field{"PKY5"});
+  visit(s.pky6, Field{"PKY6"});
+  visit(s.pky7, Field{"PKY7"});
+  visit(s.ppy1, Field{"PPY1"});
+  visit(s.ppy2, Field{"PPY2"});
+  visit(s.ppy3, Field{"PPY3"});
+  visit(s.ppy4, Field{"PPY4"});
+  visit(s.ppy5, Field{"PPY5"});
+  visit(s.rby4, Field{"RBY4"});
 }
 
 /// Of M_y.
 struct RollingCoefficients {
   double qsy1 = 0.0, qsy2 = 0.0, qsy3 = 0.0, qsy4 = 0.0;
+  static constexpr int kLater = 4;
+  double qsy5 = 0.0, qsy6 = 0.0, qsy7 = 0.0, qsy8 = 0.0;
 };
 void visit_fields(FieldsOf<RollingCoefficients> auto& s, auto&& visit) {
   visit(s.qsy1, Field{"QSY1"});
   visit(s.qsy2, Field{"QSY2"});
   visit(s.qsy3, Field{"QSY3"});
   visit(s.qsy4, Field{"QSY4"});
+  visit(s.qsy5, Field{"QSY5"});
+  visit(s.qsy6, Field{"QSY6"});
+  visit(s.qsy7, Field{"QSY7"});
+  visit(s.qsy8, Field{"QSY8"});
 }
 
 /// Of M_z: q of trail and residual moment, s of the arm of F_x. QTZ1 and MBELT, of the gyroscopic moment, are kept
@@ -153,6 +206,8 @@ struct AligningCoefficients {
          qdz2 = 0.0, qdz3 = 0.0, qdz4 = 0.0, qdz6 = 0.0, qdz7 = 0.0, qdz8 = 0.0, qdz9 = 0.0, qez1 = 0.0, qez2 = 0.0,
          qez3 = 0.0, qez4 = 0.0, qez5 = 0.0, qhz1 = 0.0, qhz2 = 0.0, qhz3 = 0.0, qhz4 = 0.0, ssz1 = 0.0, ssz2 = 0.0,
          ssz3 = 0.0, ssz4 = 0.0, qtz1 = 0.0, mbelt = 0.0;
+  static constexpr int kLater = 31;
+  double qdz10 = 0.0, qdz11 = 0.0, ppz1 = 0.0, ppz2 = 0.0;
 };
 void visit_fields(FieldsOf<AligningCoefficients> auto& s, auto&& visit) {
   visit(s.qbz1, Field{"QBZ1"});
@@ -186,6 +241,10 @@ void visit_fields(FieldsOf<AligningCoefficients> auto& s, auto&& visit) {
   visit(s.ssz4, Field{"SSZ4"});
   visit(s.qtz1, Field{"QTZ1"});
   visit(s.mbelt, Field{"MBELT", "kg"});
+  visit(s.qdz10, Field{"QDZ10"});
+  visit(s.qdz11, Field{"QDZ11"});
+  visit(s.ppz1, Field{"PPZ1"});
+  visit(s.ppz2, Field{"PPZ2"});
 }
 
 /// [VERTICAL]
@@ -194,6 +253,8 @@ struct VerticalCoefficients {
   double vertical_damping = 0.0;                 // K_z, N s/m
   double breff = 0.0, dreff = 0.0, freff = 0.0;  // of the effective rolling radius
   double fnomin = 0.0;                           // F_z0, N
+  static constexpr int kLater = 6;
+  double q_fz1 = 0.0, q_fz2 = 0.0, pfz1 = 0.0;
 };
 void visit_fields(FieldsOf<VerticalCoefficients> auto& s, auto&& visit) {
   visit(s.vertical_stiffness, Field{"VERTICAL_STIFFNESS", "N/m"});
@@ -202,6 +263,34 @@ void visit_fields(FieldsOf<VerticalCoefficients> auto& s, auto&& visit) {
   visit(s.dreff, Field{"DREFF"});
   visit(s.freff, Field{"FREFF"});
   visit(s.fnomin, Field{"FNOMIN", "N"});
+  visit(s.q_fz1, Field{"Q_FZ1"});
+  visit(s.q_fz2, Field{"Q_FZ2"});
+  visit(s.pfz1, Field{"PFZ1"});
+}
+
+/// [STRUCTURAL], of version 6.1: what gives the relaxation lengths; with 0 the coefficients PT do.
+struct StructuralCoefficients {
+  double longitudinal_stiffness = 0.0, lateral_stiffness = 0.0;  // N/m
+  double pcfx1 = 0.0, pcfx2 = 0.0, pcfx3 = 0.0, pcfy1 = 0.0, pcfy2 = 0.0, pcfy3 = 0.0;
+};
+void visit_fields(FieldsOf<StructuralCoefficients> auto& s, auto&& visit) {
+  visit(s.longitudinal_stiffness, Field{"LONGITUDINAL_STIFFNESS", "N/m"});
+  visit(s.lateral_stiffness, Field{"LATERAL_STIFFNESS", "N/m"});
+  visit(s.pcfx1, Field{"PCFX1"});
+  visit(s.pcfx2, Field{"PCFX2"});
+  visit(s.pcfx3, Field{"PCFX3"});
+  visit(s.pcfy1, Field{"PCFY1"});
+  visit(s.pcfy2, Field{"PCFY2"});
+  visit(s.pcfy3, Field{"PCFY3"});
+}
+
+/// [OPERATING_CONDITIONS]; IP and IP_NOM of [TIRE_CONDITIONS] in PAC2002. 0: not said.
+struct OperatingConditions {
+  double inflpres = 0.0, nompres = 0.0;  // Pa
+};
+void visit_fields(FieldsOf<OperatingConditions> auto& s, auto&& visit) {
+  visit(s.inflpres, Field{"INFLPRES", "Pa"});
+  visit(s.nompres, Field{"NOMPRES", "Pa"});
 }
 
 /// [DIMENSION]
@@ -238,6 +327,7 @@ struct Range {
 };
 
 struct MagicFormula {
+  bool version61 = false;  // of [MODEL] FITTYP 61 or 62; otherwise 5.2, with the pressure terms of PAC2002
   Dimensions dimension;
   VerticalCoefficients vertical;
   TireInertia inertia;
@@ -253,6 +343,11 @@ struct MagicFormula {
   LateralCoefficients lateral;
   RollingCoefficients rolling;
   AligningCoefficients aligning;
+  StructuralCoefficients structural;
+  OperatingConditions conditions;
+  std::vector<std::pair<double, double>> load_curve;  // [DEFLECTION_LOAD_CURVE]: m, N; empty: none
+  std::vector<std::pair<std::string, std::string>>
+      remarks;  // of reading: "[SECTION] KEY", "is …"; what a user must know
 };
 
 /// Calls visit(value, field) for every coefficient of the formula and for what else a fit may change, by their names in
@@ -267,6 +362,7 @@ void visit_coefficients(Tire& tire, Visit&& visit) {
   visit_fields(tire.lateral, visit);
   visit_fields(tire.rolling, visit);
   visit_fields(tire.aligning, visit);
+  visit_fields(tire.structural, visit);
 }
 
 }  // namespace furrow::tire::handling

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "protocol/core/error.hpp"
+#include "tire/handling/magic_formula.hpp"
 
 namespace furrow::tire::handling {
 
@@ -22,7 +23,7 @@ PressResults press_handling(const MagicFormula& tire, const MassProperties& mass
                                   options.deflection, most));
   PressModel model;
   model.press = [&](double deflection) {
-    const double force = tire.vertical.vertical_stiffness * deflection;
+    const double force = spring_force(tire, deflection);
     return PressPoint{deflection, force, 0.0, 0, 0, {{0.0, 0.0, force}, Vec3::Zero()}};
   };
   model.footprint = [] { return std::vector<PressSample>{}; };

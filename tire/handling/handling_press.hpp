@@ -1,4 +1,4 @@
-// The static test of a handling tire: F = C_z × deflection, on a plate. Its file knows no footprint and no cleat.
+// The static test of a handling tire: the spring of its file, on a plate. Its file knows no footprint and no cleat.
 #pragma once
 
 #include "tire/handling/coefficients.hpp"

@@ -11,6 +11,7 @@
 #include "tire/cylinder.hpp"
 #include "tire/handling/handling_press.hpp"
 #include "tire/handling/handling_tire.hpp"
+#include "tire/handling/magic_formula.hpp"
 #include "tire/handling/tir_file.hpp"
 #include "tire/tire_file_reader.hpp"
 
@@ -19,7 +20,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFacets = 96, kRows = 7;  // of the surface
+constexpr int kFacets = 96, kRows = 7;                      // of the surface
+constexpr double kLeastNominal = 0.01, kMostNominal = 0.3;  // deflection under FNOMIN, of the radius
+constexpr double kMostFactor = 5.0;
 constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which only rigid tires use
 
 class HandlingSpec final : public TireSpec {
@@ -59,7 +62,7 @@ TireDescription HandlingSpec::describe() const {
   d.name = "handling (Magic Formula)";
   d.details =
       fmt::format("{}, {:g} N, {:g} kN/m, relaxation {:.3g} m along, {:.3g} m across", file_.tir.filename().string(),
-                  t.vertical.fnomin, 1e-3 * t.vertical.vertical_stiffness, s.longitudinal, s.lateral);
+                  t.vertical.fnomin, 1e-3 * spring_stiffness(t, t.vertical.fnomin), s.longitudinal, s.lateral);
   d.radius = t.dimension.unloaded_radius;
   d.width = d.tread_width = t.dimension.width;
   if (t.dimension.rim_radius > 0.0) d.section_height = d.radius - t.dimension.rim_radius;
@@ -71,7 +74,8 @@ TireDescription HandlingSpec::describe() const {
   d.saved_bytes = 1e4;
   d.follows_rim = true;
   const double slip_stiffness = std::abs(handling::evaluate(t, {.load = t.vertical.fnomin}).slip_stiffness);
-  d.vertical_stiffness = t.vertical.vertical_stiffness;
+  d.vertical_stiffness = handling::spring_stiffness(t, t.vertical.fnomin);
+  d.most_load = t.load.most;
   if (s.longitudinal > 0.0)
     d.grip_stiffness = slip_stiffness / s.longitudinal;
   else
@@ -102,9 +106,28 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
   if (t.aligning.qtz1 != 0.0 && t.aligning.mbelt != 0.0)
     odd.emplace_back("[ALIGNING_COEFFICIENTS] QTZ1",
                      "of " + at + " is not used: the gyroscopic moment of the belt is left out");
-  if (t.vertical.vertical_stiffness < 1e4 || t.vertical.vertical_stiffness > 1e7)
-    odd.emplace_back("[VERTICAL] VERTICAL_STIFFNESS",
-                     fmt::format("of {} is {:g} N/m, usual are 1e5 to 1e6 N/m", at, t.vertical.vertical_stiffness));
+  for (const auto& [key, what] : t.remarks) odd.emplace_back(key, "of " + at + " " + what);
+  const double nominal = handling::spring_deflection(t, t.vertical.fnomin) / t.dimension.unloaded_radius;
+  if (nominal < kLeastNominal || nominal > kMostNominal)
+    odd.emplace_back("[VERTICAL] FNOMIN",
+                     fmt::format("of {}, {:g} N, deflects the tire by {:.2g} % of its radius, usual are 2 to 15 %: "
+                                 "expected FNOMIN in N and VERTICAL_STIFFNESS in N/m",
+                                 at, t.vertical.fnomin, 100.0 * nominal));
+  if (t.vertical.fnomin < t.load.least || t.vertical.fnomin > t.load.most)
+    odd.emplace_back("[VERTICAL_FORCE_RANGE] FZMIN, FZMAX",
+                     fmt::format("of {} are {:g} and {:g} N and leave out FNOMIN of {:g} N: expected all in N", at,
+                                 t.load.least, t.load.most, t.vertical.fnomin));
+  visit_fields(t.scaling, [&](double value, const Field& field) {
+    if (std::abs(value) > kMostFactor)
+      odd.emplace_back(std::string("[SCALING_COEFFICIENTS] ") + field.name,
+                       fmt::format("of {} is {:g}, usual are 0 to 2: it is a factor, not per cent", at, value));
+  });
+  const bool along = handling::ellipse_along(t), across = handling::ellipse_across(t);
+  if (along || across)
+    odd.emplace_back(along && across ? "[LONGITUDINAL_COEFFICIENTS] RBX1, [LATERAL_COEFFICIENTS] RBY1"
+                     : along         ? "[LONGITUDINAL_COEFFICIENTS] RBX1"
+                                     : "[LATERAL_COEFFICIENTS] RBY1",
+                     "of " + at + " say nothing of combined slip: a friction ellipse is used");
   if (t.dimension.unloaded_radius < 0.05 || t.dimension.unloaded_radius > 2.0)
     odd.emplace_back("[DIMENSION] UNLOADED_RADIUS",
                      fmt::format("of {} is {:g} m, usual are 0.1 to 1 m", at, t.dimension.unloaded_radius));

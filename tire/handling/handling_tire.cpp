@@ -107,7 +107,7 @@ Outcome HandlingTire::state_contact(const RimState& now, double duration) {
   const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z, f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
   move(rim, before_, &moving_);
   distribute(wanted, axes.origin);
-  double power = -formula_.vertical.vertical_stiffness * motion.deflection * motion.rate;
+  double power = -spring_force(formula_, motion.deflection) * motion.rate;
   for (std::size_t i = 0; i < stated_.forces.vertex.size(); ++i) {
     const int k = stated_.forces.vertex[i];
     const Vec3 carried = rim.velocity + rim.angular_velocity.cross(before_[k] - rim.position);
@@ -153,7 +153,7 @@ void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
 TireDiagnostics HandlingTire::diagnostics() const {
   TireDiagnostics d = body_.diagnostics();
   const double deflection = standing_ ? 0.0 : std::max(0.0, contact_motion(formula_, rim_).deflection);
-  d.elastic_energy = 0.5 * formula_.vertical.vertical_stiffness * deflection * deflection;
+  d.elastic_energy = spring_energy(formula_, deflection);
   d.dissipation = dissipation_;
   return d;
 }

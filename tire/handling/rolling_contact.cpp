@@ -87,8 +87,7 @@ ContactMotion contact_motion(const MagicFormula& tire, const RimState& rim) {
   m.slip_x = m.travel - spin * rolling_radius(tire, std::max(0.0, m.deflection));
   m.slip_y = carried.dot(m.axes.y);
   if (m.deflection > 0.0)
-    m.load = std::max(0.0, tire.vertical.vertical_stiffness * m.deflection + tire.vertical.vertical_damping * m.rate) /
-             cosine;
+    m.load = std::max(0.0, spring_force(tire, m.deflection) + tire.vertical.vertical_damping * m.rate) / cosine;
   return m;
 }
 

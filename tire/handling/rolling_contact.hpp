@@ -3,9 +3,9 @@
 //
 // With the W-axes of tire/wheel_axes.hpp at the contact centre C, the loaded radius R_l and the camber angle γ:
 //
-//   deflection ρ = R_0 − R_l,   F_z = (C_z ρ + K_z ρ̇)/cos γ ≥ 0
+//   deflection ρ = R_0 − R_l,   F_z = (F(ρ) + K_z ρ̇)/cos γ ≥ 0,   F = C_z ρ or as the file says (spring_force())
 //
-// F_z acts at C: so ½ C_z ρ² is a potential, and what the ground does not get back of F_z's work is K_z ρ̇².
+// F_z acts at C: so ∫ F dρ is a potential, and what the ground does not get back of F_z's work is K_z ρ̇².
 //
 //   V_C = v + (ω − Ω a) × (C − r),   V_sx = V_Cx − Ω R_e(ρ),   V_sy = V_Cy,   Ω the spin about the axle a
 //   u̇ = −V_sx − |V_Cx| u/σ_κ,   v̇ = −V_sy − |V_Cx| v/σ_α                     [1, chapter 7: (7.7), (7.9)]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The Magic Formula of a tire property file (.tir), evaluated a second time: written from the equations of Pacejka,
-Tire and Vehicle Dynamics (2012), section 4.3.2, as MF-Tyre 5.2 has them, with numpy and without the program. It shares
-no line with tire/handling; formula_peer_test.py compares the two.
+Tire and Vehicle Dynamics (2012), section 4.3.2, as MF-Tyre 5.2 and Magic Formula 6.1 have them, with numpy and without
+the program. It shares no line with tire/handling; formula_peer_test.py compares the two.
 
 usage: evaluate_tir.py FILE.tir STATES.csv
 
@@ -80,34 +80,49 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     df = Fz / Fz0s - 1
     a = np.tan(alpha)
     one = np.minimum
+    later = t.FITTYP >= 61
+    dp = t.INFLPRES / (t.lip * t.NOMPRES) - 1 if t.NOMPRES > 0 and t.INFLPRES > 0 else 0.0
+
+    def star(angle):
+        return np.sin(angle) if later else angle
 
     # longitudinal, pure
     gx = gamma * t.lgax
-    mux = t.lmux * (t.pdx1 + t.pdx2 * df) * (1 - t.pdx3 * gx**2)
-    Kx = t.lkx * Fz * (t.pkx1 + t.pkx2 * df) * np.exp(t.pkx3 * df)
+    mux = t.lmux * (t.pdx1 + t.pdx2 * df) * (1 - t.pdx3 * gx**2) * (1 + dp * (t.ppx3 + dp * t.ppx4))
+    Kx = t.lkx * Fz * (t.pkx1 + t.pkx2 * df) * np.exp(t.pkx3 * df) * (1 + dp * (t.ppx1 + dp * t.ppx2))
     Cx, Dx = t.pcx1 * t.lcx, mux * Fz
     kx = kappa + t.lhx * (t.phx1 + t.phx2 * df)
     Ex = one(1, t.lex * (t.pex1 + df * (t.pex2 + df * t.pex3)) * (1 - t.pex4 * sgn(kx)))
     Fx0 = sine(kx, Kx / (Cx * Dx), Cx, Dx, Ex) + t.lvx * t.lmux * Fz * (t.pvx1 + t.pvx2 * df)
 
     # lateral, pure
-    gy = gamma * t.lgay
-    muy = t.lmuy * (t.pdy1 + t.pdy2 * df) * (1 - t.pdy3 * gy**2)
-    Ky = t.lky * t.pky1 * Fz0s * np.sin(2 * np.arctan2(Fz, t.pky2 * Fz0s)) * (1 - t.pky3 * abs(gy))
-    Cy, Dy = t.pcy1 * t.lcy, muy * Fz
-    SHy = t.lhy * (t.phy1 + t.phy2 * df) + t.phy3 * gy
-    SVy = t.lmuy * Fz * (t.lvy * (t.pvy1 + t.pvy2 * df) + gy * (t.pvy3 + t.pvy4 * df))
-    ay = a + SHy
-    Ey = one(1, t.ley * (t.pey1 + t.pey2 * df) * (1 - sgn(ay) * (t.pey3 + t.pey4 * gy)))
-    By = Ky / (Cy * Dy)
-    Fy0 = sine(ay, By, Cy, Dy, Ey) + SVy
+    def sideways(gy):
+        muy = t.lmuy * (t.pdy1 + t.pdy2 * df) * (1 - t.pdy3 * gy**2) * (1 + dp * (t.ppy3 + dp * t.ppy4))
+        top = (t.pky2 + t.pky5 * gy**2) * (1 + t.ppy2 * dp) * Fz0s
+        Ky = (t.lky * t.pky1 * Fz0s * (1 + t.ppy1 * dp) * np.sin((t.pky4 if later else 2) * np.arctan2(Fz, top))
+              * (1 - t.pky3 * abs(gy)))
+        Cy, Dy = t.pcy1 * t.lcy, muy * Fz
+        SVg = t.lmuy * t.lkyc * Fz * gy * (t.pvy3 + t.pvy4 * df)
+        SVy = t.lmuy * t.lvy * Fz * (t.pvy1 + t.pvy2 * df) + SVg
+        SHy = t.lhy * (t.phy1 + t.phy2 * df)
+        if later:
+            SHy = SHy + (t.lkyc * Fz * (t.pky6 + t.pky7 * df) * (1 + t.ppy5 * dp) * gy - SVg) / Ky
+        else:
+            SHy = SHy + t.phy3 * gy
+        ay = a + SHy
+        Ey = one(1, t.ley * (t.pey1 + t.pey2 * df) * (1 + t.pey5 * gy**2 - sgn(ay) * (t.pey3 + t.pey4 * gy)))
+        By = Ky / (Cy * Dy)
+        return sine(ay, By, Cy, Dy, Ey) + SVy, muy, Ky, By, Cy, SHy, SVy
+
+    gy = star(gamma * t.lgay)
+    Fy0, muy, Ky, By, Cy, SHy, SVy = sideways(gy)
 
     # combined
-    Bxa = t.lxal * t.rbx1 / np.sqrt(1 + (t.rbx2 * kappa) ** 2)
+    Bxa = t.lxal * (t.rbx1 + t.rbx3 * star(gamma) ** 2) / np.sqrt(1 + (t.rbx2 * kappa) ** 2)
     Exa = one(1, t.rex1 + t.rex2 * df)
     Gx = cosine(a + t.rhx1, Bxa, t.rcx1, 1, Exa) / cosine(t.rhx1, Bxa, t.rcx1, 1, Exa)
     Fx = np.maximum(Gx, 0) * Fx0
-    Byk = t.lyka * t.rby1 / np.sqrt(1 + (t.rby2 * (a - t.rby3)) ** 2)
+    Byk = t.lyka * (t.rby1 + t.rby4 * gy**2) / np.sqrt(1 + (t.rby2 * (a - t.rby3)) ** 2)
     Eyk = one(1, t.rey1 + t.rey2 * df)
     SHk = t.rhy1 + t.rhy2 * df
     Gy = cosine(kappa + SHk, Byk, t.rcy1, 1, Eyk) / cosine(SHk, Byk, t.rcy1, 1, Eyk)
@@ -116,7 +131,7 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     Fy = np.maximum(Gy, 0) * Fy0 + SVk
 
     # aligning moment: trail on what is lateral by slip angle, residual, arm of Fx
-    gz = gamma * t.lgaz
+    gz = star(gamma * t.lgaz)
     ratio = (Kx / Ky * kappa) ** 2
 
     def with_slip(angle):
@@ -126,19 +141,26 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     ar = with_slip(a + SHy + SVy / Ky)
     Bt = t.lky / t.lmuy * (t.qbz1 + t.qbz2 * df + t.qbz3 * df**2) * (1 + t.qbz4 * gz + t.qbz5 * abs(gz))
     Ct = t.qcz1
-    Dt = t.ltr * Fz * R0 / Fz0 * (t.qdz1 + t.qdz2 * df) * (1 + t.qdz3 * gz + t.qdz4 * gz**2)
+    Dt = t.ltr * Fz * R0 / Fz0 * (t.qdz1 + t.qdz2 * df) * (1 + t.qdz3 * gz + t.qdz4 * gz**2) * (1 - t.ppz1 * dp)
     Et = one(1, (t.qez1 + t.qez2 * df + t.qez3 * df**2)
              * (1 + (t.qez4 + t.qez5 * gz) * 2 / np.pi * np.arctan(Bt * Ct * at)))
     trail = cosine(at, Bt, Ct, Dt, Et) * np.cos(alpha)
     Br = t.qbz9 * t.lky / t.lmuy + t.qbz10 * By * Cy
-    Dr = t.lmuy * R0 * Fz * (t.lres * (t.qdz6 + t.qdz7 * df) + gz * (t.qdz8 + t.qdz9 * df))
+    Dr = t.lmuy * R0 * Fz * (t.lres * (t.qdz6 + t.qdz7 * df) + t.lkzc * gz * (
+        (t.qdz8 + t.qdz9 * df) * (1 + t.ppz2 * dp) + (t.qdz10 + t.qdz11 * df) * abs(gz)))
     Mzr = Dr * np.cos(alpha) / np.sqrt(1 + (Br * ar) ** 2)
     arm = t.ls * R0 * (t.ssz1 + t.ssz2 * Fy / Fz0 + gz * (t.ssz3 + t.ssz4 * df))
-    Mz = Mzr - trail * (Fy - SVk) + arm * Fx
+    Mz = Mzr - trail * (np.maximum(Gy, 0) * sideways(0.0)[0] if later else Fy - SVk) + arm * Fx
 
-    Mx = R0 * Fz * (t.lvmx * t.qsx1 + t.lmx * (t.qsx3 * Fy / Fz0 - t.qsx2 * gamma))
+    nz, ny = Fz / Fz0, Fy / Fz0
+    Mx = R0 * Fz * (t.lvmx * t.qsx1 * (t.lmx if later else 1) + t.lmx * (
+        t.qsx3 * ny - t.qsx2 * gamma * (1 + t.ppmx1 * dp) + t.qsx10 * np.arctan(t.qsx11 * nz) * gamma
+        + t.qsx4 * np.cos(t.qsx5 * np.arctan((t.qsx6 * nz) ** 2))
+        * np.sin(t.qsx7 * gamma + t.qsx8 * np.arctan(t.qsx9 * ny))
+        - t.qsx12 * gamma * abs(gamma))) + t.lmx * R0 * Fy * (t.qsx13 + t.qsx14 * abs(gamma))
     v = np.asarray(Vx, float) / t.LONGVL if t.LONGVL > 0 else 0.0
-    My = -R0 * Fz * t.lmy * (t.qsy1 + t.qsy2 * Fx / Fz0 + t.qsy3 * abs(v) + t.qsy4 * v**4)
+    My = -R0 * Fz0 * t.lmy * (t.qsy1 + t.qsy2 * Fx / Fz0 + t.qsy3 * abs(v) + t.qsy4 * v**4
+                              + (t.qsy5 + t.qsy6 * nz) * gamma**2) * nz ** (t.qsy7 + (not later)) * (1 + dp)**t.qsy8
     return {"Fx_N": scale * Fx, "Fy_N": scale * Fy, "Mx_Nm": scale * Mx, "My_Nm": scale * My, "Mz_Nm": scale * Mz}
 
 

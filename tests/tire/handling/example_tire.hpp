@@ -114,7 +114,38 @@ inline MagicFormula example_tire() {
   return t;
 }
 
-/// The same without shifts, camber and residual moments: odd in slip and in slip angle.
+/// The same with what Magic Formula 6.1 adds, at a pressure that is not the nominal one.
+inline MagicFormula later_tire() {
+  MagicFormula t = example_tire();
+  t.version61 = true;
+  t.conditions = {.inflpres = 2.4e5, .nompres = 2e5};
+  t.scaling.lkyc = 1.1, t.scaling.lkzc = 0.9;
+  t.vertical.q_fz2 = 12.0, t.vertical.pfz1 = 0.7;
+  auto& x = t.longitudinal;
+  x.ppx1 = -0.35, x.ppx2 = 0.4, x.ppx3 = -0.1, x.ppx4 = 0.06, x.rbx3 = 5.0;
+  auto& m = t.overturning;
+  m.qsx4 = 0.05, m.qsx5 = 0.4, m.qsx6 = 0.6, m.qsx7 = 0.8, m.qsx8 = 0.7, m.qsx9 = 0.5, m.qsx10 = 0.04, m.qsx11 = 1.2;
+  m.qsx12 = 0.3, m.qsx13 = 0.01, m.qsx14 = 0.05, m.ppmx1 = 0.2;
+  auto& y = t.lateral;
+  y.phy3 = 0.0;
+  y.pey5 = -3.0, y.pky4 = 1.8, y.pky5 = 0.5, y.pky6 = -0.9, y.pky7 = -0.25, y.rby4 = 4.0;
+  y.ppy1 = -0.6, y.ppy2 = -0.05, y.ppy3 = -0.15, y.ppy4 = 0.02, y.ppy5 = -0.3;
+  auto& r = t.rolling;
+  r.qsy5 = 0.1, r.qsy6 = 0.2, r.qsy7 = 0.85, r.qsy8 = -0.4;
+  auto& z = t.aligning;
+  z.qdz10 = 0.2, z.qdz11 = -0.1, z.ppz1 = -0.4, z.ppz2 = -0.1;
+  t.structural = {.longitudinal_stiffness = 3.2e5,
+                  .lateral_stiffness = 1.4e5,
+                  .pcfx1 = 0.2,
+                  .pcfx2 = -0.05,
+                  .pcfx3 = 0.3,
+                  .pcfy1 = 0.1,
+                  .pcfy2 = -0.02,
+                  .pcfy3 = 0.25};
+  return t;
+}
+
+/// example_tire() without shifts, camber and residual moments: odd in slip and in slip angle.
 inline MagicFormula symmetric_tire() {
   MagicFormula t = example_tire();
   auto& x = t.longitudinal;

@@ -38,6 +38,9 @@ class Peer(unittest.TestCase):
     def test_a_tire_with_every_coefficient(self):
         self.compare()
 
+    def test_a_tire_of_version_6_1_at_another_pressure(self):
+        self.compare("6.1")
+
     def test_the_fitted_tire(self):
         self.compare(ROOT / "tire/data/hmmwv_handling.tir")
 

@@ -1,7 +1,7 @@
 // Writes a tire property file that uses every coefficient, random states within and around its ranges, and what
 // tire/handling says of them: for formula_peer_test.py, which evaluates the same file on its own.
 //
-// usage: formula_states FILE.tir STATES.csv [FILE.tir that is there already]
+// usage: formula_states FILE.tir STATES.csv [FILE.tir that is there already, or 6.1]
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   using namespace furrow::tire::handling;
   if (argc < 3) return 2;
   try {
-    const MagicFormula tire = argc > 3 ? read_tir(argv[3]) : example_tire();
+    const std::string given = argc > 3 ? argv[3] : "";
+    const MagicFormula tire = given.empty() ? example_tire() : given == "6.1" ? later_tire() : read_tir(given);
     std::ofstream(argv[1]) << tir_text(tire, {});
     std::mt19937 random(7);
     const auto within = [&](const Range& range, double beyond) {

@@ -99,7 +99,7 @@ TEST(MagicFormula, combined_slip_without_the_other_slip_is_pure) {
   MagicFormula t = example_tire();
   t.lateral.rvy1 = t.lateral.rvy2 = t.lateral.rvy3 = 0.0;
   MagicFormula pure = t;
-  pure.longitudinal.rbx1 = pure.lateral.rby1 = 0.0;  // no weighting
+  pure.longitudinal.rbx1 = pure.lateral.rby1 = 1e-300;  // no weighting; 0 is the friction ellipse
   for (const double load : kLoads) {
     for (const double slip : {-0.3, -0.02, 0.05, 0.8})
       EXPECT_DOUBLE_EQ(evaluate(t, {.load = load, .slip = slip}).fx, evaluate(pure, {.load = load, .slip = slip}).fx);
@@ -110,6 +110,119 @@ TEST(MagicFormula, combined_slip_without_the_other_slip_is_pure) {
   const HandlingForces both = evaluate(symmetric_tire(), {.load = 4000.0, .slip = 0.1, .slip_angle = 0.1}),
                        alone = evaluate(symmetric_tire(), {.load = 4000.0, .slip = 0.1});
   EXPECT_LT(both.fx, 0.95 * alone.fx);
+}
+
+/// Within the ellipse of the peaks at any slips, the pure forces where the other slip is none, and along the slip where
+/// both slide.
+TEST(MagicFormula, without_coefficients_of_combined_slip_it_keeps_within_the_friction_ellipse) {
+  MagicFormula t = symmetric_tire();
+  t.longitudinal.rbx1 = t.lateral.rcy1 = 0.0;
+  t.lateral.rvy3 = 0.0;
+  MagicFormula pure = t;
+  pure.longitudinal.rbx1 = pure.lateral.rby1 = pure.lateral.rcy1 = 1e-300;
+  EXPECT_TRUE(ellipse_along(t) && ellipse_across(t));
+  EXPECT_FALSE(ellipse_along(pure) || ellipse_across(pure));
+  for (const double load : kLoads) {
+    const double df = load / 4000.0 - 1.0;
+    const double dx = load * (t.longitudinal.pdx1 + t.longitudinal.pdx2 * df) * t.scaling.lmux,
+                 dy = load * (t.lateral.pdy1 + t.lateral.pdy2 * df) * t.scaling.lmuy;
+    double most = 0.0;
+    for (const double slip : {-0.9, -0.1, -0.01, 0.0, 1e-4, 0.05, 0.2, 1.2})
+      for (const double angle : {-0.5, -0.1, 0.0, 1e-3, 0.05, 0.3}) {
+        const HandlingForces f = evaluate(t, {.load = load, .slip = slip, .slip_angle = angle}),
+                             x = evaluate(pure, {.load = load, .slip = slip}),
+                             y = evaluate(pure, {.load = load, .slip_angle = angle});
+        const double share = std::hypot(f.fx / dx, f.fy / dy);
+        EXPECT_LE(share, 1.0 + 1e-12) << slip << " " << angle;
+        most = std::max(most, share);
+        if (angle == 0.0) {
+          EXPECT_DOUBLE_EQ(f.fx, x.fx);
+        }
+        if (slip == 0.0) {
+          EXPECT_DOUBLE_EQ(f.fy, y.fy);
+        }
+        EXPECT_LE(std::abs(f.fx), std::abs(x.fx) * (1.0 + 1e-12));
+        EXPECT_LE(std::abs(f.fy), std::abs(y.fy) * (1.0 + 1e-12));
+      }
+    EXPECT_GT(most, 0.9);
+    // The slopes at no slip stay: neither small slip weakens the other's force.
+    const HandlingForces small = evaluate(t, {.load = load, .slip = 1e-5, .slip_angle = 1e-5}),
+                         alone = evaluate(pure, {.load = load, .slip = 1e-5, .slip_angle = 1e-5});
+    EXPECT_NEAR(small.fx, alone.fx, 1e-6 * std::abs(alone.fx));
+    EXPECT_NEAR(small.fy, alone.fy, 1e-6 * std::abs(alone.fy));
+  }
+}
+
+/// Of 6.1: without pressure change and camber it is 5.2 where the curve of K_yα is that of an atan of 2.
+TEST(MagicFormula, version_6_1_without_its_terms_is_5_2) {
+  MagicFormula old = example_tire();
+  old.lateral.phy3 = 0.0;
+  MagicFormula later = old;
+  later.version61 = true;
+  later.rolling.qsy7 = 1.0;
+  later.conditions = {.inflpres = 2e5, .nompres = 2e5};
+  for (const double load : kLoads)
+    for (const double slip : {-0.3, 0.0, 0.05})
+      for (const double angle : {-0.2, 0.0, 0.03}) {
+        const SlipState at{.load = load, .slip = slip, .slip_angle = angle, .speed = 9.0};
+        const HandlingForces a = evaluate(old, at), b = evaluate(later, at);
+        for (const auto part :
+             {&HandlingForces::fx, &HandlingForces::fy, &HandlingForces::mx, &HandlingForces::my, &HandlingForces::mz})
+          EXPECT_NEAR(a.*part, b.*part, 1e-9);
+      }
+}
+
+/// K and the peaks carry the terms of pressure in closed form, and dF_y/dγ at no slip is K_yγ0 (4.E30).
+TEST(MagicFormula, version_6_1_depends_on_pressure_and_camber_as_its_equations_say) {
+  MagicFormula t = later_tire();
+  const double dpi = 0.2, df = -0.25, load = 3000.0;
+  EXPECT_NEAR(pressure_change(t), dpi, 1e-15);
+  const HandlingForces f = evaluate(t, {.load = load});
+  const auto& x = t.longitudinal;
+  EXPECT_NEAR(f.slip_stiffness,
+              load * (x.pkx1 + x.pkx2 * df) * std::exp(x.pkx3 * df) * (1.0 - 0.35 * dpi + 0.4 * dpi * dpi), 1e-8);
+  EXPECT_NEAR(f.cornering_stiffness,
+              -18.0 * 4000.0 * (1.0 - 0.6 * dpi) * std::sin(1.8 * std::atan(0.75 / (1.9 * (1.0 - 0.05 * dpi)))) * 1.05,
+              1e-8);
+  auto& y = t.lateral;  // no shifts, no lifts: the slope at no slip is that of E = 0 too
+  y.phy1 = y.phy2 = y.pvy1 = y.pvy2 = y.rvy1 = y.rvy2 = y.rvy3 = 0.0;
+  const double h = 1e-5;
+  const double slope =
+      (evaluate(t, {.load = load, .camber = h}).fy - evaluate(t, {.load = load, .camber = -h}).fy) / (2.0 * h);
+  EXPECT_NEAR(slope, load * (-0.9 - 0.25 * df) * (1.0 - 0.3 * dpi) * 1.1 * t.scaling.lgay, 1e-3);
+}
+
+TEST(MagicFormula, relaxation_of_6_1_is_slip_stiffness_over_that_of_the_carcass) {
+  const MagicFormula t = later_tire();
+  const HandlingForces f = evaluate(t, {.load = 4000.0});
+  EXPECT_NEAR(relaxation_lengths(t, 4000.0, 0.0).longitudinal, f.slip_stiffness / (3.2e5 * 1.06), 1e-12);
+  EXPECT_NEAR(relaxation_lengths(t, 4000.0, 0.0).lateral, -f.cornering_stiffness / (1.4e5 * 1.05), 1e-12);
+  EXPECT_EQ(relaxation_lengths(t, 0.0, 0.0).longitudinal, 0.0);
+}
+
+/// Through its points, with the energy of its area; inverse of each other; C_z under the nominal load of 6.1.
+TEST(MagicFormula, spring_follows_the_curve_of_the_file) {
+  MagicFormula t = example_tire();
+  EXPECT_EQ(spring_force(t, 0.01), 2200.0);
+  EXPECT_EQ(spring_stiffness(t, 4000.0), 2.2e5);
+  t.load_curve = {{0.0, 0.0}, {0.01, 1500.0}, {0.02, 4000.0}, {0.04, 10000.0}};
+  for (const auto& [deflection, load] : t.load_curve) EXPECT_DOUBLE_EQ(spring_force(t, deflection), load);
+  EXPECT_DOUBLE_EQ(spring_force(t, 0.015), 2750.0);
+  EXPECT_DOUBLE_EQ(spring_force(t, 0.05), 13000.0) << "beyond it by its last slope";
+  EXPECT_EQ(spring_force(t, -0.01), 0.0);
+  EXPECT_NEAR(spring_energy(t, 0.05), 7.5 + 27.5 + 140.0 + 115.0, 1e-10);
+  EXPECT_NEAR(spring_stiffness(t, 3000.0), 2.5e5, 1e-6);
+  for (MagicFormula u : {t, later_tire()}) {
+    double sum = 0.0;
+    const int pieces = 2000;
+    for (int k = 0; k < pieces; ++k) sum += spring_force(u, 0.04 * (k + 0.5) / pieces) * 0.04 / pieces;
+    EXPECT_NEAR(spring_energy(u, 0.04), sum, 1e-4);
+    for (const double load : {0.0, 700.0, 3999.0, 12000.0})
+      EXPECT_NEAR(spring_force(u, spring_deflection(u, load)), load, 1e-9);
+  }
+  MagicFormula later = later_tire();
+  later.conditions = {};
+  EXPECT_NEAR(spring_stiffness(later, 4000.0), 2.2e5, 1e-6);
 }
 
 /// −M_z/F_y → the trail D_t for small angles, and M_z = −t F_y without residual moment and arm.

@@ -6,9 +6,11 @@
 
 #include <random>
 #include <string>
+#include <tuple>
 
 #include "protocol/core/error.hpp"
 #include "tests/tire/handling/example_tire.hpp"
+#include "tire/handling/magic_formula.hpp"
 
 namespace furrow::tire::handling::tir_file_test {
 namespace {
@@ -62,7 +64,8 @@ TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
       {replaced("FORCE = 'newton'", "FORCE = 'pound_force'"), "key '[UNITS] FORCE': is 'pound_force'"},
       {replaced("ANGLE = 'radians'", "ANGLE = 'degrees'"), "key '[UNITS] ANGLE': is 'degrees'"},
       {replaced("TIME = 'second'\n", ""), "key '[UNITS] TIME': is missing"},
-      {replaced("FITTYP             = 5", "FITTYP = 61"), "key '[MODEL] FITTYP': is 61, expected one of 5, 6, 21, 52"},
+      {replaced("FITTYP             = 5", "FITTYP = 70"),
+       "key '[MODEL] FITTYP': is 70, expected one of 5, 6, 21, 52, 61, 62"},
       {replaced("TYRESIDE = 'LEFT'", "TYRESIDE = 'UP'"), "key '[MODEL] TYRESIDE': is 'UP'"},
       {without("UNITS"), "key '[UNITS]': is missing"},
       {without("VERTICAL"), "key '[VERTICAL]': is missing"},
@@ -78,8 +81,6 @@ TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
       {replaced("PKX1               = 22\n", ""), "key '[LONGITUDINAL_COEFFICIENTS] PKX1': is missing"},
       {replaced("PKX1               = 22\n", "PKX1 = 22\nPKX1 = 23\n"),
        "key '[LONGITUDINAL_COEFFICIENTS] PKX1': is given twice"},
-      {replaced("PKX1               = 22\n", "PKX1 = 22\nPKX11 = 1\n"),
-       "key '[LONGITUDINAL_COEFFICIENTS] PKX11': is unknown"},
       {replaced("PKY1               = -18", "PKY1 = 18"),
        "key '[LATERAL_COEFFICIENTS] PKY1': is 18, expected less than 0"},
       {replaced("VERTICAL_STIFFNESS = 220000", "VERTICAL_STIFFNESS = -1"),
@@ -92,7 +93,19 @@ TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
       {replaced("LMUY               = 0.95", "LMUY = 0"), "key '[SCALING_COEFFICIENTS] LMUY': is 0"},
       {replaced("[ROLLING_COEFFICIENTS]", "[ROLLING_COEFFICIENTS"), "expected a section [NAME]"},
       {replaced("PCX1               = 1.6", "PCX1 1.6"), "expected a section [NAME] or a line NAME = VALUE"},
-      {replaced("[SHAPE]", "[UNITS]"), "key '[UNITS]': is given twice"},
+      {replaced("[SHAPE]", "[UNITS]"), "key '[UNITS]': is given twice, in lines 7 and 27"},
+      {replaced("PKX1               = 22\n", "PKX1 =\n"),
+       "key '[LONGITUDINAL_COEFFICIENTS] PKX1': is missing, expected a number"},
+      {replaced("\nWIDTH              = 0.22", "\n$ WIDTH = 0.22"),
+       "key '[DIMENSION] WIDTH': is missing, expected a number"},
+      {replaced("PKX1               = 22", "PKX1 = 22 \xf6"), "byte 0xf6 is not UTF-8"},
+      {replaced("ALPMAX             = 0.6", "ALPMAX = 1.58"), "expected between -1.5709 and 1.5709 rad"},
+      {replaced("[SHAPE]", "[DEFLECTION_LOAD_CURVE]\n0 0\n0.01 2000\n0.02 1900\n[SHAPE]"),
+       "'0.02 1900', expected a deflection and a load above those of the line before"},
+      {replaced("[SHAPE]", "[DEFLECTION_LOAD_CURVE]\n0 0\n0.01\n[SHAPE]"),
+       "expected a deflection in m and a load in N"},
+      {replaced("[SHAPE]", "[DEFLECTION_LOAD_CURVE]\n{pen fz}\n[SHAPE]"), "has no points"},
+      {replaced("FREFF              = 0.05", "FREFF = 0.05\nQ_FZ2 = -400"), "key '[VERTICAL] Q_FZ2'"},
       {"PCX1 = 1\n", "line 1"},
       {"", "key '[UNITS]': is missing"},
   };
@@ -101,6 +114,91 @@ TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
     EXPECT_EQ(said.substr(0, 5), "a.tir") << said;
     EXPECT_TRUE(holds(said, expected)) << said << "\nexpected: " << expected;
   }
+}
+
+std::string remarks(const std::string& text) {
+  std::string all;
+  for (const auto& [key, what] : parse_tir(text, "a.tir").remarks) all += key + " " + what + "\n";
+  return all;
+}
+
+/// Free text in sections that nobody reads, marks of other programs, a byte order mark, Latin-1 in comments.
+TEST(TirFile, passes_over_what_it_does_not_read) {
+  std::string text = whole();
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"[MDI_HEADER]\n", "\xef\xbb\xbf[MDI_HEADER]\n"},
+                                 {"FILE_FORMAT", "(COMMENTS)\n{comment_string}\n'a tire'\nfree text\nFILE_FORMAT"},
+                                 {"[SHAPE]", "[SHAPE]\n 1.0 0.5\n[see below\n[SHAPE]\n"},
+                                 {"LENGTH = 'meter'",
+                                  "* a mark\n# another\nLENGTH = \"meter\" $ Gr\xf6\xdf"
+                                  "e"},
+                                 {"ALPMAX             = 0.6", "ALPMAX = 1.5708"}})
+    text.replace(text.find(from), from.size(), to);
+  EXPECT_EQ(remarks(text), "");
+  MagicFormula expected = example_tire();
+  expected.slip_angle.most = 1.57;
+  EXPECT_EQ(tir_text(parse_tir(text, "a.tir"), {}), tir_text(expected, {}));
+}
+
+TEST(TirFile, names_what_it_does_not_use_once) {
+  EXPECT_EQ(remarks(whole()), "");
+  std::string text = replaced("[ROLLING_COEFFICIENTS]", "PKYX = 1\nPTY3 = 0\nPTY4 =\n[ROLLING_COEFFICIENTS]");
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{"[ALIGNING_COEFFICIENTS]", "[ALIGNING_COEFFICIENTS]\nCONTACT_MODEL = '3D'"},
+        {"[SHAPE]", "[BOTTOMING_CURVE]\n{pen fz}\n0 0\n[TURNSLIP_COEFFICIENTS]\nPECP1 = 0.7\nPECP2 = 0\n[SHAPE]"},
+        {"LFZO", "LKG = 1\nLMP = 1.1\nLFZO"}})
+    text.replace(text.find(from), from.size(), to);
+  EXPECT_EQ(
+      remarks(text),
+      "[ALIGNING_COEFFICIENTS] CONTACT_MODEL; [BOTTOMING_CURVE]; [LATERAL_COEFFICIENTS] PKYX; "
+      "[SCALING_COEFFICIENTS] LMP; [TURNSLIP_COEFFICIENTS] PECP1 is not used: unknown, or without a place in this "
+      "model\n");
+}
+
+TEST(TirFile, refuses_what_is_missing_together) {
+  std::string text = replaced("PKX1               = 22\n", "");
+  text.replace(text.find("FNOMIN             = 4000"), 25, "FNOMIN =");
+  EXPECT_TRUE(holds(complaint(text), "key '[VERTICAL] FNOMIN': is missing")) << complaint(text);
+  text = replaced("KPUMIN             = -1.2\n", "");
+  text.replace(text.find("WIDTH              = 0.22"), 25, "WIDTH =");
+  EXPECT_TRUE(holds(complaint(text),
+                    "key '[DIMENSION] WIDTH': is missing, expected a number; missing too: "
+                    "[LONG_SLIP_RANGE] KPUMIN"))
+      << complaint(text);
+}
+
+/// A range that ends at or beyond 0 would be a force that is not there.
+TEST(TirFile, a_range_without_room_on_a_side_of_0_is_taken_as_symmetric) {
+  for (const auto& [from, to, key] :
+       {std::tuple<std::string, std::string, std::string>{"KPUMAX             = 1.2", "KPUMAX = 0",
+                                                          "[LONG_SLIP_RANGE] KPUMAX is 0: "},
+        {"KPUMIN             = -1.2", "KPUMIN = 0.05", "[LONG_SLIP_RANGE] KPUMIN is 0.05: "},
+        {"ALPMIN             = -0.6", "ALPMIN = 0", "[SLIP_ANGLE_RANGE] ALPMIN is 0: "},
+        {"CAMMAX             = 0.2", "CAMMAX = -0.1", "[INCLINATION_ANGLE_RANGE] CAMMAX is -0.1: "}}) {
+    const std::string text = replaced(from, to);
+    EXPECT_TRUE(holds(remarks(text), key)) << remarks(text);
+    EXPECT_EQ(tir_text(parse_tir(text, "a.tir"), {}), tir_text(example_tire(), {})) << to;
+  }
+  EXPECT_TRUE(holds(remarks(replaced("KPUMAX             = 1.2", "KPUMAX = 0.001")), "KPUMAX is 0.001: forces stay"));
+}
+
+TEST(TirFile, reads_the_names_of_pac2002_and_a_later_version_s_curve) {
+  std::string text = replaced("[SHAPE]",
+                              "[TIRE_CONDITIONS]\nIP = 250000\nIP_NOM = 200000\n[DEFLECTION_LOAD_CURVE]\n"
+                              "{pen fz}\n0 0\n0.01\t2000 $ N\n0.02 5000\n[SHAPE]");
+  text.replace(text.find("PVX2"), 4, "PPX1 = 0.3\nPVX2");
+  text.replace(text.find("QBZ1 "), 5, "QPZ1 = 0.2\nQBZ1 ");
+  const MagicFormula t = parse_tir(text, "a.tir");
+  EXPECT_TRUE(t.remarks.empty());
+  EXPECT_NEAR(pressure_change(t), 0.25, 1e-15);
+  EXPECT_EQ(t.longitudinal.ppx1, 0.3);
+  EXPECT_EQ(t.aligning.ppz1, 0.2);
+  ASSERT_EQ(t.load_curve.size(), 3u);
+  EXPECT_EQ(t.load_curve[1], std::pair(0.01, 2000.0));
+  const std::string written = tir_text(t, {});
+  EXPECT_EQ(tir_text(parse_tir(written, "a.tir"), {}), written);
+  MagicFormula later = later_tire();
+  EXPECT_EQ(tir_text(parse_tir(tir_text(later, {}), "a.tir"), {}), tir_text(later, {}));
+  EXPECT_TRUE(holds(remarks(replaced("PKY1 ", "PKY6 = -1\nPKY1 ")), "[MODEL] FITTYP is not 61"));
 }
 
 TEST(TirFile, coefficients_that_are_left_out_are_none_and_factors_one) {

@@ -24,6 +24,7 @@ constexpr double kMaxSteps = 1e10;    // beyond it the value is almost certainly
 constexpr double kLeastPart = 6.0;    // radii along x that a rank's part of the bed must measure at least
 constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
+constexpr double kBeyond = 1.5;       // of the load that a tire was fitted to
 constexpr double kGigabyte = 1e9;
 constexpr double kWallShare = 0.05, kMostWallMargin = 0.02;  // of the tire's radius; m
 constexpr double kRounding = 1e-9;                           // relative, of times that people write as decimals
@@ -125,6 +126,16 @@ class Checks {
            "{} s is more than the {} s that {} allows: the timing of contact forces would decide the result; "
            "expected at most that{}",
            number_text(s_.run.step), digits(least.step), least.because, other_help(s_));
+  }
+
+  /// Tires that carry far more than their file was fitted to.
+  void tire_loads() {
+    const std::vector<double> loads = wheel_loads(s_);
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      if (const double most = tires_[k].most_load; most > 0.0 && loads[k] > kBeyond * most)
+        warn(s_.tire_key(k, "file"),
+             "carries {} N, but was fitted up to {} N: its forces go on in proportion to the load", digits(loads[k]),
+             digits(most));
   }
 
   /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.
@@ -335,6 +346,7 @@ void check_scenario(Scenario& scenario, rigs::RigSpec& rig, Purpose purpose) {
   checks.start();
   checks.overlaps();
   if (purpose == Purpose::run || scenario.terrain->describe().unstable_step_allowed) checks.step();
+  checks.tire_loads();
   checks.machine();
 }
 

@@ -37,7 +37,6 @@ constexpr double kBeside = 0.5;       // tread widths
 constexpr double kNearEnd = 0.1;      // of the averaging window
 constexpr double kRateEffect = 0.05;  // of the friction, of the pressure
 constexpr double kNodes = 5.0;        // of empirical soil in the contact's length
-constexpr double kBeyond = 1.5;       // of the load that a tire was measured up to
 
 constexpr double kLeapfrog = 0.5;  // ω H of a prompt force, up to which the rule's error is about 1 %
 
@@ -235,11 +234,6 @@ std::vector<Bound> scale_bounds(const Scenario& s) {
           fmt::format("the contact is about {:.1f} nodes long, expected {:g} or more: with two nodes a wheel of 58 "
                       "mm rolled with 84 % more resistance than with ten",
                       nodes, kNodes));
-    bounds.add(
-        tires[k].most_load > 0.0 && w.load > kBeyond * tires[k].most_load, "tire.file",
-        fmt::format("the wheel carries {} N, but its file was fitted up to {} N: forces beyond it are guessed in "
-                    "proportion to the load",
-                    digits(w.load), digits(tires[k].most_load)));
     if (!w.grains) continue;
     add_bin(*w.grains, tires[k].tread_width, bounds);
     add_rates(*w.grains, bounds);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/scenario/estimate.hpp"
@@ -152,6 +153,16 @@ std::set<std::string> bounding_keys(const scenario::Scenario& s) {
   std::set<std::string> keys;
   for (const scenario::Bound& bound : scenario::scale_bounds(s)) keys.insert(bound.key);
   return keys;
+}
+
+/// hmmwv_handling.tir was fitted up to 6.6 kN.
+TEST(Scenario, a_load_far_beyond_what_the_tire_was_fitted_to_is_warned_of) {
+  const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_handling.json"}, "terrain": {"engine": "rigid"}})");
+  const auto told = [&](const char* load) {
+    return fmt::format("{}", fmt::join(file.load({{"rig.load", load}}).warnings, "\n"));
+  };
+  EXPECT_FALSE(holds(told("9000"), "fitted up to"));
+  EXPECT_TRUE(holds(told("12000"), "key 'tire.file': carries 12000 N, but was fitted up to 6630 N")) << told("12000");
 }
 
 TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {

@@ -1,6 +1,6 @@
 // The coefficients of the Magic Formula as tire property files (.tir) name them, MF-Tyre 5.2, PAC2002 and Magic Formula
 // 6.1: dimensionless unless a unit is said. One list serves reading, writing and fitting. In each struct the fields
-// from kLater on came after version 5.2: they are written for 6.1, and where they differ from what a file without them has.
+// from kLater on came after version 5.2: they are written for 6.1, and where they are not what a file without them has.
 //
 // Sources: [1] H. B. Pacejka, Tire and Vehicle Dynamics, 3rd edition, Butterworth-Heinemann 2012, section 4.3.2 (the
 // names of the coefficients: appendix 3); 2nd edition 2006 alike. [2] TNO Automotive, MF-Tyre User Manual, version 5.2,

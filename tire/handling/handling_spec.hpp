@@ -18,7 +18,7 @@ namespace furrow::tire {
 struct HandlingFile {
   static constexpr SchemaName kSchema{"handling",
                                       "A tire on hard level ground by the Magic Formula: names a tire property file "
-                                      "(.tir) of MF-Tyre 5.2, which may be "
+                                      "(.tir) of MF-Tyre 5.2, PAC2002 or Magic Formula 6.1, which may be "
                                       "the tire's file itself where it has a section [INERTIA]. SI units."};
   std::string path;
   std::filesystem::path tir;  // resolved: beside the tire file, or as it stands

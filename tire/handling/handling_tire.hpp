@@ -11,8 +11,8 @@
 //
 // so that Σ f = F and Σ (x − C) × f = M; a vertex comes and goes with no force.
 //
-// Energy: ∫ F dρ of the spring is elastic; what the vertices' forces do on the surface beyond what they do on the rim is
-// dissipated, as far as it is not stored: by VERTICAL_DAMPING, by rolling resistance, and by what the formula itself
+// Energy: ∫ F dρ of the spring is elastic; what the vertices' forces do on the surface beyond what they do on the rim
+// is dissipated, as far as it is not stored: by VERTICAL_DAMPING, by rolling resistance, and by what the formula itself
 // loses between R_e and the radius of the tread.
 #pragma once
 

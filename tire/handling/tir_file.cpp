@@ -257,8 +257,13 @@ class SectionReader {
 
 void read_units(Sections& sections) {
   SectionReader units(sections, "UNITS");
-  for (const auto& [key, unit] :
-       {std::pair{"LENGTH", "METER"}, {"FORCE", "NEWTON"}, {"ANGLE", "RADIANS"}, {"MASS", "KG"}, {"TIME", "SECOND"}}) {
+  for (const auto& [key, unit] : {std::pair{"LENGTH", "METER"},
+                                  {"FORCE", "NEWTON"},
+                                  {"ANGLE", "RADIANS"},
+                                  {"MASS", "KG"},
+                                  {"TIME", "SECOND"},
+                                  {"PRESSURE", "PASCAL"}}) {
+    if (key == std::string_view("PRESSURE") && !units.has(key)) continue;  // of PAC2002
     const std::string given = units.text(key);
     const std::string name = upper(given);
     if (name != unit && name + "S" != unit && name != std::string(unit) + "S")

@@ -150,24 +150,27 @@ TEST(HandlingTire, stated_forces_have_the_wrench_whatever_the_wheel_does) {
 
 /// Down and up on the spring and damper of the file, at rest: K ρ̇² is lost, the rest comes back.
 TEST(HandlingTire, bounce_loses_what_the_damper_takes) {
-  MagicFormula t = example_tire();
-  HandlingTire tire = make(t);
-  RimState rim;
-  const double amplitude = 0.01, frequency = 20.0, mean = 0.35 - 0.015;
-  const auto at = [&](double time) {
-    rim.position.z() = mean + amplitude * std::cos(frequency * time);
-    rim.velocity.z() = -amplitude * frequency * std::sin(frequency * time);
-    return rim;
-  };
-  Rolling run(tire, at(0.0));
-  const int steps = static_cast<int>(std::lround(2.0 * std::numbers::pi / frequency / kStep));
-  for (int n = 0; n < steps; ++n) {
-    run.step();
-    run.change(at((n + 1) * kStep));
+  MagicFormula curved = example_tire();
+  curved.load_curve = {{0.0, 0.0}, {0.01, 1500.0}, {0.02, 4000.0}, {0.022, 5000.0}};
+  for (const MagicFormula& t : {example_tire(), curved}) {
+    HandlingTire tire = make(t);
+    RimState rim;
+    const double amplitude = 0.01, frequency = 20.0, mean = 0.35 - 0.015;
+    const auto at = [&](double time) {
+      rim.position.z() = mean + amplitude * std::cos(frequency * time);
+      rim.velocity.z() = -amplitude * frequency * std::sin(frequency * time);
+      return rim;
+    };
+    Rolling run(tire, at(0.0));
+    const int steps = static_cast<int>(std::lround(2.0 * std::numbers::pi / frequency / kStep));
+    for (int n = 0; n < steps; ++n) {
+      run.step();
+      run.change(at((n + 1) * kStep));
+    }
+    const double expected = 0.5 * 150.0 * amplitude * amplitude * frequency * frequency * steps * kStep;
+    EXPECT_NEAR(tire.diagnostics().dissipation, expected, 0.02 * expected);
+    EXPECT_NEAR(tire.diagnostics().elastic_energy, t.load_curve.empty() ? 0.5 * 2.2e5 * 0.005 * 0.005 : 1.875, 0.01);
   }
-  const double expected = 0.5 * 150.0 * amplitude * amplitude * frequency * frequency * steps * kStep;
-  EXPECT_NEAR(tire.diagnostics().dissipation, expected, 0.02 * expected);
-  EXPECT_NEAR(tire.diagnostics().elastic_energy, 0.5 * 2.2e5 * 0.005 * 0.005, 0.01);
 }
 
 /// rim work + terrain work = Δ(kinetic + elastic + potential) + dissipation + numerical, up to the rule's error.
@@ -328,6 +331,35 @@ TEST(HandlingFile, a_tir_file_is_a_tire) {
   EXPECT_TRUE(spec->files().empty());
   options.rigid = true;
   EXPECT_TRUE(read_tire(options)->describe().own_contact.empty());
+}
+
+/// What the numbers of a file cannot be, and what of it is not followed, is told of the file by name.
+TEST(HandlingFile, unlikely_values_are_told_by_section_and_key) {
+  const auto told = [](const MagicFormula& formula) {
+    TireOptions options;
+    options.file = written(formula);
+    std::string all;
+    for (const auto& [key, what] : read_tire(options)->unlikely_values()) all += key + " " + what + "\n";
+    return all;
+  };
+  EXPECT_EQ(told(example_tire()), "");
+  MagicFormula t = example_tire();
+  t.longitudinal.rbx1 = 0.0;
+  EXPECT_TRUE(holds(told(t), "[LONGITUDINAL_COEFFICIENTS] RBX1 of ")) << told(t);
+  t.lateral.rcy1 = 0.0;
+  EXPECT_TRUE(holds(told(t), "[LATERAL_COEFFICIENTS] RBY1 of ")) << told(t);
+  EXPECT_TRUE(holds(told(t), "a friction ellipse is used"));
+  t = example_tire();
+  t.scaling.lmuy = 95.0;
+  EXPECT_TRUE(holds(told(t), "[SCALING_COEFFICIENTS] LMUY of ")) << told(t);
+  t = example_tire();
+  t.vertical.fnomin = 400.0;
+  EXPECT_TRUE(holds(told(t), "[VERTICAL] FNOMIN of ")) << told(t);
+  t.load = {20.0, 390.0};
+  EXPECT_TRUE(holds(told(t), "[VERTICAL_FORCE_RANGE] FZMIN, FZMAX of ")) << told(t);
+  t = example_tire();
+  t.slip.most = 0.0;
+  EXPECT_TRUE(holds(told(t), "[LONG_SLIP_RANGE] KPUMAX of ")) << told(t);
 }
 
 TEST(HandlingFile, wrong_files_are_refused_by_key) {

@@ -67,6 +67,7 @@ TEST(TirFile, refuses_what_is_wrong_by_section_and_key) {
       {replaced("FITTYP             = 5", "FITTYP = 70"),
        "key '[MODEL] FITTYP': is 70, expected one of 5, 6, 21, 52, 61, 62"},
       {replaced("TYRESIDE = 'LEFT'", "TYRESIDE = 'UP'"), "key '[MODEL] TYRESIDE': is 'UP'"},
+      {replaced("[UNITS]", "[UNITS]\nPRESSURE = 'bar'"), "key '[UNITS] PRESSURE': is 'bar', expected 'PASCAL'"},
       {without("UNITS"), "key '[UNITS]': is missing"},
       {without("VERTICAL"), "key '[VERTICAL]': is missing"},
       {without("LATERAL_COEFFICIENTS"), "key '[LATERAL_COEFFICIENTS]': is missing"},

@@ -127,7 +127,7 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
     odd.emplace_back(along && across ? "[LONGITUDINAL_COEFFICIENTS] RBX1, [LATERAL_COEFFICIENTS] RBY1"
                      : along         ? "[LONGITUDINAL_COEFFICIENTS] RBX1"
                                      : "[LATERAL_COEFFICIENTS] RBY1",
-                     "of " + at + " say nothing of combined slip: a friction ellipse is used");
+                     "of " + at + ": missing or 0: a friction ellipse is used for combined slip");
   if (t.dimension.unloaded_radius < 0.05 || t.dimension.unloaded_radius > 2.0)
     odd.emplace_back("[DIMENSION] UNLOADED_RADIUS",
                      fmt::format("of {} is {:g} m, usual are 0.1 to 1 m", at, t.dimension.unloaded_radius));

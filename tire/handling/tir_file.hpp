@@ -7,8 +7,8 @@
 // Required: [UNITS] in SI, [MODEL], [DIMENSION], [VERTICAL], the four ranges, [LONGITUDINAL_COEFFICIENTS],
 // [LATERAL_COEFFICIENTS] and in them what scales the forces. Other coefficients are 0 where a file leaves them out or
 // empty, PKY4 2, QSY7 of 6.1 1, scaling factors 1. What a user must know is left in MagicFormula::remarks: ranges that
-// are not taken as they stand, and in one line all unknown names whose values would change a result (not 0, of a scaling
-// factor not 1). Sections of other names may hold any text and are passed over, but [BOTTOMING_CURVE] and
+// are not taken as they stand, and in one line all unknown names whose values would change a result (not 0, of a
+// scaling factor not 1). Sections of other names may hold any text and are passed over, but [BOTTOMING_CURVE] and
 // [TURNSLIP_COEFFICIENTS] are named there. Sources: TNO Automotive, MF-Tyre User Manual, version 5.2, 2001; MSC
 // Software, Adams/Tire: Using the PAC2002 tire model; appendix 3 of Pacejka, Tire and Vehicle Dynamics, 2012.
 #pragma once

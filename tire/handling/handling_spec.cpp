@@ -122,6 +122,9 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
       odd.emplace_back(std::string("[SCALING_COEFFICIENTS] ") + field.name,
                        fmt::format("of {} is {:g}, usual are 0 to 2: it is a factor, not per cent", at, value));
   });
+  if (const auto s = handling::relaxation_lengths(t, t.vertical.fnomin, 0.0); s.longitudinal == 0.0 || s.lateral == 0.0)
+    odd.emplace_back(s.longitudinal == 0.0 ? "[LONGITUDINAL_COEFFICIENTS] PTX1" : "[LATERAL_COEFFICIENTS] PTY1, PTY2",
+                     "of " + at + ": missing or 0: without a relaxation length a standing wheel creeps under a force");
   const bool along = handling::ellipse_along(t), across = handling::ellipse_across(t);
   if (along || across)
     odd.emplace_back(along && across ? "[LONGITUDINAL_COEFFICIENTS] RBX1, [LATERAL_COEFFICIENTS] RBY1"

@@ -350,6 +350,9 @@ TEST(HandlingFile, unlikely_values_are_told_by_section_and_key) {
   EXPECT_TRUE(holds(told(t), "[LATERAL_COEFFICIENTS] RBY1 of ")) << told(t);
   EXPECT_TRUE(holds(told(t), "a friction ellipse is used"));
   t = example_tire();
+  t.lateral.pty2 = 0.0;
+  EXPECT_TRUE(holds(told(t), "[LATERAL_COEFFICIENTS] PTY1, PTY2 of ")) << told(t);
+  t = example_tire();
   t.scaling.lmuy = 95.0;
   EXPECT_TRUE(holds(told(t), "[SCALING_COEFFICIENTS] LMUY of ")) << told(t);
   t = example_tire();

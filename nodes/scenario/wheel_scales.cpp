@@ -10,6 +10,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/constants.hpp"
 #include "protocol/files/digits.hpp"
+#include "terrain/bulk_cohesion.hpp"
 #include "terrain/dem/dem_options.hpp"
 
 namespace furrow::scenario {
@@ -20,8 +21,7 @@ using terrain::dem::DemOptions;
 constexpr double kG = kStandardGravity;
 // Strength of grains, see the header.
 constexpr double kAngle = 26.0 * std::numbers::pi / 180.0, kAngleOfRolling = 25.0 * std::numbers::pi / 180.0;
-constexpr double kRough = 0.5;           // friction from which the angle does not grow any more
-constexpr double kCohesionShare = 0.08;  // of the contact cohesion
+constexpr double kRough = 0.5;  // friction from which the angle does not grow any more
 // Solid fraction of a bed as it falls, less with rolling friction, and without friction; how the angle grows with it.
 constexpr double kFallen = 0.585, kFallenOfRolling = 0.075, kSmooth = 0.65;
 constexpr double kAngleOfPacking = 110.0 * std::numbers::pi / 180.0;  // per solid fraction
@@ -57,7 +57,7 @@ Strength strength_of(const DemOptions& o) {
   const double rough = std::min(1.0, std::sqrt(o.friction / kRough));
   const double loose = rough * (kAngle + kAngleOfRolling * std::pow(std::min(o.rolling_friction, kRough), 2));
   const double denser = solid_fraction(o) - fallen_fraction(o);
-  return {kCohesionShare * o.cohesion, std::max(loose + kAngleOfPacking * denser, 0.5 * loose),
+  return {terrain::kBulkCohesionShare * o.cohesion, std::max(loose + kAngleOfPacking * denser, 0.5 * loose),
           solid_fraction(o) * o.density * kG};
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "terrain/bulk_cohesion.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 
 namespace furrow::terrain::dem {
@@ -43,7 +44,7 @@ TerrainDescription describe_grains(const DemOptions& options) {
   d.bounds = {options.length, options.width};
   if (options.undisturbed_height >= 0.0) d.undisturbed_height = options.undisturbed_height;
   if (options.cone_index > 0.0) d.cone_index = options.cone_index;
-  d.cohesive = options.cohesion > 0.0;
+  d.cohesive = kBulkCohesionShare * options.cohesion > kCohesionOfSand;
   return d;
 }
 

@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/files/json_fields.hpp"
+#include "terrain/bulk_cohesion.hpp"
 #include "terrain/scm/scm_ground.hpp"
 
 namespace furrow::terrain::scm {
 namespace {
 
-constexpr double kCohesionOfSand = 2e3;  // Pa; the sands of [Wong 2008] have 1.0 to 1.3 kPa, loams more
-constexpr double kFrameBytes = 20.0;     // of each node: position, speed, radius in single precision
+constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
 
 class ScmSpec final : public TerrainSpec {
  public:

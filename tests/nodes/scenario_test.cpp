@@ -279,6 +279,19 @@ TEST(Scenario, a_soil_taken_as_it_is_brings_its_measured_cone_index) {
   EXPECT_EQ(cone_index("30e3", "0.006", ""), std::nullopt);
 }
 
+TEST(Scenario, a_soil_is_cohesive_above_the_cohesion_of_sand) {
+  const auto cohesive = [](const std::string& terrain) {
+    return testing::ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {)" + terrain + "}}")
+        .load()
+        .terrain->describe()
+        .cohesive;
+  };
+  EXPECT_FALSE(cohesive(R"("cohesion": 24e3)")) << "c is 0.08 of it";
+  EXPECT_TRUE(cohesive(R"("cohesion": 26e3)"));
+  EXPECT_FALSE(cohesive(R"("engine": "scm", "mohr_cohesion": 1.9e3)"));
+  EXPECT_TRUE(cohesive(R"("engine": "scm", "mohr_cohesion": 2.1e3)"));
+}
+
 TEST(Scenario, a_cone_index_leaves_the_digest_alone) {
   const testing::ScenarioFile file(testing::kSmallest);
   EXPECT_EQ(file.load({{"terrain.cone_index", "2e5"}}).digest, file.load().digest);

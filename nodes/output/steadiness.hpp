@@ -21,7 +21,7 @@ struct SteadyWindow {
 
 /// Period in which a loaded wheel bounces on its tire and soil, s: T = 2π √(m/k) = 2π √(z/(κ g)) with k = κ W/z. z is
 /// what tire and soil give under the load W, sinkage and deflection together, m. κ = 1.9 is how much stiffer they are
-/// about that state than W/z: rigs/drawbar_pull_small.json without its touch-down damper bounces with 0.25 s (minima of
+/// about that state than W/z: the report's small rig without its touch-down damper bounces with 0.25 s (minima of
 /// the axle's height at 0.166, 0.434 and 0.663 s) at z = 28 mm. A force that goes with depth^1.5, as of a Hertz contact
 /// or of a wheel on soil with p ∝ z [Bekker 1956], gives 1.5; soil that unloads is stiffer. 0 where z is not positive.
 double bounce_period(double settlement, double gravity);

@@ -16,9 +16,9 @@
 //   hmmwv_straight, E 100, step 5e-5           220    5.5    0.41, 0.76                 19.5    largest seen 0.09 d
 //   rover_small                                 53    3.6    0.59, 0.21                 13.3    largest seen 0.13 d
 //   hmmwv_small                                 95    4.7    0.42, 0.28                  9.0    largest seen 0.22 d
-//   drawbar_pull_small, r 15 mm, step 1e-4      33   10.1    0, 0                        9.3
-//   drawbar_pull_small                          74   none    0, 0                        9.3    largest seen 0.21 d
-//   drawbar_pull_small, E 6.2                   74   none    0, 0                        2.0    failed after 0.2 s
+//   small rig on the report's soil, r 15 mm     33   10.1    0, 0                        9.3
+//   small rig on the report's soil              74   none    0, 0                        9.3    largest seen 0.21 d
+//   small rig on the report's soil, E 6.2       74   none    0, 0                        2.0    failed after 0.2 s
 //
 // So the share is right within a factor of three. It grows with the speed of the treads, which is left out: the driver
 // of a vehicle decides it. In hmmwv_straight 0.97 of the steps were refined at 7 m/s.

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Which share of a run's processor time its accounts take: samples of `perf` on all ranks, by function.
 
-usage: accounts_cost.py [--scenario rigs/drawbar_pull_small.json] [--runs 3] [--csv FILE] [-- --set KEY=VALUE ...]
+usage: accounts_cost.py [--scenario rigs/drawbar_pull_small_report_soil.json] [--runs 3] [--csv FILE]
+                        [-- --set KEY=VALUE ...]
 
 Functions that only accounts need are counted by their names (ACCOUNTS below). Sums that the compiler moved into other
 functions are not seen. Shares of processor time hardly depend on what else the machine does. The bed is settled before.
@@ -52,7 +53,7 @@ def shares(counted):
 
 
 def main():
-    parser = driver.options(__doc__, scenario={"default": "rigs/drawbar_pull_small.json"},
+    parser = driver.options(__doc__, scenario={"default": "rigs/drawbar_pull_small_report_soil.json"},
                             runs={"type": int, "default": 3}, csv={"type": pathlib.Path})
     parser.add_argument("words", nargs="*", help="further words for `furrow run`")
     arguments = parser.parse_args()

@@ -39,7 +39,7 @@ import h5py
 from grains_and_peers import driver, run_deck
 
 HERE = pathlib.Path(__file__).resolve().parent
-RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small.json")
+RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small_report_soil.json")
 STEP, RUN = 6e-5, 0.3  # s: of the rig; of the whole run, in which the wheel comes down and rolls
 GHOST_BYTES = 9 * 8
 ONE_THREAD = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}

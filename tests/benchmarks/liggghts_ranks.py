@@ -3,13 +3,13 @@
 
 usage: liggghts_ranks.py [--grains 1e6 1e7 1e8 1e9] [--nodes 1 4 16 64]
 
-The bed is that of drawbar_pull_small, 3 × 0.6 m, of smaller and smaller grains; its step goes with their radius. What
-one rank computes in a step, its ghosts, memory and sizes of files are those of `furrow validate`, for the machine that
-this runs on (terrain/liggghts/rank_cost.hpp: measured on 1 and 2 ranks with 24,340 grains). Added here, and assumed,
-not measured: nodes of 32 cores that are as fast as this one's; two messages a step with 72 bytes for each ghost (that
-size is measured) over a network of 5 µs and 10 GB/s; sums over all ranks once a step, 5 µs for each doubling of their
-number. Engine dem has 32 threads of one node without loss. A tire is not in these figures, nor is the making of the
-bed.
+The bed is that of drawbar_pull_small_report_soil, 3 × 0.6 m, of smaller and smaller grains; its step goes with their
+radius. What one rank computes in a step, its ghosts, memory and sizes of files are those of `furrow validate`, for the
+machine that this runs on (terrain/liggghts/rank_cost.hpp: measured on 1 and 2 ranks with 24,340 grains). Added here,
+and assumed, not measured: nodes of 32 cores that are as fast as this one's; two messages a step with 72 bytes for each
+ghost (that size is measured) over a network of 5 µs and 10 GB/s; sums over all ranks once a step, 5 µs for each
+doubling of their number. Engine dem has 32 threads of one node without loss. A tire is not in these figures, nor is the
+making of the bed.
 """
 import json
 import math
@@ -20,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "studies"))
 import driver  # noqa: E402
 
-GRAINS, RADIUS, STEP = 24330, 0.01, 6e-5  # of drawbar_pull_small: grains, m, s
+GRAINS, RADIUS, STEP = 24330, 0.01, 6e-5  # of drawbar_pull_small_report_soil: grains, m, s
 CORES = 32  # of a node
 LATENCY, BANDWIDTH, GHOST = 5e-6, 1e10, 72  # s, bytes/s, bytes
 LEAST_PART = 6.0  # radii: nodes/scenario/scenario_checks.cpp
@@ -34,7 +34,7 @@ def row(engine, nodes, grains):
         return None
     keys = {"terrain.engine": engine, "terrain.ranks": ranks} if peer else \
         {"terrain.activity": False, "terrain.precision": "double", "run.threads": CORES}
-    told = json.loads(driver.furrow("validate", "--json", "rigs/drawbar_pull_small.json", *driver.settings(
+    told = json.loads(driver.furrow("validate", "--json", "rigs/drawbar_pull_small_report_soil.json", *driver.settings(
         {"terrain.radius": radius, "terrain.layers": round(9 * finer), "run.step": step}, keys)))
     time, terrain = told["time"], told["terrain"]
     compute, ghosts = time["terrain_s"], time["ghosts_per_rank"]

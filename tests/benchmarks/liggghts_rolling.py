@@ -3,9 +3,8 @@
 
 usage: liggghts_rolling.py     takes ten minutes, prints a table and writes liggghts_rolling.csv beside this script
 
-Nothing else may run meanwhile. The rig drawbar_pull_small runs to --at and keeps a checkpoint. From it go on, --rounds
-times,
-
+Nothing else may run meanwhile. The rig drawbar_pull_small_report_soil runs to --at and keeps a checkpoint. From it go
+on, --rounds times,
     pairs            our pair style, motion and lists alone in `run N`, on the grains of the checkpoint with their
                      histories, without tires and walls (bench_liggghts)
     walls_accounts   the same with walls and accounts

@@ -4,10 +4,10 @@ and of all ranks, in runs that take turns. Writes soil_cost.csv beside this scri
 
 usage: soil_cost.py [--rigs small full] [--tires rigid ring lumped layered] [--rounds 1]
 
-The rig of drawbar_pull_small.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both engines have
-the tire and the ground's plan of the file. The bed of grains is settled before and not counted. The empirical soil is
-that of drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with its own, that of
-that file. `ratio_terrain` and `ratio_all` are grains over empirical soil.
+The rig of drawbar_pull_small_report_soil.json runs for 0.7 s, that of drawbar_pull.json, at full size, for 0.5 s; both
+engines have the tire and the ground's plan of the file. The bed of grains is settled before and not counted. The
+empirical soil is that of drawbar_pull_scm.json, with nodes 10 mm apart; it runs with the step of the grains, and with
+its own, that of that file. `ratio_terrain` and `ratio_all` are grains over empirical soil.
 """
 import json
 import pathlib
@@ -19,7 +19,7 @@ sys.path.insert(0, str(HERE.parent / "studies"))
 import driver  # noqa: E402
 import provenance  # noqa: E402
 
-RIGS = {"small": ("drawbar_pull_small.json", 0.7), "full": ("drawbar_pull.json", 0.5)}
+RIGS = {"small": ("drawbar_pull_small_report_soil.json", 0.7), "full": ("drawbar_pull.json", 0.5)}
 TIRES = {"rigid": {"rigid": True}, "ring": {"file": "hmmwv_ring.json"},
          "lumped": {"file": "hmmwv_lumped.json"}, "layered": {}}
 COSTS = ("terrain_cpu", "all_cpu", "wall")

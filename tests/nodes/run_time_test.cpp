@@ -33,7 +33,7 @@ scenario::RunTime time_of(const char* name, Settings settings = {}, scenario::Ma
 /// By hand: 25,000 steps; the tire 1.2 × 2 ms and 0.08 ms for its messages, the terrain less, together less than two
 /// cores' time of that.
 TEST(RunTime, the_slowest_node_decides_where_there_are_cores_for_all) {
-  const scenario::RunTime t = time_of("drawbar_pull_small.json");
+  const scenario::RunTime t = time_of("drawbar_pull_small_report_soil.json");
   EXPECT_NEAR(t.tire, 2.48e-3, 1e-9);
   EXPECT_LT(t.terrain, t.tire);
   EXPECT_NEAR(t.run, 25000 * 2.53e-3, 1.0);
@@ -107,7 +107,7 @@ TEST(RunTime, sleeping_tiled_and_kept_beds_take_less) {
 TEST(RunTime, ranks_of_one_core_share_the_grains_and_step_copies_of_their_neighbours) {
   const auto on = [](const char* ranks, Settings more = {}) {
     more.insert(more.end(), {{"terrain.engine", "liggghts"}, {"terrain.ranks", ranks}});
-    return time_of("drawbar_pull_small.json", more);
+    return time_of("drawbar_pull_small_report_soil.json", more);
   };
   const scenario::RunTime one = on("1"), two = on("2"), four = on("4", {{"run.threads", "3"}});
   EXPECT_EQ(one.ghosts, 0.0);
@@ -121,14 +121,14 @@ TEST(RunTime, ranks_of_one_core_share_the_grains_and_step_copies_of_their_neighb
 }
 
 /// Within a factor of three of what runs had: 0.76 of the time in hmmwv_straight, 0.28 in hmmwv_small, 0.21 in
-/// rover_small, none in drawbar_pull_small.
+/// rover_small, none in drawbar_pull_small_report_soil.
 TEST(RunTime, hard_contacts_take_more_steps) {
   const auto between = [](double value, double low, double high) { return value >= low && value <= high; };
   const scenario::RunTime straight = time_of("hmmwv_straight.json");
   EXPECT_PRED3(between, straight.refined, 0.25, 1.0);
   EXPECT_PRED3(between, time_of("hmmwv_small.json").refined, 0.09, 0.84);
   EXPECT_PRED3(between, time_of("rover_small.json").refined, 0.07, 0.63);
-  EXPECT_LT(time_of("drawbar_pull_small.json").refined, 1e-3);
+  EXPECT_LT(time_of("drawbar_pull_small_report_soil.json").refined, 1e-3);
   const double whole = time_of("hmmwv_straight.json", {{"terrain.substeps", "4"}}).terrain;
   EXPECT_LT(straight.terrain, whole);  // all of them in halves
   EXPECT_GT(straight.terrain, 0.6 * whole);
@@ -141,10 +141,10 @@ TEST(GrainLoads, overlaps_that_end_a_run_are_foreseen_with_the_key_that_moves_th
     return scenario::too_hard(s, scenario::grain_loads(s));
   };
   for (const char* name : {"hmmwv_straight.json", "hmmwv_small.json", "rover_small.json", "first_look.json",
-                           "drawbar_pull_small.json", "four_wheels.json", "hmmwv_turn.json"})
+                           "drawbar_pull_small_report_soil.json", "four_wheels.json", "hmmwv_turn.json"})
     EXPECT_FALSE(bound(name, {})) << name << ": " << bound(name, {})->what;
   for (const auto& [name, modulus] :
-       {std::pair{"hmmwv_straight.json", "2.49e7"}, {"drawbar_pull_small.json", "6.2e6"}}) {
+       {std::pair{"hmmwv_straight.json", "2.49e7"}, {"drawbar_pull_small_report_soil.json", "6.2e6"}}) {
     const auto found = bound(name, {{"terrain.young_modulus", modulus}});
     ASSERT_TRUE(found) << name;
     EXPECT_EQ(found->key, "terrain.young_modulus");

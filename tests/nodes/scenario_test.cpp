@@ -185,7 +185,7 @@ TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {
 TEST(Scales, sinkage_by_bearing_capacity_is_near_that_of_the_runs) {
   const auto sinkage = [](const char* cohesion, const char* carrier) {
     const scenario::Scenario s =
-        scenario::load_scenario(data_folder() / "rigs" / "drawbar_pull_small.json",
+        scenario::load_scenario(data_folder() / "rigs" / "drawbar_pull_small_report_soil.json",
                                 {{"terrain.cohesion", cohesion}, {"rig.carrier_mass", carrier}});
     return scenario::wheel_scales(s).front().grains->sinkage;
   };

@@ -17,7 +17,7 @@ using furrow::testing::halves_apart;
 using furrow::testing::Process;
 using furrow::testing::Trials;
 
-constexpr std::size_t kSamples = 800;  // as of rigs/drawbar_pull_small.json
+constexpr std::size_t kSamples = 800;  // as of rigs/drawbar_pull_small_report_soil.json
 
 double share(const Trials& trials, const auto& is) {
   return static_cast<double>(std::count_if(trials.each.begin(), trials.each.end(), is)) /

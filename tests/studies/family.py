@@ -5,12 +5,12 @@ this script.
 usage: family.py [--only TEST …] [--tires TIRE …] [--grounds GROUND …] [--seeds N] [--finished]
 
 Tests: plate and cleat (`furrow press`: secant stiffness under 4561.65 N; force 20 mm deep on a cleat 51 mm wide),
-drawbar (the rig of rigs/drawbar_pull_small.json at slip 0.3: pull and sinkage), curb (the wheel of a quarter car over a
-step of 30 mm at 2 m/s: largest vertical force). A line is one figure of one tire on one ground. `beds` is the number of
-seeds of grains behind it, `standard_error` that of their mean; grounds without grains have one run. `cpu_s_per_s` is
-the processor time of all ranks for a simulated second, settled bed apart. `beside` is the line's value over that of the
-reference, less one: of the shell on plate, cleat and curb, of the shell on grains for the drawbar. A tire that does not
-run has a line that says why.
+drawbar (the rig of rigs/drawbar_pull_small_report_soil.json at slip 0.3: pull and sinkage), curb (the wheel of a
+quarter car over a step of 30 mm at 2 m/s: largest vertical force). A line is one figure of one tire on one ground.
+`beds` is the number of seeds of grains behind it, `standard_error` that of their mean; grounds without grains have one
+run. `cpu_s_per_s` is the processor time of all ranks for a simulated second, settled bed apart. `beside` is the line's
+value over that of the reference, less one: of the shell on plate, cleat and curb, of the shell on grains for the
+drawbar. A tire that does not run has a line that says why.
 
 With --finished nothing is computed: the table holds the lines whose runs this build has made.
 """
@@ -33,7 +33,7 @@ COLUMNS = ("test", "ground", "tire", "file", "figure", "value", "unit",
 WIDE = {"terrain.width": 1.4, "terrain.length": 3.6, "run.step": 6e-5}
 DEEP = 0.02  # m: the deflection on the cleat
 CLEAT = ("--cleat-width", "0.051", "--cleat-height", "0.1")
-RIGS = {"rigid": "rigid_ground.json", "scm": "drawbar_pull_scm.json", "dem": "drawbar_pull_small.json"}
+RIGS = {"rigid": "rigid_ground.json", "scm": "drawbar_pull_scm.json", "dem": "drawbar_pull_small_report_soil.json"}
 CURB = {"terrain.profile": [[2, 0], [2.0001, 0.03]], "rig.speed": 2, "rig.body_mass": 415, "rig.unsprung_mass": 36,
         "rig.suspension_stiffness": 80e3, "rig.suspension_damping": 4e3, "run.end": 1.6, "run.average_from": 1.4,
         "output.frame_interval": 0}

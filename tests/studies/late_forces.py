@@ -13,8 +13,8 @@ import provenance
 # Scenarios with what their runs are cut to: None, as they are.
 CUT = {"cleat_roll": None, "curb": None, "drawbar_pull_scm": None, "first_look": None, "four_wheels": None,
        "half_car": None, "rough_road": None, "hmmwv_slope": None, "hmmwv_lane_change": 3.0, "rigid_ground": None,
-       "drawbar_pull_small": None, "rover_small": 2.0, "hmmwv_turn": 2.0, "small_wheel": 1.0, "hmmwv_small": 1.0,
-       "hmmwv_rigid": 2.0, "drawbar_pull": 0.8}
+       "drawbar_pull_small_report_soil": None, "rover_small": 2.0, "hmmwv_turn": 2.0, "small_wheel": 1.0,
+       "hmmwv_small": 1.0, "hmmwv_rigid": 2.0, "drawbar_pull": 0.8}
 
 
 def row_of(name, end):

@@ -28,7 +28,7 @@ SLEEP = ("strips", "parcels", "none")  # what sleeps as a whole
 
 
 def words(seed):
-    return ["rigs/drawbar_pull_small.json", *driver.settings(SETTINGS, {"run.seed": seed})]
+    return ["rigs/drawbar_pull_small_report_soil.json", *driver.settings(SETTINGS, {"run.seed": seed})]
 
 
 def run(program, seed, sleep, core):

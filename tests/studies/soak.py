@@ -50,8 +50,8 @@ def case_steps(scale):
 
 
 def case_grains(scale):
-    """2,000,000 grains of 10 mm: 40 m of bed, 3 m wide; the wheel runs as in drawbar_pull_small."""
-    scenario = read_json(ROOT / "rigs" / "drawbar_pull_small.json")
+    """2,000,000 grains of 10 mm: 40 m of bed, 3 m wide; the wheel runs as in drawbar_pull_small_report_soil."""
+    scenario = read_json(ROOT / "rigs" / "drawbar_pull_small_report_soil.json")
     scenario.pop("expected")
     scenario["tire"]["rigid"] = True
     scenario["terrain"].update(length=47.0, width=3.0)

@@ -22,7 +22,7 @@ from driver import HERE
 
 WHEEL = {"tire_radius_m": 0.4673, "tread_width_m": 0.2504983721447331, "slip": 0.3}
 C1, C2 = 0.4, 0.2  # of the angle of the largest pressure, as RigidWheel has them
-LOAD = 4607.77  # N, of rigs/drawbar_pull_small.json
+LOAD = 4607.77  # N, of rigs/drawbar_pull_small_report_soil.json
 COLUMNS = ["quantity", "unit", "theory", "standard_error", "simulated", "half_width_95", "source"]
 # quantity, unit, key of the theory, factor, figure and variant of budget.csv
 LINES = [("drawbar pull", "N", "drawbar_pull_N", 1.0, "pull_N", "base"),

@@ -27,7 +27,7 @@ import numpy as np
 import driver
 import provenance
 
-RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small.json")
+RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small_report_soil.json")
 SOILS = {"cohesive": {}, "loose_sand": {"terrain.material": "loose_sand.json",
                                         "terrain.cohesion": 0, "terrain.layers": 14}}
 KINDS = {"tiled": {"terrain.tile": 1.0}, "whole": {}}

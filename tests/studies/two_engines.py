@@ -40,8 +40,8 @@ def run(engine, ranks, seed, commit):
     keys = {"terrain.precision": "double", "terrain.activity": False} if engine == "dem" else \
         {"terrain.engine": "liggghts", "terrain.ranks": ranks}
     out = folder(engine, ranks, seed)
-    _, processor, _ = driver.timed("run", "rigs/drawbar_pull_small.json", "--out", out, "--overwrite", "--no-plots",
-                                   *driver.settings(keys, {"run.seed": seed, "output.frame_interval": 0}))
+    _, processor, _ = driver.timed("run", "rigs/drawbar_pull_small_report_soil.json", "--out", out, "--overwrite",
+                                   "--no-plots", *driver.settings(keys, {"run.seed": seed, "output.frame_interval": 0}))
     provenance.record_run(out, commit)
     return processor
 

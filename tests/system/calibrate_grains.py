@@ -10,7 +10,7 @@ class CalibrateGrains(SystemTest):
     """One parameter, one bed, two loads, fast tools, soft grains: as quick as the tests can be, and no result to
     quote."""
 
-    STUDY = {"calibrate": "grains", "start": "drawbar_pull_small.json",
+    STUDY = {"calibrate": "grains", "start": "drawbar_pull_small_report_soil.json",
              "set": {"terrain.material": "loose_sand.json", "terrain.young_modulus": 1e6, "terrain.size_spread": 0},
              "tests": {"seeds": 1, "speed": 2.0, "stresses": [2e3, 5e3]},
              "parameters": {"rolling_friction": {"lower": 0, "upper": 1, "start": 0.3}},
@@ -59,7 +59,7 @@ class CalibrateGrains(SystemTest):
         self.assertEqual(soil["terrain"]["rolling_friction"], result["parameters"]["rolling_friction"]["value"])
         self.assertEqual(soil["measured"]["grain_radius_m"], 0.01)
         self.assertIn("mean", soil["measured"]["bulk_density_kg_m3"])
-        self.furrow("validate", ROOT / "rigs" / "drawbar_pull_small.json",
+        self.furrow("validate", ROOT / "rigs" / "drawbar_pull_small_report_soil.json",
                     "--set", f"terrain.material={self.folder / 'out' / 'sand.json'}")
         for name in ("fit.png", "residual.png", "report.html"):
             self.assertTrue((self.folder / "out" / name).exists(), name)

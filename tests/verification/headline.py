@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures of the front page, over five beds: `furrow run rigs/drawbar_pull_small.json --seeds 5`.
+"""The figures of the front page, over five beds: `furrow run rigs/drawbar_pull_small_report_soil.json --seeds 5`.
 
 Pull, sinkage and rut of one bed are stated with their spread in that scenario's block `expected`, and nowhere else; the
 mean over n beds must lie within spread/√n. Five to twenty minutes on two cores. With --results DIR the folder is kept,
@@ -13,7 +13,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "studies"))
 import driver  # noqa: E402
 
-SCENARIO = driver.ROOT / "rigs" / "drawbar_pull_small.json"
+SCENARIO = driver.ROOT / "rigs" / "drawbar_pull_small_report_soil.json"
 BEDS = 5
 # Figure of the summary, keys of `expected`, unit, scale.
 FIGURES = (("drawbar_pull_N", "drawbar_pull", "N", 1.0), ("sinkage_m", "sinkage", "mm", 1e3),

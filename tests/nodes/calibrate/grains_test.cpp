@@ -25,7 +25,7 @@ class CalibrateGrains : public StudyTest {
  protected:
   static json good() {
     return {{"calibrate", "grains"},
-            {"start", "drawbar_pull_small.json"},
+            {"start", "drawbar_pull_small_report_soil.json"},
             {"set", {{"terrain.material", "loose_sand.json"}}},
             {"tests", {{"seeds", 1}, {"stresses", {20e3, 60e3}}, {"speed", 1.0}}},
             {"evaluations", 20},
@@ -40,7 +40,7 @@ class CalibrateGrains : public StudyTest {
 TEST_F(CalibrateGrains, a_study_is_read) {
   const Calibration c = load(good());
   EXPECT_EQ(c.evaluations, 20);
-  EXPECT_EQ(c.result, "drawbar_pull_small_fitted.json");
+  EXPECT_EQ(c.result, "drawbar_pull_small_report_soil_fitted.json");
   EXPECT_EQ(c.parameters[0].start, 0.2);  // of the material
   const auto& targets = c.model->targets(TargetSet::fitted);
   EXPECT_EQ(targets[0].y, std::vector<double>{31.1});  // of the soil file
@@ -167,9 +167,10 @@ class CalibrateGrainsOnCurves : public CalibrateGrains {
 TEST_F(CalibrateGrainsOnCurves, a_measured_curve_is_recovered_by_the_grains_that_made_it) {
   const std::vector<double> truth{0.5, 0.2};  // another packing than without settling_friction
   terrain::soil::SoilOptions options;
-  options.material = scenario::load_scenario("drawbar_pull_small.json", {{"terrain.material", "loose_sand.json"},
-                                                                         {"terrain.settling_friction", "0.2"}})
-                         .grains("");
+  options.material =
+      scenario::load_scenario("drawbar_pull_small_report_soil.json",
+                              {{"terrain.material", "loose_sand.json"}, {"terrain.settling_friction", "0.2"}})
+          .grains("");
   options.seeds = 1, options.speed = 1.0;
   options.shear = options.cone = options.repose = false;
   terrain::soil::SoilPlan plan;

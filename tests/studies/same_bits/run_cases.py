@@ -28,7 +28,7 @@ def sets(**values):
 SHORT = sets(run__end=0.2, run__average_from=0.1, run__step="5e-5")
 RUNS = {  # case: (scenario, more arguments)
     "first_look": ("first_look.json", []),
-    "drawbar_pull_small": ("drawbar_pull_small.json", sets(run__end=0.5, run__average_from=0.2)),
+    "drawbar_pull_small": ("drawbar_pull_small_report_soil.json", sets(run__end=0.5, run__average_from=0.2)),
     "rigid_ground": ("rigid_ground.json", sets(run__end=0.25, run__average_from=0.1)),
     "four_wheels": ("four_wheels.json", sets(run__end=0.6, run__average_from=0.3)),
     "extra_hertz_tanh": ("first_look.json", SHORT + sets(terrain__law="hertz_tanh")),
@@ -109,11 +109,11 @@ class Maker:
             self.furrow("bench", *BENCHES[name], stdout=out)
 
     def press(self, name):
-        self.furrow("press", self.rigs / "drawbar_pull_small.json", "--out", self.out / name, "--on", "cleat",
-                    "--points", "3", *COARSE)
+        self.furrow("press", self.rigs / "drawbar_pull_small_report_soil.json", "--out", self.out / name, "--on",
+                    "cleat", "--points", "3", *COARSE)
 
     def soil(self, name):
-        self.furrow("soil", self.rigs / "drawbar_pull_small.json", "--out", self.out / name, "--quick",
+        self.furrow("soil", self.rigs / "drawbar_pull_small_report_soil.json", "--out", self.out / name, "--quick",
                     "--only", "shear")
 
     def make(self, name):

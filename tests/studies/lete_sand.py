@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""The shipped example on LETE sand: pull against slip, and what else its answer depends on, over five beds.
+
+usage: lete_sand.py [slip] [variants] [--beds N] [--finished]     --finished writes the tables of what has run so far
+
+`slip` runs drawbar_pull_small.json at slips from -0.1 to 0.8 on a bed long enough for all of them and writes
+lete_sand_slip.csv; `variants` runs it with one thing changed at a time and writes lete_sand_variants.csv. A row is one
+bed, or, without a seed, the mean over the beds with half of its 95 % interval; of a variant, the difference from the
+shipped case on the same beds.
+
+Expected, written down before the first run: net traction at slip 0 below zero; a fall of the pull from its peak to slip
+0.7 of less than 15 %; gross traction at slip 0.2 within 20 % of the WES regression.
+"""
+import driver
+import provenance
+
+RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small.json")
+SLIPS = (-0.1, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+ALWAYS = {"output.frame_interval": 0}
+LONG = {"terrain.length": 4.4}  # m
+# How the soil's file packs its grains holds for its own solid fraction.
+ANEW = {"terrain.settling_friction": None, "terrain.settling_cohesion": None}
+VARIANTS = {
+    "shipped": {},
+    "step 30 µs": {"run.step": 3e-5},
+    "layers 20": {"terrain.layers": 20},
+    "layers 45": {"terrain.layers": 45},
+    "width 0.9 m": {"terrain.width": 0.9},
+    "radius 8 mm": {"terrain.radius": 0.008, "terrain.layers": 37, "run.step": 4.8e-5},
+    "radius 12.5 mm": {"terrain.radius": 0.0125, "terrain.layers": 24},
+    "stiffness x 1/4": {"terrain.young_modulus": 6.225e6},
+    "stiffness x 4": {"terrain.young_modulus": 9.96e7, "run.step": 3e-5},
+    "solid fraction 0.58": {"terrain.solid_fraction": 0.58} | ANEW,
+    "solid fraction 0.62": {"terrain.solid_fraction": 0.62} | ANEW,
+    "half the speed": {"rig.angular_speed": 2.14, "run.end": 2.8, "run.average_from": 1.2},
+}
+FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
+           "torque_Nm": "drive_torque_Nm", "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m",
+           "slip_of_free_rolling": "slip_of_free_rolling", "slip_of_no_pull": "slip_of_no_pull"}
+REGRESSIONS = ("wes_sand", "mason", "brixius_bias", "brixius_radial", "wismer_luth")
+
+
+def row_of(summary, seed):
+    row = {"seed": seed, "steady": int(summary["drawbar_pull_N"]["steady"]), "sem_N": summary["drawbar_pull_N"]["sem"]}
+    for column, key in FIGURES.items():
+        value = driver.mean_of(summary[key])
+        row[column] = value * 1e3 if column.endswith("_mm") and value is not None else value
+    for name in REGRESSIONS if summary.get("regressions") else ():
+        of = summary["regressions"][name]
+        row |= {f"{name}_gross_N": of["gross_N"], f"{name}_net_N": of["net_N"]}
+    return row | {key: summary[key] for key in ("grains", "settle_wall_s", "wall_s")}
+
+
+def pooled(rows, base=None):
+    """The mean over beds, or that of the differences from the rows of `base` with the same seeds."""
+    of_seed = {row["seed"]: row for row in base or ()}
+    mine = [row for row in rows if not base or row["seed"] in of_seed]
+    out = {"beds": len(mine), "steady": sum(row["steady"] for row in mine)}
+    for column in mine[0].keys() - {"seed", "steady", "sem_N", "case", "slip"} if len(mine) > 1 else ():
+        values = [row[column] - (of_seed[row["seed"]][column] if base else 0.0) for row in mine
+                  if row[column] is not None]
+        if len(values) == len(mine):
+            mean, half = driver.over_beds(values)
+            out |= {column: mean} | ({f"{column}_half": half} if column in ("pull_N", "gross_N", "sinkage_mm") else {})
+    return out
+
+
+def table(name, label, cases, beds, finished, paired):
+    """Runs the cases {label: settings} bed by bed, so that every case has beds early on."""
+    rows, made = {case: [] for case in cases}, provenance.made_here()
+    names = [label, "seed", "beds", "steady", "sem_N", *(part for column in FIGURES for part in (
+        column, *([f"{column}_half"] if column in ("pull_N", "gross_N", "sinkage_mm") else [])))]
+    for seed in range(1, beds + 1):
+        for case, changed in cases.items():
+            words = [RIG, *driver.settings(ALWAYS, changed, {"run.seed": seed})]
+            out = driver.RESULTS / "lete_sand" / f"{label}_{case}_{seed}".replace(" ", "_").replace("/", "_")
+            if finished and driver.stale_because(words, out):
+                continue
+            if driver.stale_because(words, out) and not driver.run_case(out.name, words, out):
+                continue
+            rows[case].append(row_of(driver.summary(out), seed))
+        kept = {case: mine for case, mine in rows.items() if mine}
+        means = [{label: case, **pooled(mine)} for case, mine in kept.items()]
+        if paired and "shipped" in kept:
+            means += [{label: f"{case}, difference", **pooled(mine, kept["shipped"])} for case, mine in kept.items()
+                      if case != "shipped"]
+        told = [{label: case, **row} for case, mine in kept.items() for row in mine]
+        if told:
+            columns = names + [key for key in told[0] if key not in names]
+            driver.write(name, [*told, *means], made, names=columns)
+
+
+def main():
+    parser = driver.options(__doc__, beds={"type": int, "default": 5}, finished={"action": "store_true"})
+    parser.add_argument("parts", nargs="*", default=["slip", "variants"])
+    arguments = parser.parse_args()
+    if "slip" in arguments.parts:
+        table("lete_sand_slip.csv", "slip", {slip: LONG | {"rig.slip": slip} for slip in SLIPS}, arguments.beds,
+              arguments.finished, paired=False)
+    if "variants" in arguments.parts:
+        table("lete_sand_variants.csv", "case", VARIANTS, arguments.beds, arguments.finished, paired=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -73,6 +73,7 @@ TireDescription HandlingSpec::describe() const {
   d.memory = 1e6;
   d.saved_bytes = 1e4;
   d.follows_rim = true;
+  if (t.conditions.nompres > 0.0) d.takes = {"pressure"};
   const double slip_stiffness = std::abs(handling::evaluate(t, {.load = t.vertical.fnomin}).slip_stiffness);
   d.vertical_stiffness = handling::spring_stiffness(t, t.vertical.fnomin);
   d.most_load = t.load.most;
@@ -178,7 +179,14 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
 }
 
 std::unique_ptr<TireSpec> read_handling(const json& file, const TireOptions& options) {
-  return std::make_unique<HandlingSpec>(read_handling_file(file, options.file.string()), options);
+  HandlingFile f = read_handling_file(file, options.file.string());
+  if (!options.pressure.empty() && f.formula.conditions.nompres > 0.0) {
+    if (options.pressure.varies())
+      throw input_error(options.file.string(), "tire.pressure",
+                        "is a function of time, expected one pressure for a handling tire");
+    f.formula.conditions.inflpres = options.pressure.lowest();
+  }
+  return std::make_unique<HandlingSpec>(std::move(f), options);
 }
 
 }  // namespace furrow::tire

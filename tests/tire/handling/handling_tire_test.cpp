@@ -333,6 +333,22 @@ TEST(HandlingFile, a_tir_file_is_a_tire) {
   EXPECT_TRUE(read_tire(options)->describe().own_contact.empty());
 }
 
+/// Linear spring: its stiffness is C_z (1 + PFZ1 dp_i).
+TEST(HandlingFile, takes_the_scenarios_pressure_where_its_coefficients_have_one) {
+  MagicFormula t = example_tire();
+  t.vertical.pfz1 = 0.8;
+  TireOptions options;
+  options.pressure.knots = {{0.0, 250e3}};
+  options.file = written(t);
+  EXPECT_EQ(idle_keys(*read_tire(options)), std::vector<std::string>{"pressure"});
+  t.conditions = {.inflpres = 220e3, .nompres = 200e3};
+  options.file = written(t);
+  EXPECT_TRUE(idle_keys(*read_tire(options)).empty());
+  EXPECT_NEAR(read_tire(options)->describe().vertical_stiffness, 2.2e5 * (1.0 + 0.8 * 0.25), 1e-6);
+  options.pressure.knots.push_back({1.0, 200e3});
+  expect_refused(ExitCode::bad_input, {"key 'tire.pressure'", "one pressure"}, [&] { read_tire(options); });
+}
+
 /// What the numbers of a file cannot be, and what of it is not followed, is told of the file by name.
 TEST(HandlingFile, unlikely_values_are_told_by_section_and_key) {
   const auto told = [](const MagicFormula& formula) {

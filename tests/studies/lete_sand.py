@@ -17,7 +17,7 @@ import provenance
 RIG = str(driver.ROOT / "rigs" / "drawbar_pull_small.json")
 SLIPS = (-0.1, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
 ALWAYS = {"output.frame_interval": 0}
-LONG = {"terrain.length": 4.6}  # m
+LONG = {"terrain.length": 4.7}  # m
 # How the soil's file packs its grains holds for its own solid fraction.
 ANEW = {"terrain.settling_friction": None, "terrain.settling_cohesion": None}
 VARIANTS = {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Charts of the studies' CSV files, beside them: rigid_ground.png, budget.png."""
+"""Charts of the studies' CSV files, beside them: rigid_ground.png, budget.png, lete_sand.png."""
 import re
 
 import driver
@@ -50,7 +50,42 @@ def budget():
     driver.save(figure, "budget", 110)
 
 
-CHARTS = {"rigid_ground": rigid_ground, "budget": budget}
+def lete_sand():
+    """Pull and gross traction of the shipped example against slip, with 95 % intervals over beds, beside the report's
+    soil and the regressions for the cone index of the sand."""
+    rows = provenance.read_table(driver.HERE / "lete_sand_slip.csv")
+    means = [row for row in rows if not row["seed"]]
+    old = {float(row["variant"].removeprefix("slip ")) if row["variant"] != "base" else 0.3: row
+           for row in provenance.read_table(driver.HERE / "budget.csv")
+           if row["variant"] == "base" or row["variant"].startswith("slip ")}
+    load = 4607.77  # N
+    figure, panels = driver.subplots(1, 2, sharey=True, figsize=(9.6, 4.2))
+    names = {"mason": "Mason 2018 (sand)", "wes_sand": "WES (sand)", "brixius_radial": "Brixius, radial (loam)",
+             "wismer_luth": "Wismer–Luth (loam)"}
+    for axes, what, of_old, title in zip(panels, ("pull", "gross"), ("pull", "tractive_effort"),
+                                         ("drawbar pull / load", "gross traction / load")):
+        slips = [float(row["slip"]) for row in means]
+        axes.errorbar(slips, [float(row[f"{what}_N"]) / load for row in means], capsize=3, marker="o", color="C0",
+                      yerr=[float(row[f"{what}_N_half"] or "nan") / load for row in means], label="LETE sand")
+        axes.errorbar(list(old), [float(row[f"{of_old}_N"]) / load for row in old.values()], capsize=3, marker="s",
+                      yerr=[float(row[f"{of_old}_N_half_95"]) / load for row in old.values()], color="C1", ls="none",
+                      label="the report's soil, bed 113 mm deep")
+        for k, (name, text) in enumerate(names.items()):
+            key = f"{name}_{'net' if what == 'pull' else 'gross'}_N"
+            points = [(slip, float(row[key]) / load) for slip, row in zip(slips, means) if row.get(key)]
+            if name == "wes_sand" and what == "pull":  # at 20 % slip alone
+                points = [point for point in points if abs(point[0] - 0.2) < 0.01]
+            sand = name in ("mason", "wes_sand")
+            if points:
+                axes.plot(*zip(*points), ls="-" if sand else ":", color=f"C{k + 2}" if sand else f"{0.5 + 0.1 * k}",
+                          marker="x" if len(points) == 1 else None, label=text)
+        axes.axhline(0.0, color="0.8", zorder=0)
+        driver.label(axes, "slip, of the undeformed radius", title)
+    figure.tight_layout()
+    driver.save(figure, "lete_sand", 110)
+
+
+CHARTS = {"rigid_ground": rigid_ground, "budget": budget, "lete_sand": lete_sand}
 
 
 def main():

@@ -22,14 +22,14 @@ LONG = {"terrain.length": 4.7}  # m
 ANEW = {"terrain.settling_friction": None, "terrain.settling_cohesion": None}
 VARIANTS = {
     "shipped": {},
-    "step 30 µs": {"run.step": 3e-5},
+    "step 15 µs": {"run.step": 1.5e-5},
     "layers 20": {"terrain.layers": 20},
     "layers 45": {"terrain.layers": 45},
     "width 0.9 m": {"terrain.width": 0.9},
-    "radius 8 mm": {"terrain.radius": 0.008, "terrain.layers": 37, "run.step": 4.8e-5},
+    "radius 8 mm": {"terrain.radius": 0.008, "terrain.layers": 37, "run.step": 2.4e-5},
     "radius 12.5 mm": {"terrain.radius": 0.0125, "terrain.layers": 24},
-    "stiffness x 1/4": {"terrain.young_modulus": 6.225e6},
-    "stiffness x 4": {"terrain.young_modulus": 9.96e7, "run.step": 3e-5},
+    "stiffness x 1/2": {"terrain.young_modulus": 5e7},
+    "stiffness x 4": {"terrain.young_modulus": 4e8, "run.step": 1.5e-5},
     "solid fraction 0.58": {"terrain.solid_fraction": 0.58} | ANEW,
     "solid fraction 0.62": {"terrain.solid_fraction": 0.62} | ANEW,
     "half the speed": {"rig.angular_speed": 2.14, "run.end": 3.0, "run.average_from": 1.2},

@@ -102,16 +102,16 @@ void visit_fields(FieldsOf<TireFile> auto& s, auto&& visit) {
   visit(s.radius, needed("radius", "m", keys::kSize,
                          "Radius of the undeformed mid-surface at the crown; must agree with the profile within 1 %."));
   visit(s.rim_radius, needed("rim_radius", "m", keys::kSize, "Radius at which the beads sit."));
-  visit(s.rim_width, needed("rim_width", "m", keys::kSize, "Distance between the beads' seats."));
+  visit(s.rim_width, needed("rim_width", "m", keys::kSize.usual(0.05, 1.5), "Distance between the beads' seats."));
   visit(s.pressure, keys::kPressure);
-  visit(s.structural_damping,
-        needed("structural_damping", "s", from(0), "Kelvin-Voigt time tau: stress = C (strain + tau × strain rate)."));
+  visit(s.structural_damping, needed("structural_damping", "s", keys::kDampingTime,
+                                     "Kelvin-Voigt time tau: stress = C (strain + tau × strain rate)."));
   visit(s.prony,
         key("prony", "", optional(),
             "Generalised Maxwell model beside tau: stress = C (strain + tau × strain rate + sum of g_i h_i), h_i' = "
             "strain "
             "rate - h_i / tau_i. The same in all layers; static results are those without it."));
-  visit(s.tread_mass_per_area, key("tread_mass_per_area", "kg/m²", from(0),
+  visit(s.tread_mass_per_area, key("tread_mass_per_area", "kg/m²", from(0).usual(0.01, 100),
                                    "Mass of rubber outside the tread's layup; adds inertia, no stiffness."));
   visit(s.elements_circumference,
         needed("elements_circumference", "", from(8, kMaxAround), "Elements around the tire."));

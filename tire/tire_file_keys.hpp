@@ -9,8 +9,11 @@ namespace furrow::tire {
 
 namespace keys {
 /// A size of the tire, m: beyond, arithmetic on its mesh overflows or vanishes.
-inline constexpr Allowed kSize = allowed::from(1e-4, 100);
-inline constexpr Key kPressure = needed("pressure", "Pa", allowed::from(0), "Inflation, gauge pressure.");
+inline constexpr Allowed kSize = allowed::from(1e-4, 100).usual(0.02, 3);
+inline constexpr Key kPressure =
+    needed("pressure", "Pa", allowed::from(0).usual(1e3, 2e6), "Inflation, gauge pressure.");
+/// Of a structural damping, s.
+inline constexpr Allowed kDampingTime = allowed::from(0).usual(1e-5, 0.2);
 inline constexpr Key kContact = needed("contact");
 }  // namespace keys
 
@@ -20,12 +23,14 @@ struct ContactBlock : ContactMaterial {
 };
 void visit_fields(FieldsOf<ContactBlock> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(s.young_modulus, needed("young_modulus", "Pa", above(0), "Young's modulus of the tread surface, law mindlin."));
+  visit(s.young_modulus,
+        needed("young_modulus", "Pa", above(0).usual(1e5, 1e12), "Young's modulus of the tread surface, law mindlin."));
   visit(s.poisson_ratio,
         needed("poisson_ratio", "-", from(0).below(0.5), "Poisson's ratio of the tread surface, law mindlin."));
-  visit(s.friction, needed("friction", "-", from(0), "Coulomb coefficient."));
+  visit(s.friction, needed("friction", "-", from(0).usual(0.02, 3), "Coulomb coefficient."));
   visit(s.restitution, needed("restitution", "-", from(0, 1), "Coefficient of restitution, law mindlin."));
-  visit(s.normal_stiffness, needed("normal_stiffness", "N/m^1.5", above(0), "Normal stiffness, law hertz_tanh."));
+  visit(s.normal_stiffness,
+        needed("normal_stiffness", "N/m^1.5", above(0).usual(1e3, 1e10), "Normal stiffness, law hertz_tanh."));
   visit(s.normal_damping, needed("normal_damping", "N s/m^1.5", from(0), "Normal damping, law hertz_tanh."));
 }
 

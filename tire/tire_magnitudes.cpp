@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "protocol/files/nearest_words.hpp"
+
 namespace furrow::tire {
 namespace {
 
@@ -13,10 +15,8 @@ struct Range {
   const char* unit;
 };
 // Textile cord in rubber is the lightest material of a tire, steel the heaviest and stiffest.
-constexpr Range kDensity{100.0, 2e4, "kg/m³"}, kYoungModulus{1e5, 1e12, "Pa"}, kThickness{1e-5, 0.05, "m"},
-    kPressure{1e3, 2e6, "Pa"}, kRimWidth{0.05, 1.5, "m"}, kRadius{0.02, 3.0, "m"};
-constexpr double kMaxAngle = 95.0;       // degrees
-constexpr double kMaxTreadMass = 100.0;  // kg/m²: 8 cm of rubber
+constexpr Range kDensity{100.0, 2e4, "kg/m³"}, kYoungModulus{1e5, 1e12, "Pa"}, kThickness{1e-5, 0.05, "m"};
+constexpr double kMaxAngle = 95.0;  // degrees
 
 /// What is odd about a file: the first place of each kind, and how many more there are.
 class Oddities {
@@ -51,9 +51,6 @@ class Oddities {
 
 std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile& file) {
   Oddities found;
-  const auto look = [&](const std::string& key, double value, const Range& range) {
-    found.look(key, key, value, range);
-  };
   for (const LayerMaterial& m : file.materials) {
     found.look("density", "materials." + m.name + ".density", m.density, kDensity);
     for (int i = 0; i < 3; ++i)
@@ -69,14 +66,7 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
         found.add(fmt::format("{}.angle", name), key + ".angle_deg",
                   fmt::format("is {:g}°, cords lie within ±90°", angle));
     }
-  look("radius", file.radius, kRadius);
-  look("rim_radius", file.rim_radius, kRadius);
-  look("rim_width", file.rim_width, kRimWidth);
-  if (file.pressure != 0.0) look("pressure", file.pressure, kPressure);
-  if (file.tread_mass_per_area > kMaxTreadMass)
-    found.add(
-        "tread_mass_per_area", "tread_mass_per_area",
-        fmt::format("is {:g} kg/m², tires have up to {:g}: another unit?", file.tread_mass_per_area, kMaxTreadMass));
+  for (const auto& [key, what] : unusual_values(file)) found.add(key, key, what);
   return found.all();
 }
 

@@ -41,13 +41,6 @@ json within_int64(json value) {
   return value;
 }
 
-/// What the writer may have meant in another unit: kilo, milli, bar, mega, micro; NaN if nothing fits.
-double likely_meaning(double value, double low, double high) {
-  for (const double factor : {1e3, 1e-3, 1e5, 1e6, 1e-6})
-    if (std::abs(value) * factor >= low && std::abs(value) * factor <= high) return value * factor;
-  return NAN;
-}
-
 /// valijson's words for a place, {"<root>", "[tires]", "[0]"}, as the parts of a key.
 std::vector<std::string> key_parts(const std::vector<std::string>& context) {
   std::vector<std::string> parts;
@@ -168,15 +161,9 @@ void Schema::unusual(const json& value, const json& node, const std::string& pat
     return;
   }
   if (!value.is_number() || !node.contains("usual")) return;
-  const double x = value.get<double>(), low = node["usual"][0].get<double>(), high = node["usual"][1].get<double>();
-  const bool small = low >= 0.0 ? std::abs(x) < low : x < low;
-  if (x == 0.0 || (!small && x <= high)) return;
-  const double meant = likely_meaning(x, std::max(low, 0.0), high);
-  out.push_back(
-      {path,
-       fmt::format("{} is unusually {}, usual is {} to {}{}", with_unit(number_text(x), node),
-                   small ? "small" : "large", number_text(low), with_unit(number_text(high), node),
-                   std::isfinite(meant) && low > 0.0 ? fmt::format(": did you mean {}?", number_text(meant)) : "")});
+  std::string text = unusual_text(value.get<double>(), node["usual"][0].get<double>(), node["usual"][1].get<double>(),
+                                  node.value("unit", std::string("-")));
+  if (!text.empty()) out.push_back({path, std::move(text)});
 }
 
 void Schema::fill_defaults(json& value, const json& node) const {

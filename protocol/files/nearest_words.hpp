@@ -1,8 +1,15 @@
-// Which known name was meant by one that is not known.
+// What a writer may have meant: by a name that is not known, one that is; by a value of a magnitude that a key does not
+// call usual (Allowed::usual), another unit.
 #pragma once
 
+#include <concepts>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
+
+#include "protocol/core/fields.hpp"
+#include "protocol/core/key.hpp"
 
 namespace furrow {
 
@@ -14,5 +21,29 @@ std::vector<std::string> nearest_words(const std::string& word, const std::vecto
 
 /// What to say of an unknown name: "is unknown, expected 'SIMILAR'?", or all known names where none is similar.
 std::string unknown_text(const std::vector<std::string>& similar, const std::vector<std::string>& known);
+
+/// "2 Pa is unusually small, usual is 5000 to 2e6 Pa: did you mean 200e3 (bar)?"; empty for a usual value and for 0.
+/// @param low negative: values of both signs are usual, and none is too small
+std::string unusual_text(double value, double low, double high, const std::string& unit);
+
+/// Key and text of every unusual value of a struct and of the structs in it. A negative value whose key takes null means
+/// null.
+template <HasFields T>
+std::vector<std::pair<std::string, std::string>> unusual_values(const T& values, const std::string& path = "") {
+  std::vector<std::pair<std::string, std::string>> found;
+  visit_fields(values, [&]<class F, class Value>(const Value& value, const F& field) {
+    if constexpr (std::derived_from<F, Key>) {
+      const std::string name = path + field.name;
+      if constexpr (std::is_floating_point_v<Value>) {
+        if (field.usual_low == field.usual_high || (field.takes_null && value < 0.0)) return;
+        if (std::string text = unusual_text(value, field.usual_low, field.usual_high, field.unit); !text.empty())
+          found.emplace_back(name, std::move(text));
+      } else if constexpr (HasFields<Value>) {
+        for (auto& one : unusual_values(value, name + ".")) found.push_back(std::move(one));
+      }
+    }
+  });
+  return found;
+}
 
 }  // namespace furrow

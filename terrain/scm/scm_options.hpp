@@ -55,7 +55,7 @@ void visit_fields(FieldsOf<ScmOptions> auto& s, auto&& visit) {
   visit(s.bekker_n, key("bekker_n", "-", kSoil, above(0).to(5).usual(0.1, 2),
                         "Bekker's exponent n in p = (k_c/b + k_φ) zⁿ, engine scm."));
   visit(s.mohr_cohesion,
-        key("mohr_cohesion", "Pa", kSoil, from(0, 1e9).usual(0, 1e5),
+        key("mohr_cohesion", "Pa", kSoil, from(0, 1e9).usual(20, 1e5),
             "Cohesion c of soil mechanics in τ_max = c + p tan φ, engine scm. It is not the contact value `cohesion` "
             "of grains."));
   visit(s.mohr_friction_angle,

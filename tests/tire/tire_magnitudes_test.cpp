@@ -23,10 +23,13 @@ TEST(TireMagnitudes, another_unit_is_named_with_its_key) {
   tire.bead.layers.front().angle = 240.0 * 3.14159265 / 180.0;
   tire.rim_width = 0.02;
   tire.tread_mass_per_area = 7000.0;
+  tire.structural_damping = 5.0;  // ms
+  tire.contact.friction = 90.0;   // per cent
   std::string keys;
   for (const auto& [key, what] : unlikely_values(tire)) keys += key + " ";
-  for (const char* key : {"density", "young_modulus", "sections.tread.layers.0.thickness",
-                          "sections.bead.layers.0.angle_deg", "rim_width", "pressure", "tread_mass_per_area"})
+  for (const char* key :
+       {"density", "young_modulus", "sections.tread.layers.0.thickness", "sections.bead.layers.0.angle_deg",
+        "rim_width", "pressure", "tread_mass_per_area", "structural_damping", "contact.friction"})
     EXPECT_TRUE(holds(keys, key)) << key << " is not among " << keys;
 }
 

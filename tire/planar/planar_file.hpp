@@ -57,7 +57,7 @@ void visit_fields(FieldsOf<PlanarFile> auto& s, auto&& visit) {
   visit(p.step_share, needed("step_share", "-", above(0).to(1),
                              "Step of its motion / largest stable one; in a run that of the mesh as it is pressed."));
   visit(p.contact_stiffness,
-        needed("contact_stiffness", "N/m", above(0),
+        needed("contact_stiffness", "N/m", above(0).usual(1e4, 1e11),
                "c, force of a node on rigid ground / its depth, per metre of width, when it is pressed; in a run the "
                "terrain has its own contact."));
   visit(s.contact, keys::kContact);

@@ -28,8 +28,8 @@ struct PlanarMaterial {
 };
 void visit_fields(FieldsOf<PlanarMaterial> auto& s, auto&& visit) {
   using namespace allowed;
-  visit(s.density, needed("density", "kg/m³", above(0), "Density."));
-  visit(s.young_modulus, needed("young_modulus", "Pa", above(0), "Young's modulus."));
+  visit(s.density, needed("density", "kg/m³", above(0).usual(10, 2e4), "Density."));
+  visit(s.young_modulus, needed("young_modulus", "Pa", above(0).usual(1e4, 1e12), "Young's modulus."));
   // Beyond, the step limit vanishes.
   visit(s.poisson_ratio, needed("poisson_ratio", "-", from(0, 0.499), "Poisson's ratio."));
   visit(s.viscosity, needed("viscosity", "Pa s", from(0), "Viscosity xi: stress / rate of deformation."));

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/planar/planar_carcass.hpp"
@@ -39,7 +40,8 @@ void check(const PlanarFile& f) {
 
 class PlanarSpec final : public TireSpec {
  public:
-  PlanarSpec(PlanarFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
+  PlanarSpec(const PlanarFile& given, PlanarFile file, const TireOptions& options)
+      : TireSpec(options), file_(std::move(file)), unusual_(unusual_values(given)) {}
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
@@ -58,6 +60,7 @@ class PlanarSpec final : public TireSpec {
       return press_planar(params, mass, options, progress);
     });
   }
+  std::vector<std::pair<std::string, std::string>> unlikely_values() const override { return unusual_; }
   std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<PlanarModes>(file_.params); }
 
  private:
@@ -71,6 +74,7 @@ class PlanarSpec final : public TireSpec {
   MassProperties mass() const { return planar_mass(file_.params); }
 
   PlanarFile file_;
+  std::vector<std::pair<std::string, std::string>> unusual_;  // of the file as it stands
 };
 
 TireDescription PlanarSpec::describe() const {
@@ -132,9 +136,10 @@ PlanarFile read_planar_file(const nlohmann::json& document, const std::string& p
 }
 
 std::unique_ptr<TireSpec> read_planar(const nlohmann::json& file, const TireOptions& options) {
-  PlanarFile planar = read_planar_file(file, options.file.string());
+  const PlanarFile given = read_planar_file(file, options.file.string());
+  PlanarFile planar = given;
   apply(planar, options);
-  return std::make_unique<PlanarSpec>(std::move(planar), options);
+  return std::make_unique<PlanarSpec>(given, std::move(planar), options);
 }
 
 }  // namespace furrow::tire

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/extruded/extruded_tire.hpp"
@@ -58,8 +59,11 @@ void check_pressure(const RingFile& f, double pressure, const std::string& key) 
 
 class RingSpec final : public TireSpec {
  public:
-  RingSpec(RingFile file, int file_segments, const TireOptions& options)
-      : TireSpec(options), file_(std::move(file)), file_segments_(file_segments) {}
+  RingSpec(const RingFile& given, RingFile file, const TireOptions& options)
+      : TireSpec(options),
+        file_(std::move(file)),
+        file_segments_(given.params.segments),
+        unusual_(unusual_values(given)) {}
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
@@ -76,11 +80,13 @@ class RingSpec final : public TireSpec {
   }
 
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
-    if (file_.params.segments >= file_segments_) return {};
-    return {{"segments",
-             fmt::format("of the file is {}, the scenario's tire.elements_circumference makes it {}: the force of "
-                         "fewer segments is rougher",
-                         file_segments_, file_.params.segments)}};
+    auto odd = unusual_;
+    if (file_.params.segments < file_segments_)
+      odd.emplace_back("segments",
+                       fmt::format("of the file is {}, the scenario's tire.elements_circumference makes it {}: the "
+                                   "force of fewer segments is rougher",
+                                   file_segments_, file_.params.segments));
+    return odd;
   }
 
  private:
@@ -90,7 +96,9 @@ class RingSpec final : public TireSpec {
   }
 
   RingFile file_;
-  int file_segments_;  // before the scenario changed them
+  // Of the file as it stands:
+  int file_segments_;
+  std::vector<std::pair<std::string, std::string>> unusual_;
 };
 
 TireDescription RingSpec::describe() const {
@@ -158,11 +166,11 @@ RingFile read_ring_file(const nlohmann::json& document, const std::string& path)
 }
 
 std::unique_ptr<TireSpec> read_ring(const nlohmann::json& file, const TireOptions& options) {
-  RingFile ring = read_ring_file(file, options.file.string());
-  const int segments = ring.params.segments;
+  const RingFile given = read_ring_file(file, options.file.string());
+  RingFile ring = given;
   apply(ring, options);
   if (!options.pressure.empty()) check_pressure(ring, options.pressure.highest(), "pressure");
-  return std::make_unique<RingSpec>(std::move(ring), segments, options);
+  return std::make_unique<RingSpec>(given, std::move(ring), options);
 }
 
 }  // namespace furrow::tire

@@ -42,8 +42,8 @@ void visit_fields(FieldsOf<RingFile> auto& s, auto&& visit) {
   visit(p.pressure, keys::kPressure);
   visit(p.air_share, needed("air_share", "-", above(0).to(1), "Volume of air / (pi R² T)."));
   visit(p.bending, needed("bending", "N/m", above(0), "Bending stiffness A of the belt per radian: E I / R³."));
-  visit(p.shear,
-        needed("shear", "N/m", above(0), "Stiffness B of the belt against gradients of its hoop strain, per radian."));
+  visit(p.shear, needed("shear", "N/m", above(0).usual(1e3, 1e10),
+                        "Stiffness B of the belt against gradients of its hoop strain, per radian."));
   visit(
       s.sidewall,
       needed(
@@ -53,7 +53,7 @@ void visit_fields(FieldsOf<RingFile> auto& s, auto&& visit) {
           "w its extension; k1 above 0, k2² at most 3 k1 k3."));
   visit(
       p.tangential,
-      needed("tangential", "N/m", above(0),
+      needed("tangential", "N/m", above(0).usual(1e3, 1e9),
              "Stiffness k_t of the sidewall against tangential displacement, per radian; the torsional stiffness is 2 "
              "pi R² k_t."));
   visit(p.tension_share,
@@ -61,7 +61,7 @@ void visit_fields(FieldsOf<RingFile> auto& s, auto&& visit) {
             "Share of the pressure that the belt holds as a membrane, by a hoop tension of tension_share × pressure × "
             "radius × width; the sidewall holds the rest. 0: no hoop tension."));
   visit(m.damping,
-        key("structural_damping", "s", from(0),
+        key("structural_damping", "s", keys::kDampingTime,
             "Kelvin-Voigt time tau of belt and sidewall: tau × tangent × rate is added to their forces in motion; "
             "tire.structural_damping overrides it."));
   visit(p.gas, key("gas", "", words("linearised exact"),
@@ -72,7 +72,7 @@ void visit_fields(FieldsOf<RingFile> auto& s, auto&& visit) {
             "angle."));
   visit(
       m.mass,
-      needed("mass", "kg", above(0),
+      needed("mass", "kg", above(0).usual(0.01, 2000),
              "Mass of the tire; in motion a belt at its radius and a rest at rim_radius share it so that spin_inertia "
              "comes out."));
   visit(m.spin_inertia,

@@ -67,6 +67,22 @@ TEST(PlanarSpec, wrong_files_are_refused_with_file_key_and_what_was_expected) {
             "other");
 }
 
+TEST(PlanarSpec, values_in_another_unit_are_named_with_their_key) {
+  const auto odd_keys = [](const json& file) {
+    TireOptions o;
+    o.file = "tire.json";
+    std::string keys;
+    for (const auto& [key, what] : read_planar(file, o)->unlikely_values()) keys += key + " ";
+    return keys;
+  };
+  EXPECT_EQ(odd_keys(file_text()), "");
+  json file = file_text();
+  file["disc"]["density"] = 0.74;          // g/cm³
+  file["tire"]["young_modulus"] = 0.2874;  // MPa
+  file["contact"]["friction"] = 80;        // per cent
+  EXPECT_EQ(odd_keys(file), "disc.density tire.young_modulus contact.friction ");
+}
+
 TEST(PlanarSpec, a_scenario_may_change_friction_and_the_mesh) {
   TireOptions o = options(36);
   o.friction = 0.3;

@@ -66,6 +66,23 @@ TEST(RingSpec, wrong_files_are_refused_with_file_and_key) {
   EXPECT_EQ(read_ring_file(file, "tire.json").params.tension_share, 0.0);
 }
 
+TEST(RingSpec, values_in_another_unit_are_named_with_their_key) {
+  const auto odd_keys = [](const json& file) {
+    TireOptions o;
+    o.file = "tire.json";
+    std::string keys;
+    for (const auto& [key, what] : read_ring(file, o)->unlikely_values()) keys += key + " ";
+    return keys;
+  };
+  EXPECT_EQ(odd_keys(file_text()), "");
+  json file = file_text();
+  file["pressure"] = 200;            // kPa
+  file["structural_damping"] = 2.2;  // ms
+  file["tangential"] = 250;          // kN/m
+  file["contact"]["friction"] = 90;  // per cent
+  EXPECT_EQ(odd_keys(file), "pressure tangential structural_damping contact.friction ");
+}
+
 TEST(RingSpec, a_scenario_may_change_pressure_friction_segments_and_damping) {
   TireOptions o = options(64);
   EXPECT_EQ(read_tire(o)->describe().damping_time, 0.00216);

@@ -63,8 +63,8 @@ vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
     if (wall_clock() - pressed > kQuiet) display.show({.phase = what, .share = share});
   });
   display.clear();
-  for (const auto& [key, what] : vehicle::stops_at_rest(spec, page.trim))
-    print_warning(input_error(spec.file, key, what).what());
+  for (const auto& odd : {vehicle::stops_at_rest(spec, page.trim), vehicle::steers_against(spec, page)})
+    for (const auto& [key, what] : odd) print_warning(input_error(spec.file, key, what).what());
   return page;
 }
 

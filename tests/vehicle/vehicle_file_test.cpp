@@ -288,6 +288,9 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
        "gives a part of 19.45 kg a radius of gyration of 10.2 m in a vehicle of "},
       {"hmmwv.json", "/axles/0/brake/torque", 4e6, "axles[0].brake.torque",
        "gives 4000000 N m: one wheel's brake would lift the whole vehicle of 2423 kg on a lever of 168 m"},
+      {"hmmwv.json", "/axles/0/brake/torque", 4, "axles[0].brake.torque",
+       "is 4 N m on a vehicle of 2423 kg, usual is 47.5 N m or more"},
+      {"hmmwv.json", "/axles/0/brake/torque", 32e3, "axles[0].brake.torque", "on a lever of 1.35 m"},
       {"hmmwv.json", "/axles/0/steering/left_angle_deg", -0.52, "axles[0].steering.left_angle_deg",
        "is -0.52, and is in degrees"},
       {"hmmwv.json", "/driveline/shafts/2/inertia", 5e4, "driveline.shafts[2].inertia",
@@ -349,6 +352,14 @@ TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->shift_time = 400.0; }),
             "driveline.gearbox.shift_time");
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gears[1].ratio *= -1.0; }), "driveline.gears");
+  // Final drives that are input over output.
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) {
+              for (vehicle::GearSpec& gear : line.gears) gear.ratio = 1.0 / gear.ratio;
+            }),
+            "driveline.gears");
+  // 2400 rpm in one gear are 2400 × ratio / next ratio in the next one.
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->down_rpm = 0.99 * line.gearbox->up_rpm; }),
+            "driveline.gearbox.down_rpm");
 }
 
 TEST(VehicleFile, a_gearbox_whose_mark_the_engine_does_not_reach_is_unlikely) {

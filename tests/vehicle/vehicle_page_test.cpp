@@ -48,6 +48,37 @@ TEST(VehiclePage, of_the_hmmwv_has_its_counts_masses_and_stops) {
     EXPECT_TRUE(holds(text, part)) << part << "\n" << text;
 }
 
+// The centre of mass is that at which the axle loads balance; a wheel command to the left turns the front wheels left.
+TEST(VehiclePage, of_the_hmmwv_has_its_distances_speeds_and_sense_of_steering) {
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  const VehiclePage page = vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5));
+  const auto& trim = page.trim;
+  double moment = 0.0, load = 0.0;
+  for (const auto& wheel : trim.wheels) moment += wheel.load * wheel.center.x(), load += wheel.load;
+  EXPECT_NEAR(page.center_of_mass.x(), moment / load, 2e-3);
+  EXPECT_NEAR(page.center_height, trim.height + page.center_of_mass.z(), 1e-3);
+  const auto drawn = [&](int axle) { return vehicle::spindle_of(spec.axles[axle].corners[vehicle::kLeft].suspension); };
+  EXPECT_NEAR(page.wheelbase, drawn(0).center.x() - drawn(1).center.x(), 1e-3);
+  ASSERT_EQ(page.tracks.size(), 2U);
+  EXPECT_NEAR(page.tracks[0], 1.82, 1e-2);
+  EXPECT_NEAR(page.static_stability_factor, (page.tracks[0] + page.tracks[1]) / (4.0 * page.center_height), 1e-12);
+  EXPECT_GT(page.full_steering[0], 0.3);
+  EXPECT_EQ(page.full_steering[1], 0.0);
+  EXPECT_TRUE(vehicle::steers_against(spec, page).empty());
+  ASSERT_EQ(page.gear_speeds.size(), spec.driveline.gearbox->ratios.size());
+  // One speed of the engine: speeds are as the ratios are.
+  for (std::size_t k = 1; k < page.gear_speeds.size(); ++k)
+    EXPECT_NEAR(page.gear_speeds[k].speed / page.gear_speeds[0].speed,
+                spec.driveline.gearbox->ratios[k] / spec.driveline.gearbox->ratios[0], 1e-12);
+  for (const char* part : {"centre       of mass x ", "wheelbase    3.30", "static stability factor", "gear 1 ",
+                           "full left turns the wheels of front "})
+    EXPECT_TRUE(holds(vehicle::page_text(page), part)) << part << "\n" << vehicle::page_text(page);
+  std::get<vehicle::PitmanArmSpec>(*spec.axles[0].steering).left_angle_deg *= -1.0;
+  const auto odd = vehicle::steers_against(spec, vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5)));
+  ASSERT_EQ(odd.size(), 1U);
+  EXPECT_EQ(odd[0].first, "axles[0].steering.left_angle_deg");
+}
+
 // A rigid tire's vibration is that of the ground that was put under it: four times the stiffness, twice as high.
 TEST(VehiclePage, on_tires_that_do_not_deflect_tells_only_vibrations_of_the_vehicle_s_own_springs) {
   const VehiclePage page = vehicle::vehicle_page(shipped("buggy.json"), tires(4, 10.0, 0.3, 0.0));

@@ -329,6 +329,23 @@ void check_locks(const VehicleSpec& spec, std::span<const double> radii, const P
   }
 }
 
+const char* end_key(const SteeringSpec& steering) {
+  return std::visit([](const auto& s) { return end_of(s).key; }, steering);
+}
+
+std::vector<double> full_steering(const VehicleSpec& spec, std::span<const double> radii) {
+  constexpr int kSteps = 50;
+  std::vector<double> angles;
+  for (int axle = 0; axle < static_cast<int>(spec.axles.size()); ++axle) {
+    angles.push_back(0.0);
+    if (!spec.axles[axle].steering) continue;
+    Bench bench(spec, radii);
+    for (int i = 1; i <= kSteps; ++i) bench.take(axle, 0.0, 0.0, static_cast<double>(i) / kSteps);
+    angles.back() = 0.5 * (bench.row(2 * axle).steer + bench.row(2 * axle + 1).steer);
+  }
+  return angles;
+}
+
 std::string kinematics_csv(std::span<const KinematicsRow> rows) {
   std::string text, separator;
   const KinematicsRow head;

@@ -84,6 +84,13 @@ std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const d
 /// @throws Error(bad_input) naming the key that says where the ends are
 void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress = {});
 
+/// The key of a steering that says how far it goes to the left.
+const char* end_key(const SteeringSpec& steering);
+
+/// Mean angle of each axle's wheels at full steering to the left, positive left, rad; 0 of an axle that is not steered.
+/// @pre check_locks() passed
+std::vector<double> full_steering(const VehicleSpec& spec, std::span<const double> radii);
+
 /// Names with units, then one line for each row; empty where a quantity does not exist.
 std::string kinematics_csv(std::span<const KinematicsRow> rows);
 

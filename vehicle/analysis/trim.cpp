@@ -115,19 +115,27 @@ Shares shares(const Body& body, const Eigen::VectorXd& shape, int index) {
   return s;
 }
 
-std::string mode_name(const Vehicle& vehicle, const Mode& mode) {
+/// @param taken names of lower modes: where two vibrations move the same axle most, the second is named after the axle
+/// that it moves most beside it
+std::string mode_name(const Vehicle& vehicle, const Mode& mode, const std::vector<TrimMode>& taken) {
   const System& system = vehicle.system();
   const Shares body = shares(system.body(vehicle.chassis()), mode.shape, vehicle.chassis());
   if (body.all > 0.5) {
     if (body.roll >= body.heave && body.roll >= body.pitch) return "roll";
     return body.heave >= body.pitch ? "heave" : "pitch";
   }
-  int most = 0;
-  double largest = -1.0;
   const auto up = [&](int k) { return mode.shape[6 * vehicle.wheel(k).spindle + 2]; };
-  for (int k = 0; k < vehicle.wheel_count(); k += 2)
-    if (const double energy = up(k) * up(k) + up(k + 1) * up(k + 1); energy > largest) largest = energy, most = k;
-  return (up(most) * up(most + 1) >= 0.0 ? "hop " : "tramp ") + vehicle.spec().axles[most / 2].name;
+  std::vector<std::pair<double, int>> axles;  // −energy, left wheel
+  for (int k = 0; k < vehicle.wheel_count(); k += 2) axles.emplace_back(-up(k) * up(k) - up(k + 1) * up(k + 1), k);
+  std::sort(axles.begin(), axles.end());
+  std::string first;
+  for (const auto& [energy, k] : axles) {
+    const std::string name =
+        (up(k) * up(k + 1) >= 0.0 ? "hop " : "tramp ") + vehicle.spec().axles[static_cast<std::size_t>(k) / 2].name;
+    if (first.empty()) first = name;
+    if (std::none_of(taken.begin(), taken.end(), [&](const TrimMode& mode) { return mode.name == name; })) return name;
+  }
+  return first;
 }
 
 /// What may keep a vehicle from coming to rest, as it is drawn, to follow that message; empty: nothing is seen.
@@ -191,7 +199,8 @@ Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground, con
   t.height = vehicle.origin().z() - ground;
   t.pitch = std::atan2(-R(2, 0), R(0, 0));
   t.roll = std::atan2(R(2, 1), R(2, 2));
-  for (const Mode& mode : statics.modes()) t.modes.push_back({mode_name(vehicle, mode), mode.frequency, mode.damping});
+  for (const Mode& mode : statics.modes())
+    t.modes.push_back({mode_name(vehicle, mode, t.modes), mode.frequency, mode.damping});
   vehicle.system().assemble(vehicle.system().time());
   return t;
 }

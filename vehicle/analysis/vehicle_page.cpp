@@ -14,6 +14,8 @@
 #include "protocol/files/figures_json.hpp"
 #include "vehicle/analysis/kinematics.hpp"
 #include "vehicle/analysis/tire_curve.hpp"
+#include "vehicle/spec/shaft_speeds.hpp"
+#include "vehicle/spec/vehicle_magnitudes.hpp"
 
 namespace furrow::vehicle {
 namespace {
@@ -42,6 +44,76 @@ std::vector<TireCurve> curves(std::span<const StandingTire> tires, double weight
                                                                       (kStiffShare * tire.radius))
                                        : tire_curve(tire.text, tire.radius, tire.points));
   return made;
+}
+
+Vec3 center_of_mass(const System& system) {
+  Vec3 moment = Vec3::Zero();
+  double mass = 0.0;
+  for (int i = 0; i < system.body_count(); ++i) {
+    moment += system.body(i).mass * system.body(i).state.position;
+    mass += system.body(i).mass;
+  }
+  return moment / mass;
+}
+
+/// Centre of mass, wheelbase, tracks. @pre the page has its trim
+void add_distances(const VehicleSpec& spec, std::span<const StandingTire> tires, VehiclePage& page) {
+  Vehicle car(spec);
+  for (int k = 0; k < car.wheel_count(); ++k) car.add_tire_mass(k, tires[k].mass);
+  page.center_of_mass = center_of_mass(car.system()) - car.origin();
+  const Mat3 R = (Eigen::AngleAxisd(page.trim.pitch, Vec3::UnitY()) * Eigen::AngleAxisd(page.trim.roll, Vec3::UnitX()))
+                     .toRotationMatrix();
+  page.center_height = page.trim.height + (R * page.center_of_mass).z();
+  double front = -1e300, rear = 1e300, tracks = 0.0;
+  for (std::size_t k = 0; k + 1 < page.trim.wheels.size(); k += 2) {
+    const Vec3 &left = page.trim.wheels[k].center, &right = page.trim.wheels[k + 1].center;
+    page.tracks.push_back(left.y() - right.y());
+    tracks += page.tracks.back();
+    front = std::max(front, 0.5 * (left.x() + right.x()));
+    rear = std::min(rear, 0.5 * (left.x() + right.x()));
+  }
+  page.wheelbase = front - rear;
+  page.static_stability_factor = tracks / static_cast<double>(page.tracks.size()) / (2.0 * page.center_height);
+}
+
+/// @param metres_per_radian that a wheel rolls for a turn of engine or motor, 0 of one that is not driven
+template <class RatioOf>
+void add_gear_speed(const std::string& gear, double rpm, std::size_t wheels, const RatioOf& metres_per_radian,
+                    VehiclePage& page) {
+  double least = 1e300;
+  for (std::size_t k = 0; k < wheels; ++k)
+    if (const double per_radian = std::abs(metres_per_radian(k)); per_radian > 0.0) least = std::min(least, per_radian);
+  if (least < 1e300) page.gear_speeds.push_back({gear, rpm, least * rpm * std::numbers::pi / 30.0});
+}
+
+/// @pre the page has its loaded radii
+void add_gear_speeds(const VehicleSpec& spec, VehiclePage& page) {
+  const DrivelineSpec& line = spec.driveline;
+  const auto radius_of = [&](const std::string& axle, int side) {
+    const auto at = std::find(page.axles.begin(), page.axles.end(), axle) - page.axles.begin();
+    return page.loaded_radii.at(2 * static_cast<std::size_t>(at) + static_cast<std::size_t>(side));
+  };
+  if (line.engine) {
+    const double rpm = highest_speed(*line.engine).value_or(line.engine->torque.back().first);
+    for (std::size_t gear = 0; gear < (line.gearbox ? line.gearbox->ratios.size() : 1U); ++gear) {
+      const std::vector<double> speeds = shaft_speeds(line, gear);
+      add_gear_speed(
+          fmt::format("gear {}", gear + 1), rpm, line.wheels.size(),
+          [&](std::size_t k) {
+            const WheelShaftSpec& wheel = line.wheels[k];
+            const int shaft = line.shaft(wheel.shaft);
+            return shaft < 0 ? 0.0
+                             : speeds[static_cast<std::size_t>(shaft)] *
+                                   radius_of(wheel.axle, wheel.side == "left" ? kLeft : kRight);
+          },
+          page);
+    }
+  }
+  for (const MotorSpec& motor : line.motors)
+    if (page.gear_speeds.empty())
+      add_gear_speed(
+          "motors without load", motor.no_load_rpm, 1,
+          [&](std::size_t) { return radius_of(motor.axle, kLeft) / motor.gear_ratio; }, page);
 }
 
 Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double harder, const ProgressCall& progress) {
@@ -100,8 +172,24 @@ VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> 
       page.loaded_radii.push_back(tires[k].radius - std::max(0.0, page.trim.wheels[k].deflection));
     check_travel(spec, page);
     check_locks(spec, page.loaded_radii, progress);
+    page.full_steering = full_steering(spec, page.loaded_radii);
+    add_distances(spec, tires, page);
+    add_gear_speeds(spec, page);
     return page;
   });
+}
+
+std::vector<std::pair<std::string, std::string>> steers_against(const VehicleSpec& spec, const VehiclePage& page) {
+  std::vector<std::pair<std::string, std::string>> odd;
+  for (std::size_t k = 0; k < page.axles.size(); ++k) {
+    const double angle = page.full_steering[k];
+    if (!(angle < 0.0) || page.trim.wheels[2 * k].center.x() < page.center_of_mass.x()) continue;
+    odd.emplace_back(fmt::format("axles[{}].steering.{}", k, end_key(*spec.axles[k].steering)),
+                     fmt::format("turns the wheels {} degrees to the right at full steering to the left: the other "
+                                 "sign?",
+                                 digits(-kDegrees * angle)));
+  }
+  return odd;
 }
 
 nlohmann::ordered_json page_json(const VehiclePage& page) {
@@ -142,6 +230,29 @@ std::string loads_text(const VehiclePage& page) {
     text += fmt::format("{}{} {:.0f} N ({:.1f} %)", k > 0 ? ", " : "", page.axles[k], page.trim.axle_loads[k],
                         100.0 * page.trim.axle_loads[k] / sum);
   return text;
+}
+
+std::string tracks_text(const VehiclePage& page) {
+  std::string text;
+  for (std::size_t k = 0; k < page.axles.size(); ++k)
+    text += fmt::format("{}{} {} m", k > 0 ? ", " : "", page.axles[k], fixed(page.tracks[k], 3));
+  return text;
+}
+
+std::string steering_text(const VehiclePage& page) {
+  std::string text;
+  for (std::size_t k = 0; k < page.axles.size(); ++k)
+    if (const double angle = page.full_steering[k]; angle != 0.0)
+      text += fmt::format("{}{} {}° {}", text.empty() ? "" : ", ", page.axles[k], fixed(kDegrees * std::abs(angle), 1),
+                          angle > 0.0 ? "left" : "right");
+  return text;
+}
+
+std::string gears_text(const VehiclePage& page) {
+  std::string text;
+  for (const GearSpeed& gear : page.gear_speeds)
+    text += fmt::format("{}{} {} m/s", text.empty() ? "" : ", ", gear.gear, digits(gear.speed));
+  return fmt::format("{}, at {:.0f} rpm without slip", text, page.gear_speeds.front().engine_rpm);
 }
 
 std::string wheels_text(const Trim& trim) {
@@ -195,6 +306,15 @@ std::string page_text(const VehiclePage& page) {
                              fixed(1e3 * page.trim.height, 1), fixed(kDegrees * page.trim.pitch, 2),
                              fixed(kDegrees * page.trim.roll, 2)));
   line("axle loads", loads_text(page));
+  line("centre",
+       fmt::format("of mass x {} m, y {} m, z {} m, {} m above the ground", fixed(page.center_of_mass.x(), 3),
+                   fixed(page.center_of_mass.y(), 3), fixed(page.center_of_mass.z(), 3), fixed(page.center_height, 3)));
+  if (page.axles.size() > 1) line("wheelbase", fixed(page.wheelbase, 3) + " m");
+  line("track", tracks_text(page));
+  line("stability", fmt::format("static stability factor {}", fixed(page.static_stability_factor, 2)));
+  if (!page.gear_speeds.empty()) line("speeds", gears_text(page));
+  if (const std::string steered = steering_text(page); !steered.empty())
+    line("steering", "full left turns the wheels of " + steered);
   return text + "\n" + wheels_text(page.trim) + "\n" + struts_text(page.trim) + modes_text(page.trim);
 }
 

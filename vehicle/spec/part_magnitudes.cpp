@@ -17,8 +17,10 @@ namespace {
 
 constexpr double kMostGyration = 1.5;  // radius, of the largest distance between wheels
 constexpr double kLeastRate = 0.05,
-                 kMostRate = 200;         // of a shock absorber, its coefficient over the mass, 1/s
-constexpr double kMostLever = 2.0;        // of a torque, over the weight, m
+                 kMostRate = 200;   // of a shock absorber, its coefficient over the mass, 1/s
+constexpr double kMostLever = 2.0;  // of a torque, over the weight, m
+constexpr double kLeastBrake = 0.002,
+                 kMostBrake = 1.0;        // the same of one wheel's brake, m
 constexpr double kMostShaft = 0.1;        // of a shaft, its inertia over the mass, m²
 constexpr double kMostWheelAngle = 10.0;  // camber and toe, degrees
 constexpr double kLeastLock = 2.0;        // of a Pitman arm, degrees
@@ -75,7 +77,13 @@ class PartMagnitudes {
       wheel_angle(key, "camber_deg", part.camber_deg);
       wheel_angle(key, "toe_deg", part.toe_deg);
     }
-    if constexpr (std::is_same_v<T, BrakeSpec>) torque(key, "torque", part.torque, "one wheel's brake");
+    if constexpr (std::is_same_v<T, BrakeSpec>) {
+      torque(key, "torque", part.torque, "one wheel's brake", kMostBrake);
+      if (part.torque > 0.0 && part.torque < kLeastBrake * mass_ * kStandardGravity)
+        add(key, "torque",
+            fmt::format("is {} N m on a vehicle of {} kg, usual is {} N m or more: another unit?",
+                        number_text(part.torque), digits(mass_), digits(kLeastBrake * mass_ * kStandardGravity)));
+    }
     if constexpr (std::is_same_v<T, PitmanArmSpec>)
       if (std::abs(part.left_angle_deg) < kLeastLock)
         add(key, "left_angle_deg",
@@ -121,9 +129,9 @@ class PartMagnitudes {
           fmt::format("is {} degrees, usual is up to {:g} in magnitude: another unit?", number_text(angle),
                       kMostWheelAngle));
   }
-  void torque(const std::string& key, const char* name, double torque, const char* who) {
+  void torque(const std::string& key, const char* name, double torque, const char* who, double most = kMostLever) {
     const double weight = mass_ * kStandardGravity;
-    if (torque > kMostLever * weight)
+    if (torque > most * weight)
       add(key, name,
           fmt::format("gives {} N m: {} would lift the whole vehicle of {} kg on a lever of {} m: another unit?",
                       digits(torque), who, digits(mass_), digits(torque / weight)));

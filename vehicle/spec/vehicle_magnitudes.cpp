@@ -21,23 +21,9 @@ namespace {
 
 constexpr double kLeastChassis = 0.05;  // of the mass of all other parts
 constexpr double kMostShift = 3.0;      // s
+constexpr double kMostFirst = 0.5;      // speed of the wheels over that of the engine, lowest gear
 constexpr double kLeastGyration = 0.05,
                  kMostGyration = 1.5;  // radius, of the largest distance between wheels
-
-/// Speed above which an engine at full throttle only brakes, rpm; none where its tables never say so.
-std::optional<double> highest_speed(const EngineSpec& engine) {
-  const Table torque("engine torque", engine.torque, TableCurve::linear, TableEnd::constant),
-      losses("engine losses", engine.losses, TableCurve::linear, TableEnd::constant);
-  std::set<double> marks;
-  for (const Points* points : {&engine.torque, &engine.losses})
-    for (const auto& [rpm, unused] : *points) marks.insert(rpm);
-  const auto drive = [&](double rpm) { return torque.value(rpm) + losses.value(rpm); };
-  if (drive(*marks.rbegin()) > 0.0) return std::nullopt;
-  for (auto above = marks.rbegin(), below = std::next(above); below != marks.rend(); ++above, ++below)
-    if (const double d = drive(*below), lack = drive(*above); d > 0.0)
-      return *below + (*above - *below) * d / (d - lack);
-  return std::nullopt;
-}
 
 /// Of the gearbox's input, rpm; none where gears lie between it and the engine.
 std::optional<double> highest_speed(const DrivelineSpec& driveline) {
@@ -46,6 +32,14 @@ std::optional<double> highest_speed(const DrivelineSpec& driveline) {
   const auto joins = [&](const auto& part) { return part && part->in == from && part->out == to; };
   if (from != to && !joins(driveline.converter) && !joins(driveline.clutch)) return std::nullopt;
   return highest_speed(*driveline.engine);
+}
+
+/// The first gear, counted from 1, whose change up leads below the mark for a change down; 0: there is none.
+std::size_t hunting_gear(const GearboxSpec& box) {
+  for (std::size_t k = 0; k + 1 < box.ratios.size(); ++k)
+    if (box.ratios[k + 1] > box.ratios[k] && box.up_rpm * box.ratios[k] / box.ratios[k + 1] < box.down_rpm)
+      return k + 1;
+  return 0;
 }
 
 /// Gears whose ratios or time for a change are hardly meant; keys below `driveline`.
@@ -58,6 +52,13 @@ std::vector<std::pair<std::string, std::string>> unlikely_gears(const GearboxSpe
   if (box.shift_time > kMostShift)
     odd.emplace_back("gearbox.shift_time", fmt::format("is {} s, usual is up to {:g} s: another unit?",
                                                        number_text(box.shift_time), kMostShift));
+  if (const std::size_t gear = hunting_gear(box); gear > 0)
+    odd.emplace_back(
+        "gearbox.down_rpm",
+        fmt::format("is {}, but a change from gear {} to {} at up_rpm leaves {} rpm: it will change up and "
+                    "down without end",
+                    number_text(box.down_rpm), gear, gear + 1,
+                    digits(box.up_rpm * box.ratios[gear - 1] / box.ratios[gear])));
   return odd;
 }
 
@@ -104,7 +105,36 @@ std::string against_the_first(const DrivelineSpec& line) {
   return {};
 }
 
+/// A first gear in which the wheels turn almost as fast as the engine; empty: it has none such.
+std::string too_fast(const DrivelineSpec& line) {
+  if (!line.engine) return {};
+  const std::vector<double> speeds = shaft_speeds(line, 0);
+  double most = 0.0;
+  for (const WheelShaftSpec& wheel : line.wheels)
+    if (const int shaft = line.shaft(wheel.shaft); shaft >= 0)
+      most = std::max(most, std::abs(speeds[static_cast<std::size_t>(shaft)]));
+  if (most <= kMostFirst) return {};
+  return fmt::format(
+      "turn the wheels {} times as fast as the engine in the lowest gear, usual is up to {:g}: expected "
+      "speed of the output over that of the input",
+      digits(most), kMostFirst);
+}
+
 }  // namespace
+
+std::optional<double> highest_speed(const EngineSpec& engine) {
+  const Table torque("engine torque", engine.torque, TableCurve::linear, TableEnd::constant),
+      losses("engine losses", engine.losses, TableCurve::linear, TableEnd::constant);
+  std::set<double> marks;
+  for (const Points* points : {&engine.torque, &engine.losses})
+    for (const auto& [rpm, unused] : *points) marks.insert(rpm);
+  const auto drive = [&](double rpm) { return torque.value(rpm) + losses.value(rpm); };
+  if (drive(*marks.rbegin()) > 0.0) return std::nullopt;
+  for (auto above = marks.rbegin(), below = std::next(above); below != marks.rend(); ++above, ++below)
+    if (const double d = drive(*below), lack = drive(*above); d > 0.0)
+      return *below + (*above - *below) * d / (d - lack);
+  return std::nullopt;
+}
 
 std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSpec& spec, double mass) {
   FURROW_ASSERT(mass >= spec.chassis.mass, mass, spec.chassis.mass);
@@ -119,6 +149,8 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSp
     for (auto& [key, what] : unlikely_gears(*spec.driveline.gearbox)) odd.emplace_back("driveline." + key, what);
   if (const std::string fight = against_the_first(spec.driveline); !fight.empty())
     odd.emplace_back("driveline.gears", fight);
+  if (const std::string fast = too_fast(spec.driveline); !fast.empty())
+    odd.emplace_back(spec.driveline.gears.empty() ? "driveline.gearbox.ratios" : "driveline.gears", fast);
   for (auto& [key, what] : unlikely_drives(spec.driveline)) odd.emplace_back("driveline." + key, what);
   for (auto& one : unlikely_parts(spec, mass)) odd.push_back(std::move(one));
   const double others = mass - spec.chassis.mass;

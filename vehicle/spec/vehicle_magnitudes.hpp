@@ -2,6 +2,7 @@
 // (part_magnitudes.hpp), a gearbox whose mark the engine never reaches, an engine that stalls.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,5 +13,8 @@ namespace furrow::vehicle {
 
 /// Keys, and what is odd about their values. @param mass of the whole vehicle without tires, kg
 std::vector<std::pair<std::string, std::string>> unlikely_values(const VehicleSpec& spec, double mass);
+
+/// Speed above which an engine at full throttle only brakes, rpm; none where its tables never say so.
+std::optional<double> highest_speed(const EngineSpec& engine);
 
 }  // namespace furrow::vehicle

@@ -28,6 +28,8 @@ int main(int argc, char** argv) {
   const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
   // Reports a file that exceeds the limit of file sizes. A rank is killed by it, and its supervisor reports that.
   if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);
+  // Ignored, as a daemon may hand it on, it takes the exit codes of children away.
+  std::signal(SIGCHLD, SIG_DFL);
   if (!as_rank) furrow::launch::end_on_stop_signals();
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);

@@ -268,7 +268,10 @@ void Supervisor::take_output(std::string_view text) {
 }
 
 void Supervisor::reap() {
-  if (reaped_ || waitpid(child_, &status_, WNOHANG) != child_) return;
+  if (reaped_) return;
+  const pid_t ended = waitpid(child_, &status_, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return;
+  if (ended < 0) status_ = SIGKILL;  // there is no such child any more, and nothing tells how it ended
   reaped_ = true;
   reaped_at_ = wall_clock();
 }

@@ -297,7 +297,9 @@ void Sweep::start(Run& run, std::size_t share) {
 void Sweep::poll(Run& run) {
   FURROW_ASSERT(run.process > 0 && run.state == State::running, run.process, static_cast<int>(run.state));
   int status = 0;
-  if (waitpid(run.process, &status, WNOHANG) != run.process) return;
+  const pid_t ended = waitpid(run.process, &status, WNOHANG);
+  if (ended == 0 || (ended < 0 && errno == EINTR)) return;
+  if (ended < 0) status = SIGKILL;  // there is no such child any more, and nothing tells how it ended
   run.process = -1;
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : static_cast<int>(ExitCode::rank_lost);
   const Json summary = read_summary(folder_of(run));

@@ -68,6 +68,18 @@ class LauncherVariables(EnvironmentTest):
         self.call([shutil.which("mpirun"), "-q", "--allow-run-as-root", "-n", "1", PROGRAM, "sweep", "study.json"])
 
 
+class IgnoredChildren(EnvironmentTest):
+    """A parent that ignores SIGCHLD, as daemons do, hands that on."""
+    COMMAND = ["bash", "-c", "trap '' CHLD; exec \"$@\"", "bash", PROGRAM]
+
+    def test_run_and_sweep_end(self):
+        self.call([*self.COMMAND, "run", str(self.path), *SHORT, "--out", "out"], timeout=200, prints="out\n")
+        study = {"scenario": "small.json", "set": {"run.end": 0.004, "run.average_from": 0, "terrain.engine": "rigid"},
+                 "grid": {"rig.slip": [0.2]}}
+        write_json(self.folder / "study.json", study)
+        self.call([*self.COMMAND, "sweep", "study.json", "--out", "swept"], timeout=200, prints="swept\n")
+
+
 class Launcher(EnvironmentTest):
     def launcher(self, script):
         path = self.folder / "launcher"

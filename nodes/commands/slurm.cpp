@@ -156,7 +156,8 @@ constexpr const char* kBody = R"(
 start=("$program" run "${{settings[@]}}" --out="$run" -- "$scenario")
 if [[ ${{SLURM_RESTART_COUNT:-0}} -gt 0 ]]; then
   [[ ! -e $run/summary.json ]] || exit 0  # done
-  if compgen -G "$run/checkpoints/[0-9]*" >/dev/null; then
+  saved=("$run"/checkpoints/[0-9]*)  # the pattern itself where nothing fits
+  if [[ -e ${{saved[0]}} ]]; then
     start=("$program" resume -- "$run")
   elif [[ $SLURM_RESTART_COUNT -ge {0} ]]; then
     echo "furrow: error: ended {0} times before the first checkpoint, expected a job with more --time" >&2

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The commands that start nothing: validate, ranks, explain, --help, --version."""
 import json
+import os
 import re
 
 from program import ROOT, SMALL, SystemTest, changed, furrow, main, on_terminal, read_json, write_json, write_scenario
@@ -303,6 +304,20 @@ class BatchScripts(SystemTest):
                 self.furrow("ranks", "--slurm", *options, scenario, code=2, says=told)
         for time in ("8", "12:00:00", "1-12", "2-12:30"):
             self.furrow("ranks", "--slurm", "--time", time, scenario, shows=f"#SBATCH --time={time}\n")
+
+    def test_a_job_that_begins_again_finds_its_checkpoints_whatever_its_folder_is_called(self):
+        for name in ("x[1]", "x*?", "a b\\c"):
+            with self.subTest(name):
+                path = write_scenario(self.folder, name=f"{name}.json")
+                text = self.furrow("ranks", "--slurm", path).stdout
+                script = self.folder / "job.sh"
+                script.write_text("".join("program=echo\n" if line.startswith("program=") else line
+                                          for line in text.splitlines(keepends=True)))
+                run = f"results/{name}-job1"
+                again = {**os.environ, "SLURM_JOB_ID": "1", "SLURM_RESTART_COUNT": "1"}
+                self.assertIn("run --overwrite", self.call(["bash", script], env=again).stdout)
+                (self.folder / run / "checkpoints" / "000000000750").mkdir(parents=True)
+                self.call(["bash", script], env=again, prints=f"resume -- {run}\n")
 
 
 if __name__ == "__main__":

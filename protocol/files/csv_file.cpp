@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,20 @@ std::vector<std::string> cells_of(const std::string& line) {
   }
 }
 
+/// What a header is whose values other programs have written; empty: as ours are.
+std::string foreign_header(const std::vector<std::string>& cells) {
+  const std::string& first = cells.front();
+  for (const auto& [separator, name] : {std::pair{';', "';'"}, {'\t', "tabs"}})
+    if (first.find(separator) != std::string::npos)
+      return fmt::format("has {} between its values, expected commas, and numbers with a decimal point: 0.1", name);
+  if (first.starts_with('"') || first.starts_with('\'')) return "has quotes around its values, expected none";
+  if (cells.back().empty()) return "ends with a comma, expected a value after it or no comma";
+  double number = 0.0;
+  if (std::from_chars(first.data(), first.data() + first.size(), number).ec == std::errc())
+    return fmt::format("begins with the number '{}', expected the names of the columns first", excerpt(first));
+  return {};
+}
+
 }  // namespace
 
 CsvFile::CsvFile(const std::filesystem::path& file, const std::string& expected,
@@ -44,13 +59,18 @@ CsvFile::CsvFile(const std::filesystem::path& file, const std::string& expected,
       continue;
     }
     if (cells.size() != columns_.size())
-      throw wrong_line(number, fmt::format("has {} values, expected {}", cells.size(), columns_.size()));
+      throw wrong_line(number,
+                       fmt::format("has {} values, expected {}{}", cells.size(), columns_.size(),
+                                   cells.size() == 2 * columns_.size() ? ", with decimal points, not commas" : ""));
     rows_.push_back({number, std::move(cells)});
   }
   if (rows_.empty()) throw input_error(name_, "", "has no rows of values, expected " + expected);
 }
 
 void CsvFile::take_header(const std::vector<std::string>& cells, int line, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), cells.front()) == known.end() || cells.back().empty())
+    if (const std::string foreign = foreign_header(cells); !foreign.empty())
+      throw wrong_line(line, fmt::format("{}; the columns are: {}", foreign, fmt::join(known, ", ")));
   for (const std::string& cell : cells) {
     if (std::find(known.begin(), known.end(), cell) == known.end())
       throw wrong_line(line, "column '" + excerpt(cell) + "' " + unknown_text(nearest_words(cell, known), known));

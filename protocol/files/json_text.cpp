@@ -1,6 +1,7 @@
 #include "protocol/files/json_text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -55,6 +56,35 @@ std::string too_deep() {
   return fmt::format("lists and objects are nested deeper than {} levels, expected fewer", kMaxDepth);
 }
 
+/// What people write who know other notations, at the byte where JSON ends; empty: something else.
+std::string likely_slip(const std::string& text, std::size_t at) {
+  if (at >= text.size()) return {};
+  if (text[at] == '\'') return "a text is in double quotes";
+  const auto digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
+  if (text[at] == '}' || text[at] == ']') {
+    const std::size_t before = text.find_last_not_of(" \t\r\n", at == 0 ? 0 : at - 1);
+    return before != std::string::npos && before < at && text[before] == ','
+               ? "a comma stands between entries, none after the last"
+               : "";
+  }
+  // To what stands before the number that ends there; past the beginning that is npos.
+  const std::size_t comma = text.find_last_not_of("0123456789.eE+-", at);
+  if (digit(at) && comma != std::string::npos && text[comma] == ',' && comma > 0 && digit(comma - 1))
+    return "a number has a decimal point, no comma";
+  return {};
+}
+
+/// Meshes of wheels come to mind where a tire is asked for. @throws Error(bad_input)
+void refuse_meshes(const std::filesystem::path& file, const std::string& expected) {
+  std::string end = file.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (end == ".obj" || end == ".stl" || end == ".ply")
+    throw input_error(file.string(), "",
+                      "is a mesh, expected {}: meshes are not read; a rigid wheel is described by its profile, as in "
+                      "tire/data/rigid_drum.json",
+                      expected);
+}
+
 /// Builds a document event by event, so that keys can be checked as they come.
 template <class Json>
 class Builder final : public nlohmann::json_sax<Json> {
@@ -98,13 +128,16 @@ class Builder final : public nlohmann::json_sax<Json> {
     if (at < text_.size() && text_[at] == '#')
       throw input_error(where, "", "is a comment of another language, expected // or /* */");
     if (std::filesystem::path(name_).extension() == ".tir")
-      throw input_error(where, "",
-                        "is a tire property file, expected JSON: the key 'tir' of a tire in JSON names such a file");
+      throw input_error(
+          where, "",
+          "is a tire property file, expected JSON: the key tire.file of a scenario, or the key 'tir' of a tire "
+          "in JSON, names such a file");
     std::string what = error.what();
     // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while parsing value - …"
     if (const std::size_t from = what.find(" - "); from != std::string::npos) what = what.substr(from + 3);
     if (const std::size_t from = what.find("; last read: '"); from != std::string::npos && what.size() > 120)
       what.resize(from);
+    if (const std::string slip = likely_slip(text_, at); !slip.empty()) what = slip + " (" + what + ")";
     throw input_error(where, "", "is not valid JSON: " + what);
   }
 
@@ -174,6 +207,8 @@ template nlohmann::ordered_json parse_json(const std::string&, const std::string
 
 template <class Json>
 Json load_json(const std::filesystem::path& file, const std::string& expected) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) refuse_meshes(file, expected);
   Json document = parse_json<Json>(read_text_file(file, expected), file.string());
   if (!document.is_object()) throw input_error(file.string(), "", "is not an object, expected " + expected);
   return document;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
 #include "tire/handling/handling_press.hpp"
@@ -25,12 +26,18 @@ constexpr double kLeastNominal = 0.01, kMostNominal = 0.3;  // deflection under 
 constexpr double kMostFactor = 5.0;
 constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which only rigid tires use
 
+/// @throws Error(bad_input)
+void require_inertia(const HandlingFile& file) {
+  if (!file.lacking.empty()) throw input_error(file.path, file.lacking_key, file.lacking);
+}
+
 class HandlingSpec final : public TireSpec {
  public:
   HandlingSpec(HandlingFile file, const TireOptions& options) : TireSpec(options), file_(std::move(file)) {}
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
+    require_inertia(file_);
     return std::make_unique<handling::HandlingTire>(
         context.ground_friction ? handling::on_ground_of(file_.formula, *context.ground_friction) : file_.formula,
         shape(), context.gravity, file_.tir.string());
@@ -81,6 +88,8 @@ TireDescription HandlingSpec::describe() const {
     d.grip_stiffness = slip_stiffness / s.longitudinal;
   else
     d.grip_damping = slip_stiffness / t.low_speed;
+  if (!file_.lacking.empty())
+    d.static_only = fmt::format("whose key '{}' in {} {}", file_.lacking_key, file_.path, file_.lacking);
   d.own_contact = "its forces are those of the Magic Formula, which holds for hard level ground";
   return d;
 }
@@ -101,7 +110,7 @@ TireShape HandlingSpec::shape() const {
 }
 
 std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values() const {
-  std::vector<std::pair<std::string, std::string>> odd;
+  auto odd = unusual_values(file_);
   const handling::MagicFormula& t = file_.formula;
   const std::string at = file_.tir.filename().string();
   if (t.aligning.qtz1 != 0.0 && t.aligning.mbelt != 0.0)
@@ -163,13 +172,12 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
   const handling::TireInertia& said = f.formula.inertia;
   const auto fill = [&](double& value, const char* key, double in_tir, const char* name) {
     if (value == 0.0) value = in_tir;
-    if (!(value > 0.0))
-      throw input_error(path, is_tir(path) ? fmt::format("[INERTIA] {}", name) : key,
-                        is_tir(path)
-                            ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
-                              "model handling that names this file and says them"
-                            : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}", name,
-                                          f.tir.string()));
+    if (value > 0.0 || !f.lacking.empty()) return;
+    f.lacking_key = is_tir(path) ? fmt::format("[INERTIA] {}", name) : key;
+    f.lacking = is_tir(path) ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
+                               "model handling that names this file and says them"
+                             : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}", name,
+                                           f.tir.string());
   };
   fill(f.mass, "mass", said.mass, "MASS");
   fill(f.spin_inertia, "spin_inertia", said.iyy, "IYY");
@@ -180,6 +188,7 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
 
 std::unique_ptr<TireSpec> read_handling(const json& file, const TireOptions& options) {
   HandlingFile f = read_handling_file(file, options.file.string());
+  if (options.rigid) require_inertia(f);
   if (!options.pressure.empty() && f.formula.conditions.nompres > 0.0) {
     if (options.pressure.varies())
       throw input_error(options.file.string(), "tire.pressure",

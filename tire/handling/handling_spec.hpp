@@ -23,21 +23,23 @@ struct HandlingFile {
   std::string path;
   std::filesystem::path tir;  // resolved: beside the tire file, or as it stands
   handling::MagicFormula formula;
-  double mass = 0.0;               // kg
-  double spin_inertia = 0.0;       // about the axle, kg m²
-  double diametral_inertia = 0.0;  // kg m²
+  double mass = 0.0;                 // kg
+  double spin_inertia = 0.0;         // about the axle, kg m²
+  double diametral_inertia = 0.0;    // kg m²
+  std::string lacking_key, lacking;  // the first of these that neither file says, and what is expected; empty: none
 };
 void visit_fields(FieldsOf<HandlingFile> auto& s, auto&& visit) {
   constexpr Allowed kPositive = allowed::above(0).optional();
   visit(s.tir, needed("tir", "", "Tire property file, relative to this file."));
-  visit(s.mass, key("mass", "kg", kPositive, "Mass of the tire; without it MASS of [INERTIA]."));
+  visit(s.mass, key("mass", "kg", kPositive.usual(0.01, 2000), "Mass of the tire; without it MASS of [INERTIA]."));
   visit(s.spin_inertia, key("spin_inertia", "kg m²", kPositive,
                             "Moment of inertia of the tire about its axle; without it IYY of [INERTIA]."));
   visit(s.diametral_inertia, key("diametral_inertia", "kg m²", kPositive,
                                  "Moment of inertia of the tire about a diameter; without it IXX of [INERTIA]."));
 }
 
-/// Mass and inertia are those of [INERTIA] where the tire file does not say them. @throws Error(bad_input)
+/// Mass and inertia are those of [INERTIA] where the tire file does not say them; to be pressed, a tire needs none.
+/// @throws Error(bad_input)
 HandlingFile read_handling_file(const nlohmann::json& document, const std::string& path);
 
 std::unique_ptr<TireSpec> read_handling(const nlohmann::json& file, const TireOptions& options);

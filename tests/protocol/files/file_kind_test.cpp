@@ -59,5 +59,28 @@ TEST(FileKind, only_what_is_certainly_of_another_kind_is_refused) {
   EXPECT_EQ(refused(json::parse(R"({"format_version": 1})"), FileKind::tire), "");
 }
 
+TEST(FileKind, files_of_project_chrono_are_named_for_what_they_are) {
+  const auto refused = [](const char* text, FileKind expected) -> std::string {
+    const json document = json::parse(text);
+    return refusal(ExitCode::bad_input, [&] { refuse_other_kinds(document, expected, "x.json"); });
+  };
+  const char* const vehicle = R"({"Name": "HMMWV", "Type": "Vehicle", "Template": "WheeledVehicle"})";
+  EXPECT_EQ(refused(vehicle, FileKind::scenario),
+            "x.json: is a Vehicle (WheeledVehicle) of Project Chrono, expected a scenario: its vehicles, suspensions, "
+            "engines and terrains are not read");
+  EXPECT_EQ(refused(vehicle, FileKind::vehicle),
+            "x.json: is a Vehicle (WheeledVehicle) of Project Chrono, expected a vehicle: vehicle/data/hmmwv.json is "
+            "Chrono's HMMWV as a vehicle file");
+  EXPECT_EQ(refused(R"({"Type": "Suspension", "Template": "DoubleWishbone"})", FileKind::tire),
+            "x.json: is a Suspension (DoubleWishbone) of Project Chrono, expected a tire: of its tires the template "
+            "ANCFTire is read, and the tire property file (.tir) that a Pac02Tire names");
+  EXPECT_TRUE(holds(refused(R"({"Granular material": {"Density": 2000}})", FileKind::scenario),
+                    "is a file with the key 'Granular material' of Project Chrono"));
+  const char* const ancf = R"({"Name": "x", "Type": "Tire", "Template": "ANCFTire"})";
+  EXPECT_EQ(refused(ancf, FileKind::tire), "");
+  EXPECT_EQ(refused(ancf, FileKind::vehicle),
+            "x.json: is a tire, expected a vehicle (the key tire.file of a scenario takes tires)");
+}
+
 }  // namespace
 }  // namespace furrow

@@ -38,6 +38,24 @@ TEST(JsonText, syntax_errors_name_line_and_column) {
   EXPECT_NE(complaint("{} {}"), "");
 }
 
+TEST(JsonText, slips_of_other_notations_are_named) {
+  EXPECT_TRUE(complaint("{\"radius\": 0,02, \"density\": 1}").starts_with("f:1:")) << complaint("{\"radius\": 0,02}");
+  for (const char* text : {"{\"radius\": 0,02, \"density\": 1}", "{\"radius\": 12,5}", "{\"radius\": -1,25e3}"})
+    EXPECT_TRUE(holds(complaint(text), "a number has a decimal point, no comma"));
+  EXPECT_TRUE(holds(complaint("{\"a\": 1,}"), "a comma stands between entries, none after the last"));
+  EXPECT_TRUE(holds(complaint("[1, 2,\n]"), "a comma stands between entries, none after the last"));
+  EXPECT_TRUE(holds(complaint("{\n 'a': 1}"), "f:2:2: is not valid JSON: a text is in double quotes"));
+  EXPECT_FALSE(holds(complaint("{\"a\": }"), "comma"));
+}
+
+TEST(JsonText, meshes_are_named_whatever_is_in_them) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "wheel.OBJ";
+  std::ofstream(file, std::ios::binary) << "# Blender\nv 0 0 \xff\n";
+  EXPECT_TRUE(holds(refusal(ExitCode::bad_input, [&] { load_json(file, "a tire file in JSON"); }),
+                    "wheel.OBJ: is a mesh, expected a tire file in JSON: meshes are not read"));
+}
+
 TEST(JsonText, duplicate_keys_are_named_by_their_path) {
   EXPECT_EQ(complaint(R"({"a": {"b": 1, "c": 2, "b": 3}})"), "f: key 'a.b': is given twice, expected once");
   EXPECT_EQ(complaint(R"({"a": {"b": 1}, "b": {"b": 1}})"), "");

@@ -312,10 +312,30 @@ TEST(HandlingFile, takes_mass_from_either_file) {
   EXPECT_EQ(read_handling_file(file, "tire.json").spin_inertia, 0.9);
   t.inertia = {};
   file = file_of(written(t));
-  EXPECT_TRUE(holds(complaint_of(read_handling, file, {}), "key 'mass': is missing"));
+  const auto in_json = read_handling(file, {});
+  EXPECT_TRUE(holds(in_json->describe().static_only, "key 'mass' in "));
+  expect_refused(ExitCode::bad_input, {"key 'mass': is missing"}, [&] { in_json->make(); });
   TireOptions options;
   options.file = written(t);
+  const auto in_tir = read_tire(options);
+  EXPECT_TRUE(holds(in_tir->describe().static_only, "key '[INERTIA] MASS' in "));
+  expect_refused(ExitCode::bad_input, {"key '[INERTIA] MASS': is missing"}, [&] { in_tir->make(); });
+  options.rigid = true;
   expect_refused(ExitCode::bad_input, {"key '[INERTIA] MASS': is missing"}, [&] { read_tire(options); });
+}
+
+TEST(HandlingFile, is_pressed_without_mass_and_inertia) {
+  MagicFormula t = example_tire();
+  const auto force = [&] {
+    TireOptions options;
+    options.file = written(t);
+    PressOptions press;
+    press.deflection = 0.01;
+    return read_tire(options)->static_test()->press(press, {}).loading.back().force;
+  };
+  const double with = force();
+  t.inertia = {};
+  EXPECT_EQ(force(), with);
 }
 
 TEST(HandlingFile, a_tir_file_is_a_tire) {

@@ -164,7 +164,7 @@ TEST_F(DriverFile, in_csv_that_is_wrong_is_refused_by_line) {
       {"throttle,brake\n0,1\n", "key 'line 1': has no column 'time_s', expected it and any of 'throttle'"},
       {"time_s\n0\n", "key 'line 1': has no column besides 'time_s', expected any of"},
       {"time_s,trottle\n0,1\n", "key 'line 1': column 'trottle' is unknown, expected 'throttle'?"},
-      {"time_s;throttle\n0;1\n", "key 'line 1': column 'time_s;throttle' is unknown"},
+      {"time_s;throttle\n0;1\n", "key 'line 1': has ';' between its values"},
       {"time_s,brake,brake\n0,1,1\n", "key 'line 1': column 'brake' is there twice, expected once"},
       {"# start\n\ntime_s,throttle\n0\n", "key 'line 4': has 1 values, expected 2"},
       {"time_s,throttle\n0,1\n1,full\n", "key 'line 3': throttle is 'full', expected a number"},

@@ -26,8 +26,8 @@ std::string unknown_text(const std::vector<std::string>& similar, const std::vec
 /// @param low negative: values of both signs are usual, and none is too small
 std::string unusual_text(double value, double low, double high, const std::string& unit);
 
-/// Key and text of every unusual value of a struct and of the structs in it. A negative value whose key takes null means
-/// null.
+/// Key and text of every unusual value of a struct and of the structs in it. Where a key takes null, a negative value
+/// means that.
 template <HasFields T>
 std::vector<std::pair<std::string, std::string>> unusual_values(const T& values, const std::string& path = "") {
   std::vector<std::pair<std::string, std::string>> found;

@@ -35,7 +35,10 @@ bool read_blocks(std::ifstream& in, const Use& use) {
 }
 
 Error unreadable(const std::filesystem::path& file) {
-  return io_error(file.string(), "does not exist or cannot be read");
+  const int error = errno;
+  return io_error(file.string(), error == 0        ? "does not exist or cannot be read"
+                                 : error == ENOENT ? "does not exist"
+                                                   : fmt::format("cannot be read ({})", std::strerror(error)));
 }
 
 /// A regular file of a size that a person may have written.
@@ -44,10 +47,11 @@ void check_text_file(const std::filesystem::path& file, const std::string& expec
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))
-    throw input_error(
-        name, "",
-        (error && error.value() != ENOENT ? "cannot be read (" + error.message() + ")" : "does not exist") +
-            ", expected " + expected);
+    throw input_error(name, "",
+                      (error && error.value() != ENOENT ? "cannot be read (" + error.message() + ")"
+                       : file == "-"                    ? "does not exist, and standard input is not read"
+                                                        : "does not exist") +
+                          ", expected " + expected);
   if (std::filesystem::is_directory(status)) throw input_error(name, "", "is a directory, expected " + expected);
   if (!std::filesystem::is_regular_file(status))
     throw input_error(name, "", "is not a regular file, expected " + expected);
@@ -59,6 +63,7 @@ void check_text_file(const std::filesystem::path& file, const std::string& expec
 }  // namespace
 
 std::string read_whole_file(const std::filesystem::path& file, std::uintmax_t most) {
+  errno = 0;
   std::string bytes;
   std::ifstream in(file, std::ios::binary);
   const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
@@ -71,6 +76,7 @@ std::string read_whole_file(const std::filesystem::path& file, std::uintmax_t mo
 }
 
 void add_file(Hash& hash, const std::filesystem::path& file) {
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
   const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
                       hash.add(block, count);

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
+#include <utility>
 
 #include "protocol/core/error.hpp"
+#include "protocol/files/cache_folder.hpp"
 #include "tests/refusal.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -42,10 +45,23 @@ TEST(TextFile, the_hash_of_a_file_is_that_of_its_bytes) {
 
 TEST(TextFile, what_cannot_be_read_is_an_error_naming_the_file) {
   const TemporaryFolder folder;
-  for (const auto& file : {folder.path() / "none", folder.path()}) {
-    expect_refused(ExitCode::io, {file.string()}, [&] { read_whole_file(file); });
-    EXPECT_THROW(file_hash(file), Error);
+  for (const auto& [file, why] :
+       {std::pair{folder.path() / "none", "does not exist"}, {folder.path(), "cannot be read (Is a directory)"}}) {
+    expect_refused(ExitCode::io, {file.string(), why}, [&] { read_whole_file(file); });
+    expect_refused(ExitCode::io, {file.string(), why}, [&] { file_hash(file); });
   }
+  expect_refused(ExitCode::bad_input, {"-: does not exist, and standard input is not read, expected a text"},
+                 [] { read_text_file("-", "a text"); });
+}
+
+TEST(CacheFolder, of_a_relative_path_is_passed_over) {
+  const char* const before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  setenv("XDG_CACHE_HOME", "/var/cache/me", 1);
+  EXPECT_EQ(cache_folder("beds"), "/var/cache/me/furrow/beds");
+  setenv("XDG_CACHE_HOME", "rel/dir", 1);
+  EXPECT_NE(cache_folder("beds"), "rel/dir/furrow/beds");
+  before ? setenv("XDG_CACHE_HOME", kept.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(TextFile, a_user_s_text_is_a_regular_file_of_a_readable_size) {

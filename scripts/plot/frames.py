@@ -81,10 +81,16 @@ class Frames(Sequence[F], Generic[F]):
         return np.array([frame.time for frame in self._frames])
 
     def at(self, time: float) -> F:
-        """The frame nearest to a time in s. Raises Missing if there are none."""
+        """The frame nearest to a time in s. Raises Missing if there are none, ValueError for a time without frames:
+        farther before the first or after the last than frames are apart."""
         if not self._frames:
             raise Missing("there are no frames: output.frame_interval was 0, or nothing was written yet")
-        return self._frames[int(np.argmin(np.abs(self.times - time)))]
+        times = self.times
+        apart = float(np.max(np.diff(times))) if len(times) > 1 else np.inf
+        if not times[0] - apart <= time <= times[-1] + apart:
+            raise ValueError(f"the time is {time:g} s, expected {times[0]:g} to {times[-1]:g} s, "
+                             "where there are frames")
+        return self._frames[int(np.argmin(np.abs(times - time)))]
 
     def __repr__(self) -> str:
         return f"<{len(self)} frames>"

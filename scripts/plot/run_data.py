@@ -164,11 +164,14 @@ def read_heights(path):
     """(before, after), HeightField, of results.h5."""
     if not path.exists():
         raise Missing("there is no results.h5 yet")
-    with h5py.File(path, "r") as file:
-        if "terrain/height_after" not in file:
-            raise Missing("this ground has no surface that deforms")
-        return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
-                                 read_dataset(file, f"terrain/height_{when}_grid")) for when in ("before", "after"))
+    try:
+        with h5py.File(path, "r") as file:
+            if "terrain/height_after" not in file:
+                raise Missing("this ground has no surface that deforms")
+            return tuple(HeightField(read_dataset(file, f"terrain/height_{when}"),
+                                     read_dataset(file, f"terrain/height_{when}_grid")) for when in ("before", "after"))
+    except OSError as error:
+        raise Damaged(f"{path.name} cannot be read: {error}") from error
 
 
 class Run:

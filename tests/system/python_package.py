@@ -48,6 +48,7 @@ class Package(SystemTest):
         self.assertEqual(run.number("drawbar_pull_N.mean"), run.summary["drawbar_pull_N"]["mean"])
         self.assertEqual(run.number("wheels.0.slip"), 0.4)
         self.assertRaisesRegex(KeyError, "no key 'pull.mean'", run.number, "pull.mean")
+        self.assertRaisesRegex(TypeError, "the key is 3, expected a text", run.number, 3)
         self.assertEqual(run.subjects, ["wheel0", "accounts"])
         series = run.series()
         self.assertEqual((series.index.name, len(series)), ("time_s", 100))
@@ -56,6 +57,13 @@ class Package(SystemTest):
         self.assertIn("sliding_loss_J", run.accounts.columns)
         self.assertRaisesRegex(furrow.Missing, "no table of 'vehicle', expected one of: wheel0, accounts",
                                lambda: run.vehicle)
+
+    def test_heights_of_a_file_that_was_cut_short_are_damaged(self):
+        copy = pathlib.Path(self.holder.name) / "cut"
+        shutil.copytree(self.path, copy)
+        self.addCleanup(shutil.rmtree, copy)
+        (copy / "results.h5").write_bytes((self.path / "results.h5").read_bytes()[:2000])
+        self.assertRaisesRegex(furrow.Damaged, "results.h5 cannot be read", lambda: furrow.open(copy).heights)
 
     def test_packages_that_are_missing_are_named_at_once(self):
         done = self.call([sys.executable, "-c", "import importlib.util as u\nfind = u.find_spec\n"
@@ -69,6 +77,9 @@ class Package(SystemTest):
         tire, grains = self.run_.tire(), self.run_.grains
         self.assertEqual(len(tire), 3)
         self.assertEqual(tire.at(0.055).index, 1)
+        for time in (99, -5, float("nan")):
+            self.assertRaisesRegex(ValueError, "expected 0 to 0.1 s", tire.at, time)
+            self.assertRaisesRegex(ValueError, "where there are frames", self.run_.footprint, time=time)
         self.assertEqual(tire[-1].time, grains[-1].time)
         self.assertEqual(tire[0].position.shape, tire[0].force.shape)
         self.assertLess(tire[0].triangle.max(), len(tire[0].position))

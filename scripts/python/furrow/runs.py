@@ -58,6 +58,8 @@ class Run:
 
         NaN where the summary says null. Raises KeyError when there is no such key.
         """
+        if not isinstance(key, str):
+            raise TypeError(f"the key is {key!r}, expected a text: 'drawbar_pull_N.mean'")
         value: Any = self.summary
         for part in key.split("."):
             if isinstance(value, list) and part.isdigit() and int(part) < len(value):

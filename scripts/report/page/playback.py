@@ -31,20 +31,25 @@ def meshes(packing, arrays):
     return found
 
 
-def left_out(packing):
-    """Sentences on what the playback does not show."""
+def bed_of(run):
+    """What the points of a bed are."""
+    return "nodes of the soil" if (run.scenario.get("terrain") or {}).get("engine") == "scm" else "grains"
+
+
+def left_out(packing, what):
+    """Sentences on what the playback does not show. @param what the bed is made of: grains, or nodes of a grid"""
     words = []
     all_, kept, bed = len(packing.frames.indices), len(packing.indices), packing.bed
     if kept < all_:
         words.append(f"{kept} of the run's {all_} frames are shown, evenly spaced, to keep the page small.")
     if bed and len(bed.shown) < bed.total:
         hidden = bed.total - bed.visible
-        words.append(f"{len(bed.shown):,} of {bed.total:,} grains are drawn: "
+        words.append(f"{len(bed.shown):,} of {bed.total:,} {what} are drawn: "
                      + (f"{hidden:,} are covered by others all the time" if hidden else "") + (" and " if hidden
                                                                                                and bed.visible
                                                                                                > len(bed.shown) else "")
                      + (f"{bed.visible - len(bed.shown):,} farthest from the wheels were left out to keep the page "
-                        "small" if bed.visible > len(bed.shown) else "") + ". The surface is that of all grains.")
+                        "small" if bed.visible > len(bed.shown) else "") + f". The surface is that of all {what}.")
     return words
 
 
@@ -61,6 +66,6 @@ def playback(run, arrays, budget):
         block["bed"] = {"grains": len(bed.shown), "radius": arrays.add(bed.radius), "speeds": packing.speeds,
                         "low": [float(v) for v in bed.low], "scale": [float(v) for v in bed.scale],
                         "cell": float(bed.cell), "nx": bed.nx, "ny": bed.ny, "largest": bed.largest}
-    words = [blocks.text(" ".join(sentences), "note") for sentences in [left_out(packing)] if sentences]
+    words = [blocks.text(" ".join(sentences), "note") for sentences in [left_out(packing, bed_of(run))] if sentences]
     blobs = {name: stream.base64() for name, stream in packing.stream.items() if packing.bed or name == "tires"}
     return {"id": "playback", "title": "Playback", "blocks": [block, *words]}, blobs

@@ -56,6 +56,12 @@ struct TerrainBounds {
   double length = 0.0, width = 0.0;  // m
 };
 
+/// The part of the ground that is not level, from x `from` to `to` and from y `right` to `left`, m.
+struct UnevenPart {
+  double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
+  double right = from, left = to;
+};
+
 /// What the keys alone say.
 struct TerrainDescription {
   std::string engine;                        // terrain.engine
@@ -70,6 +76,7 @@ struct TerrainDescription {
   bool answers_at_once = false;              // so cheap that rig and tires can wait for its forces in each step
   bool takes_stated_contacts = false;        // of tires that know the ground by themselves: Terrain::state_contacts
   std::string uneven_key;                    // of the section, whose value makes it uneven; empty: it is level ground
+  UnevenPart uneven;                         // where uneven_key is given
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
   std::optional<TerrainBounds> bounds;       // none: unbounded
   std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured

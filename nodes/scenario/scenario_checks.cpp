@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -237,6 +238,7 @@ class Checks {
     rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
                      terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, margins);
     for (const auto& [key, what] : rig_.unlikely_values()) warn(key, "{}", what);
+    road();
     if (!terrain_.bounds) return;
     const double length = terrain_.bounds->length;
     for (const rigs::WheelDescription& wheel : describe().wheels) {
@@ -255,6 +257,24 @@ class Checks {
                     number_text(length), wheel.from, wheel.to, radius, std::ceil(100.0 * needed) / 100.0);
       }
     }
+  }
+
+  /// A road that no wheel meets; how far a steered vehicle drives is not known.
+  void road() {
+    if (terrain_.uneven_key.empty()) return;
+    const terrain::UnevenPart& road = terrain_.uneven;
+    const std::vector<rigs::WheelDescription> wheels = describe().wheels;
+    double from = std::numeric_limits<double>::infinity(), to = -from;
+    for (const rigs::WheelDescription& wheel : wheels) {
+      from = std::min({from, wheel.from - wheel.along, wheel.to - wheel.along});
+      to = std::max({to, wheel.from + wheel.along, wheel.to + wheel.along});
+    }
+    const auto moves = [](const rigs::WheelDescription& wheel) { return wheel.from != wheel.to; };
+    if ((to >= road.from && from <= road.to) || !std::ranges::any_of(wheels, moves)) return;
+    warn("terrain." + terrain_.uneven_key,
+         "is uneven from x = {} to {} m, and no wheel comes there: they are on level ground from x = {} to {} m; "
+         "{} places them",
+         number_text(road.from), number_text(road.to), number_text(from), number_text(to), wheels.front().start_key);
   }
 
   /// What is wrong with the start of a wheel that stands in a wall of the bin.

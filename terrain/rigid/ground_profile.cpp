@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -49,6 +50,17 @@ void check_profile(const ProfilePoints& points, const std::string& file, const s
                                       b[0]));
     }
   }
+}
+
+std::array<double, 2> uneven_range(const ProfilePoints& points) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  std::array<double, 2> range{kNaN, kNaN};
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    if (points[k][1] == points[k - 1][1]) continue;
+    if (std::isnan(range[0])) range[0] = points[k - 1][0];
+    range[1] = points[k][0];
+  }
+  return range;
 }
 
 GroundProfile::GroundProfile(const ProfilePoints& points) : points_(points) {

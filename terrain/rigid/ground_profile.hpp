@@ -26,6 +26,9 @@ ProfileFault fault_of(const ProfilePoints& points, std::size_t last);
 /// @throws Error(bad_input) naming file and key where x decreases, two entries are alike, or more than two have one x
 void check_profile(const ProfilePoints& points, const std::string& file, const std::string& key);
 
+/// The least x and the most between which the heights change, m; none change: NaN.
+std::array<double, 2> uneven_range(const ProfilePoints& points);
+
 class GroundProfile {
  public:
   /// Straight between the points, level before the first and after the last; none: the plane z = 0.

@@ -34,6 +34,10 @@ class GroundSpec final : public TerrainSpec {
       d.uneven_key = "profile_file";
     else if (!options_.profile.empty())
       d.uneven_key = "profile";
+    if (!options_.road_class.empty())
+      d.uneven.from = options_.road_from, d.uneven.to = options_.road_from + options_.road_length;
+    else if (const auto [from, to] = uneven_range(options_.profile); from < to || from == to)
+      d.uneven.from = from, d.uneven.to = to;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {

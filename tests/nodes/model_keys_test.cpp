@@ -60,6 +60,20 @@ TEST(TerrainKeys, a_key_of_another_engine_is_an_error_in_a_scenario_written_for_
 }
 
 /// In LIGGGHTS no grain sleeps, and every contact is computed in double precision.
+TEST(TerrainKeys, ground_whose_uneven_part_no_wheel_meets_is_warned_of) {
+  const auto far = with_terrain(R"({"engine": "rigid", "profile": [[700, 0], [730, 0], [740, 0.2]]})").load().warnings;
+  ASSERT_EQ(far.size(), 1U);
+  EXPECT_TRUE(holds(far[0], "key 'terrain.profile': is uneven from x = 730 to 740 m, and no wheel comes there"))
+      << far[0];
+  EXPECT_TRUE(holds(far[0], "rig.start places them")) << far[0];
+  const auto road = with_terrain(R"({"engine": "rigid", "road_class": "C", "road_from": 1000})").load().warnings;
+  ASSERT_EQ(road.size(), 1U);
+  EXPECT_TRUE(holds(road[0], "key 'terrain.road_class': is uneven from x = 1000 to 1100 m")) << road[0];
+  for (const char* const met : {R"({"engine": "rigid", "profile": [[0, 0], [1, 0.1]]})",
+                                R"({"engine": "rigid", "profile": [[0, 0.1], [1000, 0.1]]})"})
+    EXPECT_TRUE(with_terrain(met).load().warnings.empty()) << met;
+}
+
 TEST(TerrainKeys, what_an_engine_cannot_do_is_refused_even_where_it_is_the_default) {
   for (const char* key : {R"("activity": true)", R"("precision": "mixed")"}) {
     const std::string text = fmt::format(R"({{"engine": "liggghts", {}}})", key);

@@ -169,6 +169,38 @@ TEST_F(RoadFile, a_row_of_more_than_eight_channels_goes_on_in_the_next_record) {
   EXPECT_EQ(road.heights[18], 0.1000018);
 }
 
+TEST_F(RoadFile, options_and_modifiers_that_are_defaults_or_scale_heights_are_honoured) {
+  const std::string rows =
+      "$$\n *missing* 0.0100000 0.0000000\n 0.0000000 0.0200000 0.0000000\n"
+      " 0.0000000 0.0300000 *missing*\n";
+  const std::string opts =
+      "$ROAD_CRG_OPTS\n* keep last\nBORDER_MODE_U = 2 ! default\nBORDER_OFFSET_V = 0.0\n"
+      "WARN_MSGS = -1\nWARN_MSGS = -1\n$\n";
+  const std::string mods =
+      "$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\nREFLINE_OFFSET_Z = 1.0\nREFLINE_OFFSET_X = 7\n"
+      "grid_nan_mode = 2.000000000+e00\nGRID_NAN_OFFSET = 0.25\n$\n";
+  const std::filesystem::path file = put("ROAD.CRG", kRoad + opts + mods + "$KD_DEFINITION\n#:LRFI\n" + kCuts + rows);
+  const ProfilePoints middle = read_road(file, 0.0), right = read_road(file, -0.5), left = read_road(file, 0.5);
+  EXPECT_NEAR(middle[0][1], 1.02, 1e-12);
+  EXPECT_NEAR(middle[2][1], 1.06, 1e-12);
+  EXPECT_NEAR(right[0][1], 1.02 + 0.25, 1e-12);  // the height beside it, and the offset
+  EXPECT_NEAR(left[2][1], 1.06 + 0.25, 1e-12);
+  EXPECT_NEAR(left[1][1], 1.0, 1e-12);
+}
+
+TEST_F(RoadFile, a_binary_road_that_states_no_end_ends_before_the_padding_of_its_last_record) {
+  const std::string open =
+      "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\n$\n$KD_DEFINITION\n#:KRBI\nD:long section at v = "
+      "-1,m\nD:long section at v = 1,m\n$\n$$\n";
+  std::vector<float> singles(40, std::nanf(""));
+  for (std::size_t k = 0; k < 24; ++k) singles[k] = 0.25f * static_cast<float>(k);
+  EXPECT_EQ(read_open_crg(put("open.crg", open + big_endian(singles))).count(), 12U);
+  EXPECT_EQ(read_open_crg(put("open.crg", open + big_endian(singles).substr(0, 96))).count(), 12U);  // not filled up
+  const std::filesystem::path cut = put("cut.crg", open + big_endian(singles).substr(1));
+  expect_told("has 159 bytes of road data, expected whole records of 80 bytes: it was damaged in transfer",
+              [&] { read_open_crg(cut); });
+}
+
 TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
   const std::string rows =
       "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n";
@@ -202,24 +234,50 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
       {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = wide\n$\n", "line 2': is 'REFERENCE_LINE_INCREMENT = wide'"},
       {"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\nREFERENCE_LINE_INCREMENT = 1\n$\n",
        "line 3': gives a parameter twice"},
-      {kRoad + "$ROAD_CRG_MODS\nSCALE_Z = 2\n$\n" + text + rows, "line 12': modifies the road"},
+      {kRoad + "$ROAD_CRG_MODS\nSCALE_Z_GIRD = 2\n$\n" + text + rows,
+       "line 12': SCALE_Z_GIRD is unknown, expected 'SCALE_Z_GRID'?"},
+      {with("START_U = 2.0", "STRAT_U = 2.0") + text + rows,
+       "line 5': REFERENCE_LINE_STRAT_U is unknown, expected 'REFERENCE_LINE_START_U'?"},
+      {with("START_U = 2.0", "START_U = 2.0\nSCALE_Z_GRID = 2") + text + rows,
+       "line 6': SCALE_Z_GRID is given in $ROAD_CRG, expected it in $ROAD_CRG_MODS"},
+      {kRoad + "$ROAD_CRG_OPTS\nBORDER_MODE_U = 3\n$\n" + text + rows,
+       "line 12': BORDER_MODE_U is 3, expected 2: the road goes on with its last height"},
+      {kRoad + "$ROAD_CRG_MODS\nREFPOINT_Z = 0\n$\n" + text + rows, "line 12': REFPOINT_Z is given, expected none"},
+      {kRoad + "$ROAD_CRG_MODS\nGRID_NAN_MODE = 5\n$\n" + text + rows,
+       "line 12': GRID_NAN_MODE is 5, expected 0, 1 or 2"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\n$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$\n" + rows,
+       "line 13': begins $ROAD_CRG_MODS within $KD_DEFINITION"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nU:reference line u,mm\n" + kCuts + rows,
+       "line 13': has the unit 'MM', expected M"},
+      {kRoad + "$KD_DEFINITION\n#:LRFI\nD:reference line slope,%\n" + kCuts + rows,
+       "line 13': has the unit '%', expected M/M"},
+      {with("RIGHT = -0.5", "RIGHT = -0.5\nLONG_SECTION_V_LEFT = 1") + text + rows,
+       "LONG_SECTION_V_LEFT': is 1 m, but the last cut on that side is at v = 0.5 m"},
+      {with("END_U = 4.0", "END_U = 6.0") + text + rows,
+       "REFERENCE_LINE_END_U': is 6 m, where the road has 5 cross-sections, but the file holds 3"},
       {kRoad + "$ROAD_CRG_FILE\nother.crg\n$\n" + text + rows, "line 11': refers to another file"},
       {kRoad + text + "$$\n 0.0000000 0.0000000\n", "line 18': is '' for channel 3"},
       {kRoad + text + "$$\n 0.0000000 0.00x0000 0.0000000\n", "line 18': is '0.00x0000' for channel 2"},
-      {kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n", "has 1 cross-sections"},
+      {with("REFERENCE_LINE_END_U = 4.0 ! m\n", "") + text + "$$\n 0.0000000 0.0000000 0.0000000\n",
+       "has 1 cross-sections"},
       {kRoad + "$KD_DEFINITION\n#:KRBI\n" + kCuts + "$$\n" + std::string(32, '\0'),
-       "holds 8 numbers, expected 9: the file is cut short"}};
+       "holds 8 numbers, expected 9: the file is cut short"},
+      {kRoad + "$KD_DEFINITION\n#:KRBI\n" + kCuts + "$$\n" + std::string(79, '\0'),
+       "has 79 bytes of road data, expected 1 records of 80 bytes: it was damaged in transfer"},
+      {kRoad + "$KD_DEFINITION\n#:KRBI\n" + kCuts + "$$\n" + std::string(160, '\0'),
+       "is 4 m, which needs 1 records of road data, but the file holds 2"}};
   for (const auto& [bytes, words] : wrong) {
     const std::filesystem::path file = put("wrong.crg", bytes);
     SCOPED_TRACE(bytes);
     expect_told(words, [&] { read_open_crg(file); });
   }
+  const std::string short_road = with("END_U = 4.0", "END_U = 3.0");
   const std::filesystem::path file =
-      put("road.crg", kRoad + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
+      put("road.crg", short_road + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
   expect_told("expected terrain.profile_v from -0.5 to 0.5 m", [&] { read_road(file, 0.75); });
   expect_told("has no height at u = 2 m, v = -0.2 m", [&] { read_road(file, -0.2); });
   const std::filesystem::path high =
-      put("high.crg", kRoad + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
+      put("high.crg", short_road + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
   expect_told("has the height 9e+08 m at u = 3 m, v = 0 m", [&] { read_road(high, 0.0); });
 }
 

@@ -17,15 +17,16 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
+#include "terrain/rigid/roads/crg_settings.hpp"
 
 namespace furrow::terrain {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = 512u << 20;
-constexpr std::size_t kHeaderColumns = 72;                                     // what stands beyond is left out
-constexpr std::size_t kTextRecord = 80, kSingleField = 10, kDoubleField = 20;  // characters
-constexpr double kSameCut = 1e-6;                                              // m
-constexpr double kLeastIncrement = 1e-6, kFarthest = 1e6;                      // m; the latter as of terrain.profile
+constexpr std::size_t kHeaderColumns = 72;                                 // what stands beyond is left out
+constexpr std::size_t kRecord = 80, kSingleField = 10, kDoubleField = 20;  // characters
+constexpr double kSameCut = 1e-6, kSamePlace = 1e-4;                       // m
+constexpr double kLeastIncrement = 1e-6, kFarthest = 1e6;                  // m; the latter as of terrain.profile
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string upper(std::string_view text) {
@@ -80,24 +81,34 @@ class Reader {
       const std::string_view line = whole->substr(0, kHeaderColumns);
       if (line.starts_with("$$")) return;
       if (line.starts_with('$')) {
-        section = section.empty() ? upper(trimmed(line.substr(1, line.find_first_of(" \t!") - 1))) : "";
+        const std::string name = upper(trimmed(line.substr(1, line.find_first_of(" \t!") - 1)));
+        if (!section.empty() && (has_crg_settings(name) || name == "KD_DEFINITION"))
+          throw wrong_line(fmt::format("begins ${} within ${}, expected a line $ before it", name, section));
+        section = section.empty() ? name : "";
         if (section == "ROAD_CRG_FILE") throw wrong_line("refers to another file, expected the road in one file");
         continue;
       }
       const std::string_view content = trimmed(line.substr(0, line.find('!')));
       if (content.empty() || content.starts_with('*')) continue;
-      if (section == "ROAD_CRG") take_parameter(content);
+      if (has_crg_settings(section)) take_setting(section, content);
       if (section == "KD_DEFINITION") take_definition(content);
-      if (section == "ROAD_CRG_MODS") throw wrong_line("modifies the road, expected no $ROAD_CRG_MODS with entries");
     }
     throw wrong("", "has no road data, expected an OpenCRG file whose header ends with a line $$");
   }
 
-  void take_parameter(std::string_view content) {
+  /// Names are unique over the sections.
+  void take_setting(const std::string& section, std::string_view content) {
     const std::size_t equals = content.find('=');
-    const auto value = equals == std::string_view::npos ? std::nullopt : number_of(content.substr(equals + 1));
+    std::string number(equals == std::string_view::npos ? "" : content.substr(equals + 1));
+    if (const std::size_t at = number.find("+e"); at != std::string::npos)
+      number.replace(at, 2, "e+");  // 2.0+e00 for 2.0e+00, as an example of ASAM has it
+    const auto value = number_of(number);
     if (!value) throw wrong_line("is '" + excerpt(std::string(content)) + "', expected PARAMETER = number");
-    if (!parameters_.emplace(upper(trimmed(content.substr(0, equals))), *value).second)
+    const std::string name = upper(trimmed(content.substr(0, equals)));
+    if (const std::string fault = crg_setting_fault(section, name, *value); !fault.empty())
+      throw wrong_line(excerpt(name) + " " + fault);
+    const bool repeats = section == "ROAD_CRG_OPTS" && parameters_.contains(name) && parameters_.at(name) == *value;
+    if (!repeats && !parameters_.emplace(name, *value).second)
       throw wrong_line("gives a parameter twice, expected it once");
   }
 
@@ -108,19 +119,31 @@ class Reader {
         throw wrong_line("is the data format '" + excerpt(format) + "', expected LRFI, LDFI, KRBI or KDBI");
       text_ = format.front() == 'L', double_ = format[1] == 'D';
     }
-    if (!content.starts_with("D:") && !content.starts_with("d:")) return;
-    const std::string channel = upper(trimmed(content.substr(2)));
+    const std::string kind = upper(content.substr(0, 2)), channel = upper(trimmed(content.substr(2)));
+    if (kind == "U:") expect_unit(channel, "M");
+    if (kind != "D:") return;
     constexpr std::string_view kCut = "LONG SECTION";
     if (channel.starts_with(kCut)) {
       channels_.push_back(Channel::cut);
       take_cut(std::string_view(channel).substr(kCut.size()));
     } else if (channel.starts_with("REFERENCE LINE SLOPE")) {
+      expect_unit(channel, "M/M");
       channels_.push_back(Channel::slope);
     } else if (channel.starts_with("REFERENCE LINE BANKING")) {
+      expect_unit(channel, "M/M");
       channels_.push_back(Channel::banking);
     } else {
       channels_.push_back(Channel::left_out);
     }
+  }
+
+  /// The second of the words between commas.
+  void expect_unit(const std::string& channel, const char* expected) const {
+    const std::size_t comma = std::min(channel.find(','), channel.size());
+    const std::string_view rest = std::string_view(channel).substr(std::min(comma + 1, channel.size()));
+    const std::string unit(trimmed(rest.substr(0, rest.find(','))));
+    if (!unit.empty() && unit != expected)
+      throw wrong_line(fmt::format("has the unit '{}', expected {}", excerpt(unit), expected));
   }
 
   /// "at v = -1.5,m" or "3,m".
@@ -150,14 +173,28 @@ class Reader {
   /// Numbers of cuts become their v.
   void place_cuts() {
     if (cuts_.empty()) throw wrong("", "has no cut along the road, expected lines D:long section …");
-    if (placed_) return;
-    const double right = needed("LONG_SECTION_V_RIGHT");
-    const double apart = cuts_.size() > 1 ? needed("LONG_SECTION_V_INCREMENT") : 0.0;
-    for (double& cut : cuts_) cut = right + (cut - 1.0) * apart;
+    if (!placed_) {
+      const double right = needed("LONG_SECTION_V_RIGHT");
+      const double apart = cuts_.size() > 1 ? needed("LONG_SECTION_V_INCREMENT") : 0.0;
+      for (double& cut : cuts_) cut = right + (cut - 1.0) * apart;
+    }
+    const auto [right, left] = std::minmax_element(cuts_.begin(), cuts_.end());
+    for (const auto& [name, v] : {std::pair("LONG_SECTION_V_RIGHT", *right), {"LONG_SECTION_V_LEFT", *left}})
+      if (std::abs(parameter(name, v) - v) > kSamePlace)
+        throw wrong(name, fmt::format("is {:g} m, but the last cut on that side is at v = {:g} m, expected as many "
+                                      "lines D:long section … as the road has cuts",
+                                      parameter(name, v), v));
+  }
+
+  /// Of cross-sections, after the header; none: the header is silent.
+  std::optional<double> stated_count() const {
+    if (!parameters_.contains("REFERENCE_LINE_END_U")) return std::nullopt;
+    return 1.0 + std::round((parameter("REFERENCE_LINE_END_U", 0.0) - parameter("REFERENCE_LINE_START_U", 0.0)) /
+                            needed("REFERENCE_LINE_INCREMENT"));
   }
 
   std::vector<double> text_rows() {
-    const std::size_t width = double_ ? kDoubleField : kSingleField, most = kTextRecord / width;
+    const std::size_t width = double_ ? kDoubleField : kSingleField, most = kRecord / width;
     std::vector<double> rows;
     while (const auto first = next_line()) {
       std::string_view line = *first;
@@ -185,23 +222,49 @@ class Reader {
   }
 
   std::vector<double> binary_rows() const {
-    const std::size_t size = double_ ? 8 : 4;
-    std::size_t count = rest_.size() / size;
-    const double steps = (parameter("REFERENCE_LINE_END_U", kNaN) - parameter("REFERENCE_LINE_START_U", 0.0)) /
-                         needed("REFERENCE_LINE_INCREMENT");
-    if (std::isfinite(steps)) {
-      const double wanted = (std::floor(steps + 0.5) + 1.0) * static_cast<double>(channels_.size());
-      if (!(wanted >= 1.0) || wanted > static_cast<double>(count))
-        throw wrong("", fmt::format("holds {} numbers, expected {:g}: the file is cut short, or its header is of "
-                                    "another road",
-                                    count, wanted));
-      count = static_cast<std::size_t>(wanted);
-    } else {
-      count -= count % channels_.size();
+    const std::size_t size = double_ ? 8 : 4, held = rest_.size() / size, row = channels_.size();
+    if (const auto stated = stated_count()) {
+      const double wanted = *stated * static_cast<double>(row);
+      if (!(wanted >= 1.0) || wanted > static_cast<double>(held))
+        throw wrong("", fmt::format("holds {} numbers, expected {:g}: the file is cut short or damaged in transfer, or "
+                                    "its header is of another road",
+                                    held, wanted));
+      const std::size_t bytes = static_cast<std::size_t>(wanted) * size;
+      require_whole(bytes);
+      return numbers(bytes / size);
     }
-    std::vector<double> rows(count);
-    for (std::size_t k = 0; k < count; ++k) rows[k] = binary(rest_.data() + k * size);
+    require_whole(std::nullopt);
+    std::vector<double> rows = numbers(held - held % row);
+    // The last record is filled up with what is no number.
+    const auto empty = [&](std::size_t end) {
+      return std::all_of(rows.begin() + static_cast<std::ptrdiff_t>(end - row),
+                         rows.begin() + static_cast<std::ptrdiff_t>(end), [](double z) { return std::isnan(z); });
+    };
+    while (rows.size() > row && (rows.size() - row) * size > rest_.size() - kRecord && empty(rows.size()))
+      rows.resize(rows.size() - row);
     return rows;
+  }
+
+  /// Data is written in records of 80 bytes, of which some writers do not fill the last: any other length has lost or
+  /// won bytes on its way, and the numbers behind them are others. @param bytes of the numbers, where they are stated
+  void require_whole(std::optional<std::size_t> bytes) const {
+    const std::size_t row = channels_.size() * (double_ ? 8 : 4), held = rest_.size();
+    const std::size_t padded = bytes ? (*bytes + kRecord - 1) / kRecord * kRecord : 0;
+    if (bytes ? held == *bytes || held == padded : held % kRecord == 0 || held % row == 0) return;
+    if (held % kRecord != 0)
+      throw wrong("", fmt::format("has {} bytes of road data, expected {} records of {} bytes: it was damaged in "
+                                  "transfer, as bytes were lost or added",
+                                  held, bytes ? fmt::format("{}", padded / kRecord) : "whole", kRecord));
+    throw wrong("REFERENCE_LINE_END_U",
+                fmt::format("is {:g} m, which needs {} records of road data, but the file holds {}: its header is of "
+                            "another road",
+                            parameter("REFERENCE_LINE_END_U", 0.0), padded / kRecord, held / kRecord));
+  }
+
+  std::vector<double> numbers(std::size_t count) const {
+    std::vector<double> values(count);
+    for (std::size_t k = 0; k < count; ++k) values[k] = binary(rest_.data() + k * (double_ ? 8 : 4));
+    return values;
   }
 
   double binary(const char* at) const {
@@ -234,29 +297,53 @@ class Reader {
     for (std::size_t k = 1; k < road.v.size(); ++k)
       if (road.v[k] - road.v[k - 1] < kSameCut)
         throw wrong("", fmt::format("has two cuts at v = {:g} m, expected one", road.v[k]));
+    const std::size_t count = rows.size() / channels_.size();
+    if (const auto stated = stated_count(); stated && *stated != static_cast<double>(count))
+      throw wrong("REFERENCE_LINE_END_U",
+                  fmt::format("is {:g} m, where the road has {:g} cross-sections, but the file holds {}: it is cut "
+                              "short or damaged in transfer, or its header is of another road",
+                              parameter("REFERENCE_LINE_END_U", 0.0), *stated, count));
 
     const double slope_before = constant("S", Channel::slope), banking_before = constant("B", Channel::banking);
     if (!has(Channel::slope) && parameters_.contains("REFERENCE_LINE_END_Z") && slope_before == 0.0 &&
         parameter("REFERENCE_LINE_END_Z", 0.0) != parameter("REFERENCE_LINE_START_Z", 0.0))
       throw wrong("REFERENCE_LINE_END_Z", "differs from the start without a slope, expected the slope of the road");
-    double line = parameter("REFERENCE_LINE_START_Z", 0.0) + parameter("REFERENCE_LINE_OFFSET_Z", 0.0);
+    double line = parameter("REFERENCE_LINE_START_Z", 0.0) + parameter("REFERENCE_LINE_OFFSET_Z", 0.0) +
+                  parameter("REFLINE_OFFSET_Z", 0.0);
+    const double steeper = parameter("SCALE_SLOPE", 1.0), banked = parameter("SCALE_BANKING", 1.0);
     const std::size_t width = channels_.size();
     for (std::size_t row = 0; row + width <= rows.size(); row += width) {
       double slope = slope_before, banking = banking_before;
       std::vector<double> cuts;
       for (std::size_t k = 0; k < width; ++k) {
         const double value = rows[row + k];
-        if (channels_[k] == Channel::cut) cuts.push_back(value);
+        if (channels_[k] == Channel::cut) cuts.push_back(value * parameter("SCALE_Z_GRID", 1.0));
         if (channels_[k] == Channel::slope) slope = value;
         if (channels_[k] == Channel::banking) banking = value;
       }
       // As the heading, the slope of a row is that from the row before to it; the first has none.
-      if (row > 0) line += slope * road.increment;
-      for (std::size_t k = 0; k < order.size(); ++k)
-        road.heights.push_back(cuts[order[k]] + line + banking * road.v[k]);
+      if (row > 0) line += steeper * slope * road.increment;
+      std::vector<double> across;
+      for (const std::size_t k : order) across.push_back(cuts[k]);
+      fill_gaps(across);
+      for (std::size_t k = 0; k < across.size(); ++k)
+        road.heights.push_back(across[k] + line + banked * banking * road.v[k]);
     }
     if (road.count() < 2) throw wrong("", fmt::format("has {} cross-sections, expected two at least", road.count()));
     return road;
+  }
+
+  /// What GRID_NAN_MODE puts where a cross-section has no height: 0, or at its ends the last height that there is.
+  void fill_gaps(std::vector<double>& across) const {
+    const double mode = parameter("GRID_NAN_MODE", 0.0), offset = parameter("GRID_NAN_OFFSET", 0.0);
+    const auto there = [](double z) { return !std::isnan(z); };
+    if (mode == 1.0)
+      for (double& z : across) z = there(z) ? z : offset;
+    const auto first = std::find_if(across.begin(), across.end(), there);
+    if (mode != 2.0 || first == across.end()) return;
+    const auto last = std::find_if(across.rbegin(), across.rend(), there);
+    std::fill(across.begin(), first, *first + offset);
+    std::fill(across.rbegin(), last, *last + offset);
   }
 
   bool has(Channel channel) const { return std::find(channels_.begin(), channels_.end(), channel) != channels_.end(); }

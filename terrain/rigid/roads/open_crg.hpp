@@ -2,8 +2,9 @@
 //
 // Read are the road parameters, the data definition and the road data in the four formats (LRFI and LDFI as text, KRBI
 // and KDBI as big-endian numbers). The reference line is taken as straight: its heading, its position and those of the
-// Earth are left out, for a profile is alike across. Its slope is added to the heights. What changes the heights and is
-// not read here is refused: banking, modifiers, options, and references to other files.
+// Earth are left out. Its slope and banking are added to the heights. Options and modifiers that change the heights are
+// honoured or refused by name (crg_settings.hpp), references to other files are refused. A length of the data that does
+// not fit the header or the records of 80 bytes is refused: bytes lost in transfer shift all numbers behind them.
 //
 // ASAM OpenCRG 1.2.0, chapter 6, "OpenCRG data format".
 #pragma once

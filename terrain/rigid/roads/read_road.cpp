@@ -1,5 +1,6 @@
 #include "terrain/rigid/roads/read_road.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -40,10 +41,18 @@ ProfilePoints read_csv(const std::filesystem::path& file) {
   return points;
 }
 
+/// By the ending, in any case.
+bool is_open_crg(const std::filesystem::path& file) {
+  std::string end = file.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return end == ".crg";
+}
+
 }  // namespace
 
 ProfilePoints read_road(const std::filesystem::path& file, double v) {
-  const ProfilePoints points = file.extension() == ".crg" ? profile_of(read_open_crg(file), v, file) : read_csv(file);
+  const ProfilePoints points = is_open_crg(file) ? profile_of(read_open_crg(file), v, file) : read_csv(file);
   if (points.size() > kMostProfilePoints)
     throw input_error(file.string(), "",
                       fmt::format("has {} points, expected at most {}", points.size(), kMostProfilePoints));

@@ -23,11 +23,11 @@ ANEW = {"terrain.settling_friction": None, "terrain.settling_cohesion": None}
 VARIANTS = {
     "shipped": {},
     "step 15 µs": {"run.step": 1.5e-5},
-    "layers 20": {"terrain.layers": 20},
-    "layers 45": {"terrain.layers": 45},
+    "layers 14": {"terrain.layers": 14},
+    "layers 30": {"terrain.layers": 30},
     "width 0.9 m": {"terrain.width": 0.9},
-    "radius 8 mm": {"terrain.radius": 0.008, "terrain.layers": 37, "run.step": 2.4e-5},
-    "radius 12.5 mm": {"terrain.radius": 0.0125, "terrain.layers": 24},
+    "radius 8 mm": {"terrain.radius": 0.008, "terrain.layers": 25, "run.step": 2.4e-5},
+    "radius 12.5 mm": {"terrain.radius": 0.0125, "terrain.layers": 16},
     "stiffness x 1/2": {"terrain.young_modulus": 5e7},
     "stiffness x 4": {"terrain.young_modulus": 4e8, "run.step": 1.5e-5},
     "solid fraction 0.58": {"terrain.solid_fraction": 0.58} | ANEW,
@@ -99,7 +99,8 @@ def main():
         table("lete_sand_slip.csv", "slip", {slip: LONG | {"rig.slip": slip} for slip in SLIPS}, arguments.seeds,
               arguments.finished, paired=False)
     if "variants" in arguments.parts:
-        table("lete_sand_variants.csv", "case", {case: VARIANTS[case] for case in arguments.cases or VARIANTS}, arguments.seeds, arguments.finished, paired=True)
+        cases = {case: VARIANTS[case] for case in arguments.cases or VARIANTS}
+        table("lete_sand_variants.csv", "case", cases, arguments.seeds, arguments.finished, paired=True)
 
 
 if __name__ == "__main__":

@@ -366,7 +366,7 @@ TEST_F(Smallest, magnitudes_of_another_unit_are_warned_of) {
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_TRUE(holds(warnings[0], "key 'terrain.density': 2.5 kg/m³ is unusually small"));
   EXPECT_TRUE(holds(warnings[0], "did you mean 2500 (g/cm³)?"));
-  EXPECT_TRUE(holds(warnings[1], "did you mean 200e3 (bar) or 13790 (psi)?"));
+  EXPECT_TRUE(holds(warnings[1], "did you mean 200e3 (bar) or 13790 (psi) or 2e6 (MPa)?"));
   EXPECT_TRUE(file_.load({{"tire.pressure", "0"}, {"terrain.cohesion", "0"}}).warnings.empty());
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures of the front page, over five beds: `furrow run rigs/drawbar_pull_small_report_soil.json --seeds 5`.
+"""The figures of the small rig on the report's soil: `furrow run rigs/drawbar_pull_small_report_soil.json --seeds 5`.
 
 Pull, sinkage and rut of one bed are stated with their spread in that scenario's block `expected`, and nowhere else; the
 mean over n beds must lie within spread/√n. Five to twenty minutes on two cores. With --results DIR the folder is kept,

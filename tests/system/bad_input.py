@@ -354,7 +354,7 @@ class BadFile(SystemTest):
     def test_suspicious_magnitude_is_a_warning(self):
         path = write_scenario(self.folder, changed(tire={"pressure": 200}))
         self.furrow("validate", path, matches=r"^furrow: warning: .*small.json: key 'tire.pressure': 200 Pa is "
-                    r"unusually small, usual is .*: did you mean 200e3 \(kPa\) or 1379e3 \(psi\)\?\n$")
+                    r"unusually small, usual is .*: did you mean 200e3 \(kPa\) or 1.379e6 \(psi\)\?\n$")
 
     def test_a_warning_beside_an_error_is_told_as_one(self):
         path = write_scenario(self.folder, changed(tire={"pressure": 200}, terrain={"bed": "none.csv"}))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""scripts/check_includes.py, check_headers.py and check_docs.py on small trees: what they must notice."""
+"""scripts/check_includes.py, check_headers.py, check_docs.py, check_prose.py on small trees: what they must notice."""
 import json
 import pathlib
 import subprocess
@@ -166,6 +166,24 @@ class Docs(Check):
         files = {"rigs__a_dot_json": "{}", "rigs__scenario_dot_schema_dot_json": "{}"}
         self.assertEqual(self.told(rigs__README_dot_md="`a.json`", **files), "")
         self.assertIn("rigs/README.md:1: does not list rigs/a.json", self.told(rigs__README_dot_md="a page", **files))
+
+
+class Prose(Check):
+    script = "check_prose.py"
+
+    def test_long_sentences_and_replaced_words(self):
+        words = "one two three four five six seven "
+        long = (words * 6)[:-1] + "."
+        self.assertIn("A.md:3: has a sentence of 42 words, expected at most 35: 'one two three four five six …'",
+                      self.told(A_dot_md=f"A page.\n\n{long}\n"))
+        page = f"```\n{long}\n```\n\n| {long} |\n\n{words}[{words}](a.md). Then `{long}`.\n"
+        self.assertEqual(self.told(A_dot_md=page), "")
+        self.assertIn("A.md:1: has 'is no file', expected 'is not a …'", self.told(A_dot_md="This is no file.\n"))
+        self.assertEqual(self.told(A_dot_md="There is no file. It is no longer here.\n"), "")
+
+    def test_an_exempt_page_that_is_clean(self):
+        self.assertIn("CHANGELOG.md:0: is clean, expected that it leaves EXEMPT",
+                      self.told(CHANGELOG_dot_md="A page.\n"))
 
 
 if __name__ == "__main__":

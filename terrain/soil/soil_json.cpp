@@ -164,20 +164,26 @@ json plate_json(const SoilRun& run, const SoilParameters& p) {
   return j;
 }
 
+/// What the tests in the shear cell begin with.
+template <class Tests>
+json cell_json(const char* what, const SoilRun& run, const Tests& tests, const ShearTest& test) {
+  return {{"what", what},
+          {"box", box_json(tests.front().specimen, run.plan.shear_box)},
+          {"beds_settled", all_settled(tests)},
+          {"speed_m_s", test.speed},
+          {"travel_m", test.travel * run.options.material.radius}};
+}
+
 json shear_json(const SoilRun& run, double goodness) {
   const auto& tests = run.results.shear;
   const double r = run.options.material.radius;
   const ShearTest& test = run.plan.shears.front();
-  json j = {{"what",
-             "two toothed plates in a cell periodic along and across; lid under constant load, moved at "
-             "constant speed"},
-            {"box", box_json(tests.front().specimen, run.plan.shear_box)},
-            {"beds_settled", all_settled(tests)},
-            {"speed_m_s", test.speed},
-            {"travel_m", test.travel * r},
-            {"tooth_m", test.tooth * r},
-            {"tooth_pitch_m", test.pitch * r},
-            {"r_squared", goodness}};
+  json j = cell_json(
+      "two toothed plates in a cell periodic along and across; lid under constant load, moved at constant speed", run,
+      tests, test);
+  j["tooth_m"] = test.tooth * r;
+  j["tooth_pitch_m"] = test.pitch * r;
+  j["r_squared"] = goodness;
   double floor = 0.0, shear = 0.0;
   for (const auto& t : tests) {
     floor = std::max(floor, t.result.floor_error), shear = std::max(shear, t.result.shear_error);
@@ -203,16 +209,12 @@ json shear_json(const SoilRun& run, double goodness) {
 
 json interface_json(const SoilRun& run, const SoilParameters& p) {
   const auto& tests = run.results.faces;
-  const double r = run.options.material.radius;
   const ShearTest& test = run.plan.faces.front();
-  json j = {{"what",
-             "grains sheared along a flat plate and along one with half-grains glued to it, in the cell of the shear "
-             "test; stresses at the end of the travel"},
-            {"box", box_json(tests.front().specimen, run.plan.shear_box)},
-            {"beds_settled", all_settled(tests)},
-            {"speed_m_s", test.speed},
-            {"travel_m", test.travel * r},
-            {"friction", test.friction >= 0.0 ? test.friction : run.options.material.friction}};
+  json j = cell_json(
+      "grains sheared along a flat plate and along one with half-grains glued to it, in the cell of the shear test; "
+      "stresses at the end of the travel",
+      run, tests, test);
+  j["friction"] = test.friction >= 0.0 ? test.friction : run.options.material.friction;
   for (const Interface& of : p.interfaces) {
     json face = {{"face", face_name(of.face)}};
     Parameters parameters(face, run.options.quick);

@@ -37,6 +37,7 @@ VARIANTS = {
 FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
            "torque_Nm": "drive_torque_Nm", "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m",
            "slip_of_free_rolling": "slip_of_free_rolling", "slip_of_no_pull": "slip_of_no_pull"}
+OVER_BEDS = ("pull_N", "gross_N", "sinkage_mm")  # with their intervals
 REGRESSIONS = ("wes_sand", "mason", "brixius_bias", "brixius_radial", "wismer_luth")
 
 
@@ -56,27 +57,27 @@ def pooled(rows, base=None):
     of_seed = {row["seed"]: row for row in base or ()}
     mine = [row for row in rows if not base or row["seed"] in of_seed]
     out = {"beds": len(mine), "steady": sum(row["steady"] for row in mine)}
-    for column in mine[0].keys() - {"seed", "steady", "sem_N", "case", "slip"} if len(mine) > 1 else ():
+    for column in mine[0].keys() - {"seed", "steady", "sem_N"}:
         values = [row[column] - (of_seed[row["seed"]][column] if base else 0.0) for row in mine
                   if row[column] is not None]
         if len(values) == len(mine):
             mean, half = driver.over_beds(values)
-            out |= {column: mean} | ({f"{column}_half": half} if column in ("pull_N", "gross_N", "sinkage_mm") else {})
+            out |= {column: mean} | ({f"{column}_half": half} if column in OVER_BEDS else {})
     return out
 
 
 def table(name, label, cases, seeds, finished, paired):
     """Runs the cases {label: settings} bed by bed, so that every case has beds early on."""
     rows, made = {case: [] for case in cases}, provenance.made_here()
-    names = [label, "seed", "beds", "steady", "sem_N", *(part for column in FIGURES for part in (
-        column, *([f"{column}_half"] if column in ("pull_N", "gross_N", "sinkage_mm") else [])))]
+    names = [label, "seed", "beds", "steady", "sem_N"]
+    for column in FIGURES:
+        names += [column, f"{column}_half"] if column in OVER_BEDS else [column]
     for seed in seeds:
         for case, changed in cases.items():
             words = [RIG, *driver.settings(ALWAYS, changed, {"run.seed": seed})]
             out = driver.RESULTS / "lete_sand" / f"{label}_{case}_{seed}".replace(" ", "_").replace("/", "_")
-            if finished and driver.stale_because(words, out):
-                continue
-            if driver.stale_because(words, out) and not driver.run_case(out.name, words, out):
+            stale = driver.stale_because(words, out)
+            if stale and (finished or not driver.run_case(out.name, words, out)):
                 continue
             rows[case].append(row_of(driver.summary(out), seed))
         kept = {case: mine for case, mine in rows.items() if mine}

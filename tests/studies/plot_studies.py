@@ -4,6 +4,7 @@ import re
 
 import driver
 import provenance
+from soil_theory import LOAD
 
 
 def rigid_ground():
@@ -58,21 +59,20 @@ def lete_sand():
     old = {float(row["variant"].removeprefix("slip ")) if row["variant"] != "base" else 0.3: row
            for row in provenance.read_table(driver.HERE / "budget.csv")
            if row["variant"] == "base" or row["variant"].startswith("slip ")}
-    load = 4607.77  # N
     figure, panels = driver.subplots(1, 2, sharey=True, figsize=(9.6, 4.2))
     names = {"mason": "Mason 2018 (sand)", "wes_sand": "WES (sand)", "brixius_radial": "Brixius, radial (loam)",
              "wismer_luth": "Wismer–Luth (loam)"}
     for axes, what, of_old, title in zip(panels, ("pull", "gross"), ("pull", "tractive_effort"),
                                          ("drawbar pull / load", "gross traction / load")):
         slips = [float(row["slip"]) for row in means]
-        axes.errorbar(slips, [float(row[f"{what}_N"]) / load for row in means], capsize=3, marker="o", color="C0",
-                      yerr=[float(row[f"{what}_N_half"] or "nan") / load for row in means], label="LETE sand")
-        axes.errorbar(list(old), [float(row[f"{of_old}_N"]) / load for row in old.values()], capsize=3, marker="s",
-                      yerr=[float(row[f"{of_old}_N_half_95"]) / load for row in old.values()], color="C1", ls="none",
+        axes.errorbar(slips, [float(row[f"{what}_N"]) / LOAD for row in means], capsize=3, marker="o", color="C0",
+                      yerr=[float(row[f"{what}_N_half"] or 0.0) / LOAD for row in means], label="LETE sand")
+        axes.errorbar(list(old), [float(row[f"{of_old}_N"]) / LOAD for row in old.values()], capsize=3, marker="s",
+                      yerr=[float(row[f"{of_old}_N_half_95"]) / LOAD for row in old.values()], color="C1", ls="none",
                       label="the report's soil, bed 113 mm deep")
         for k, (name, text) in enumerate(names.items()):
             key = f"{name}_{'net' if what == 'pull' else 'gross'}_N"
-            points = [(slip, float(row[key]) / load) for slip, row in zip(slips, means) if row.get(key)]
+            points = [(slip, float(row[key]) / LOAD) for slip, row in zip(slips, means) if row.get(key)]
             if name == "wes_sand" and what == "pull":  # at 20 % slip alone
                 points = [point for point in points if abs(point[0] - 0.2) < 0.01]
             sand = name in ("mason", "wes_sand")

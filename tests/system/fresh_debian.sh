@@ -6,7 +6,7 @@
 set -euo pipefail
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd -P)
 repository=$(cd -- "$here/../.." && pwd -P)
-readonly setup_budget_s=180 build_budget_s=600 small_budget_s=240  # README.md: about ten minutes
+readonly setup_budget_s=180 build_budget_s=600 small_budget_s=180  # README.md: about ten minutes
 
 say() { printf 'fresh_debian: %s\n' "$*" >&2; }
 usage() { cat <<'HELP'

@@ -14,6 +14,7 @@
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "protocol/files/new_file.hpp"
 #include "protocol/files/text_file.hpp"
 
 namespace furrow::output {
@@ -24,6 +25,8 @@ std::string header_line(const Table& table) {
   for (const Column& column : table.columns) header += (header.empty() ? "" : ",") + std::string(column.name);
   return header + '\n';
 }
+
+std::string line_text(std::span<const double> values) { return fmt::format("{:.17g}\n", fmt::join(values, ",")); }
 
 }  // namespace
 
@@ -122,7 +125,7 @@ void TableWriter::write(const std::string& text) {
 
 void TableWriter::add(std::span<const double> values) {
   FURROW_ASSERT(values.size() == width_, values.size(), width_);
-  write(fmt::format("{:.17g}\n", fmt::join(values, ",")));
+  write(line_text(values));
   ++lines_;
 }
 
@@ -137,16 +140,22 @@ bool TableWriter::stands() const {
 
 void TableWriter::write_again(const Table& table) {
   FURROW_ASSERT(std::cmp_equal(table.lines(), lines_), table.lines(), lines_);
-  std::error_code error;
-  std::filesystem::remove(file_, error);
-  stream_.reset(std::fopen(file_.c_str(), "wbx"));
-  check(stream_ != nullptr);
-  only_append();
+  // What stands there, if only in part, may be all that a checkpoint goes on from: on a full disk it stays.
+  NewFile made(file_);
   hash_ = Hash();
-  bytes_ = lines_ = 0;
-  write(header_line(table));
-  for (std::size_t line = 0; line < table.lines(); ++line) add(table.line(line));
-  flush();
+  bytes_ = 0;
+  const auto add_text = [&](const std::string& text) {
+    made.write(text);
+    hash_.add(text);
+    bytes_ += static_cast<std::int64_t>(text.size());
+  };
+  add_text(header_line(table));
+  for (std::size_t line = 0; line < table.lines(); ++line) add_text(line_text(table.line(line)));
+  made.publish();
+  stream_.reset(std::fopen(file_.c_str(), "rb+"));
+  check(stream_ != nullptr);
+  check(std::fseek(stream_.get(), 0, SEEK_END) == 0);
+  only_append();
 }
 
 checkpoint::SeriesMark TableWriter::mark() {

@@ -50,7 +50,8 @@ class TableWriter {
   void flush();
   /// Whether the file is still there and holds what was flushed; who edits it may have put another in its place.
   bool stands() const;
-  /// Writes the file again. @param table that holds all lines @throws Error(io)
+  /// Writes the file again, which takes the place of what stands there only when it is whole.
+  /// @param table that holds all lines @throws Error(io)
   void write_again(const Table& table);
   /// Flushes to the disk.
   checkpoint::SeriesMark mark();

@@ -2,8 +2,11 @@
 // and subjects without any of these knowing of it.
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -210,6 +213,30 @@ TEST(Table, a_full_disk_is_an_input_output_error_naming_the_file) {
     writer.add(line_of(table, 0.0));
     writer.flush();
   });
+}
+
+/// The limit on the size of a file stands for a disk that is full.
+TEST(Table, a_file_that_cannot_be_written_again_stays) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "timeseries.csv";
+  output::Table table = wheel_table();
+  output::TableWriter writer(file, table);
+  table.kept.add(line_of(table, 0.5));
+  writer.add(table.line(0));
+  const checkpoint::SeriesMark mark = writer.mark();
+  const std::string whole = read_whole_file(file);
+  struct rlimit before {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const struct rlimit full { whole.size() / 2, before.rlim_max };
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  expect_refused(ExitCode::io, {"timeseries.csv"}, [&] { writer.write_again(table); });
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(read_whole_file(file), whole);
+  output::Table again = wheel_table();
+  output::TableWriter(file, mark, again);
+  EXPECT_EQ(again.lines(), 1U);
 }
 
 TEST(Table, goes_on_at_its_mark_bit_for_bit) {

@@ -469,7 +469,8 @@ class GrainModel final : public CalibrationModel {
     if (target->y.front() + 2.0 * target->sigma.front() >= least) return;
     notes_.push_back(fmt::format(
         "{} of {:g} mm cannot be reached with grains of {:g} mm diameter: it is not below {:g} mm, {:g} of the "
-        "diameter, in any soil that was tested. It is compared, not fitted; grains of {:.2g} mm or less could reach it",
+        "diameter, in any soil that was tested. It is compared, not fitted; a diameter of {:.2g} mm or less could "
+        "reach it",
         target->name, 1e3 * target->y.front(), 2e3 * grains_.radius, 1e3 * least, kLeastK,
         1e3 * target->y.front() / kLeastK));
     targets_.held_out.push_back(*target), of_held_out.push_back(*at);

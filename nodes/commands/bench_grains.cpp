@@ -95,7 +95,7 @@ Action add_options(CLI::App& command, Typed&) {
   command.option_defaults()->always_capture_default();
   command.add_option(
       "--bed", arguments->bed,
-      "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of 6 mm, x ≥ 0, y from 0 to "
+      "Read the bed from this CSV file: columns x_m,y_m,z_m, centres of grains of radius 6 mm, x ≥ 0, y from 0 to "
       "0.6 and z ≥ 0. 'default' is the reference bed.");
   command.add_option("--law", arguments->law, "Choose the contact law: " + terrain::dem::law_names() + ".");
   command.add_option("--precision", arguments->precision, "Choose the precision of the contact law: mixed or double.");

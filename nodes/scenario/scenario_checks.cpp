@@ -179,7 +179,7 @@ class Checks {
         throw wrong("terrain.length", "is {} m, expected at least {:.2f} m: the tire is {:.2f} m long",
                     number_text(terrain_.bounds->length), length, 2.0 * tire.radius);
       if (terrain_.grain_radius > kCoarseGrain * tire.radius)
-        warn("terrain.radius", "grains of {} m are coarse under a tire of radius {} m",
+        warn("terrain.radius", "grains of radius {} m are coarse under a tire of radius {} m",
              number_text(terrain_.grain_radius), number_text(tire.radius));
     }
   }

@@ -141,10 +141,11 @@ std::string other_grains_warning(const json& completed, const std::filesystem::p
   if (!soil || !taken_whole(*soil, terrain)) return {};  // no soil, or one of the scenario's own
   const json with = other_radius(*soil, terrain);
   if (with.is_null()) return {};
-  return input_error(scenario.string(), "terrain.radius",
-                     "is {} m, but the strength of '{}' was measured with grains of {} m: cohesion changes with the "
-                     "size of grains",
-                     number_text(terrain["radius"]), terrain[kSoilKey].get<std::string>(), number_text(with))
+  return input_error(
+             scenario.string(), "terrain.radius",
+             "is {} m, but the strength of '{}' was measured with grains of radius {} m: cohesion changes with the "
+             "size of grains",
+             number_text(terrain["radius"]), terrain[kSoilKey].get<std::string>(), number_text(with))
       .what();
 }
 

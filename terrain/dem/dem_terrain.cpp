@@ -277,7 +277,7 @@ TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {
                         1e3 * dem::largest_radius(options), 1e3 * dem::median_radius_by_mass(options))
           : "";
   e.text =
-      fmt::format("about {} grains of {:g} mm{}, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
+      fmt::format("about {} grains of radius {:g} mm{}, law {}, bed about {:.0f} mm deep, bin {:g} × {:g} m", e.grains,
                   1e3 * options.radius, sizes, options.law, 1e3 * e.expected_height, options.length, options.width);
   return e;
 }

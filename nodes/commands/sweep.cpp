@@ -16,6 +16,7 @@ struct SweepArguments {
   std::filesystem::path study;
   std::filesystem::path out;  // empty: results/<study>
   int jobs = 1;
+  bool plots = true;
 };
 
 ExitCode sweep_study(const SweepArguments& arguments) {
@@ -24,7 +25,7 @@ ExitCode sweep_study(const SweepArguments& arguments) {
     throw input_error("command line", "--jobs", "is " + std::to_string(arguments.jobs) + ", expected 1 to 1024");
   const std::filesystem::path folder =
       arguments.out.empty() ? std::filesystem::path("results") / study.name : arguments.out;
-  const bool to_plot = study.passes > 0 || !study.plot.is_null();
+  const bool to_plot = arguments.plots && (study.passes > 0 || !study.plot.is_null());
   study::Sweep sweep(std::move(study), {folder, arguments.jobs});
   launch::RunDirectory directory = launch::RunDirectory::of_study(folder);
   study::require_no_beds(folder);
@@ -55,6 +56,7 @@ Action sweep_options(CLI::App& command, Typed&) {
   command.add_option("--out", arguments->out, "Keep the study in this folder (default: results/<study>).");
   command.add_option("--jobs", arguments->jobs, "Run this number of runs at once, each with its share of the cores.")
       ->capture_default_str();
+  add_no_plots(command, arguments->plots);
   return [arguments] { return sweep_study(*arguments); };
 }
 

@@ -90,7 +90,7 @@ RunDirectory::RunDirectory(const std::string& scenario, const fs::path& out, boo
     std::error_code error;
     if (!made && !fs::is_directory(path_, error))
       throw input_error(out.string(), "--out", "exists and is not a folder, expected a new folder");
-    if (!made && !overwrite)
+    if (!made && !overwrite && !fs::is_empty(path_, error))
       throw input_error(out.string(), "--out", "exists already, expected a new folder or --overwrite");
     if (made)
       begin();

@@ -29,6 +29,8 @@ std::string StartWatch::standing() const {
                            : fmt::format("{} of {} ranks", count == 0 ? "none" : std::to_string(count), ranks_);
   };
   if (begun_.size() < ranks_) return of_all(begun_.size()) + " began";
+  if (started_.size() == ranks_)
+    return fmt::format("all {} ranks began and MPI connected them, but not all of it", ranks_);
   return fmt::format("all {} ranks began, but MPI connected {}", ranks_, of_all(started_.size()));
 }
 

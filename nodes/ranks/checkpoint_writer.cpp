@@ -46,11 +46,14 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     save_cost(archive, cost_());
     const std::filesystem::path folder = checkpoint::unfinished_checkpoint(context_.directory, step);
     // The run's own folder is never created here: it was moved or removed. The error then names the file in it.
-    std::error_code ignored;
+    std::error_code ignored, failed;
     std::filesystem::create_directory(folder.parent_path(), ignored);
-    std::filesystem::create_directory(folder, ignored);
+    std::filesystem::create_directory(folder, failed);
     if (!std::filesystem::is_directory(std::filesystem::symlink_status(folder, ignored)))
-      throw io_error(folder.string(), "is not a folder, expected one for the parts of the checkpoint");
+      throw io_error(folder.string(), failed ? fmt::format("cannot be created ({}), expected a folder for the parts of "
+                                                           "the checkpoint",
+                                                           failed.message())
+                                             : "is not a folder, expected one for the parts of the checkpoint");
     fault_point("checkpoint.write");
     write_archive(folder / part.file, archive);
     part.checksum = checkpoint::part_checksum(folder / part.file);

@@ -105,8 +105,10 @@ Scales scales_of(const Scenario& s) {
 Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
   const bool hard = s.has_own_contact();
   if (hard && !o.soil.empty())
-    throw input_error("command line", "--soil", "is given, expected none: the file of '{}' holds for hard level ground",
-                      o.tire);
+    throw input_error("command line", "--soil",
+                      "is given, expected none: the file of '{}' holds for hard level ground; with --rigid the tires "
+                      "keep their shape and roll on soil",
+                      s.tires.front()->options().file.filename().string());
   if (hard) return Ground::hard;
   if (o.soil.empty()) return Ground::grains;
   const nlohmann::json soil = read_soil_material(find_file(o.soil, "terrain.material", file));

@@ -56,7 +56,7 @@ class RunFolderTest : public ::testing::Test {
     write(run.path() / "frames" / ".tire0_000002.h5.0123456789abcdef.part", text);
   }
   void make_run(const std::string& text) {
-    const RunDirectory run("test", run_, fs::exists(run_));
+    const RunDirectory run("test", run_, fs::exists(run_) && !fs::is_empty(run_));
     write_results(run, text);
   }
 
@@ -122,6 +122,18 @@ TEST(RunList, links_are_not_followed) {
   launch::remove_listed(run, RunList::read(run));
   launch::remove_listed(run, RunList::read(run), "frames/");
   EXPECT_EQ(read(elsewhere / "terrain_000001.h5"), "mine");
+}
+
+TEST_F(RunFolderTest, takes_an_empty_folder_and_no_other_without_overwrite) {
+  fs::create_directories(run_);
+  make_run("new");
+  EXPECT_EQ(read(run_ / "summary.json"), "new");
+  EXPECT_TRUE(holds(error_of([&] { RunDirectory("test", run_, false); }), "exists already"));
+  const fs::path other = folder_.path() / "other";
+  fs::create_directory(other);
+  write(other / "letter.txt", "mine");
+  EXPECT_TRUE(holds(error_of([&] { RunDirectory("test", other, false); }), "exists already"));
+  EXPECT_EQ(files_in(other), std::set<std::string>{"letter.txt"});
 }
 
 TEST_F(RunFolderTest, one_run_at_a_time_has_it_until_its_last_process_ends) {

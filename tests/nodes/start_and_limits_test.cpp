@@ -62,6 +62,7 @@ TEST(StartWatch, who_has_started_is_watched_no_more) {
   let_pass(2.0 * kPatience);
   EXPECT_FALSE(watch.too_late());
   EXPECT_TRUE(watch.all_started());
+  EXPECT_EQ(watch.standing(), "all 1 ranks began and MPI connected them, but not all of it");
   EXPECT_EQ(watch.count(), 1U);
 }
 

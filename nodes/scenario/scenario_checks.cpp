@@ -269,6 +269,15 @@ class Checks {
       from = std::min({from, wheel.from - wheel.along, wheel.to - wheel.along});
       to = std::max({to, wheel.from + wheel.along, wheel.to + wheel.along});
     }
+    for (const rigs::WheelDescription& wheel : wheels)
+      if (wheel.lateral < road.right || wheel.lateral > road.left) {
+        warn("terrain." + terrain_.uneven_key,
+             "lies from y = {} to {} m, and {} is at {} m: beside it the heights of its edge hold; terrain.profile_v "
+             "places it",
+             number_text(road.right), number_text(road.left), wheel.name.empty() ? "the wheel" : wheel.name,
+             number_text(wheel.lateral));
+        break;
+      }
     const auto moves = [](const rigs::WheelDescription& wheel) { return wheel.from != wheel.to; };
     if ((to >= road.from && from <= road.to) || !std::ranges::any_of(wheels, moves)) return;
     warn("terrain." + terrain_.uneven_key,

@@ -1,6 +1,7 @@
 // The keys of the section `terrain` with engine rigid, hard ground: each field is the key of its name.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "protocol/core/fields.hpp"
@@ -10,6 +11,8 @@
 #include "terrain/terrain_spec.hpp"
 
 namespace furrow::terrain {
+
+struct HeightMap;
 
 /// A stiff elastic layer: pressure = stiffness × depth + damping × its rate. The keys, and what the run supplies.
 struct GroundOptions : TerrainContext {
@@ -21,7 +24,10 @@ struct GroundOptions : TerrainContext {
   double ground_damping = 2.5e4;         // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
   ProfilePoints profile;                 // z at x; empty: the plane z = 0
   std::string profile_file;              // CSV or OpenCRG, in place of `profile`
-  double profile_v = 0.0;                // of the cut of an OpenCRG file, m
+  bool profile_across = true;            // heights of the file may change across; false: they are those at profile_v
+  double profile_v = 0.0;                // of the file where y = 0, m
+  double profile_from = -1.0;            // x where the file's first height lies, m; negative: where the file says
+  std::shared_ptr<const HeightMap> map;  // of the file, where heights change across: in place of `profile`
   std::string road_class;                // of ISO 8608, A to H, in place of `profile`
   double road_from = 5.0;                // x where it begins, m
   double road_length = 100.0;            // m
@@ -48,11 +54,18 @@ void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
   visit(s.profile_file,
         key("profile_file", "", not_empty().or_null(),
             "File with the heights of the ground, in place of profile, engine rigid: CSV with the columns x_m and z_m, "
-            "or a measured road in OpenCRG, with the ending .crg, whose u is x. Relative to the scenario."));
-  visit(
-      s.profile_v,
-      key("profile_v", "m", from(-1e3, 1e3),
-          "Where across the road profile_file in OpenCRG is cut: v, to the left of its reference line, engine rigid."));
+            "or x_m, y_m and z_m at the nodes of a grid; a grid in ASCII after ESRI, with the ending .asc; or a "
+            "measured road in OpenCRG, with the ending .crg, whose u is x. Relative to the scenario."));
+  visit(s.profile_across,
+        key("profile_across", "",
+            "Each wheel meets the heights where it is across profile_file, engine rigid. false: those at profile_v, "
+            "alike for all y."));
+  visit(s.profile_v,
+        key("profile_v", "m", from(-1e7, 1e7),
+            "What lies at y = 0 of the scenario: v of profile_file in OpenCRG, to the left of its reference line, or y "
+            "of a grid, engine rigid."));
+  visit(s.profile_from, key("profile_from", "m", from(0, 1e6).or_null(),
+                            "x where the first height of profile_file lies, engine rigid. null: where the file says."));
   visit(s.road_class,
         key("road_class", "", words("A B C D E F G H").or_null(),
             "Class of a random road after ISO 8608, from A (very smooth) to H, in place of profile, engine rigid. "

@@ -32,12 +32,14 @@ struct GroundPoint {
   double area = 0.0;               // projected, m²; on a profile: of the triangle itself
   double depth = 0.0;              // g ≥ 0, m
   bool level = true;               // of a profile: the ground is level around it
+  double cosine = 1.0;             // of a height map: of the angle between its skin and the level
 };
 
 /// Most integration points of one triangle.
 inline constexpr int kMaxGroundPoints = 6;
 
-using ProfilePointList = std::array<GroundPoint, 64>;
+/// Of ground that is not level.
+using ProfilePointList = std::array<GroundPoint, 64 * kMaxGroundPoints>;
 
 /// Integration points of the part of triangle x with z < 0; returns how many.
 int ground_points(const std::array<Vec3, 3>& x, std::array<GroundPoint, kMaxGroundPoints>& out);

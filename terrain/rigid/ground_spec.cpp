@@ -8,8 +8,10 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
+#include "terrain/rigid/ground_map.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "terrain/rigid/roads/iso_8608.hpp"
+#include "terrain/rigid/roads/read_map.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
 
 namespace furrow::terrain {
@@ -23,6 +25,7 @@ class GroundSpec final : public TerrainSpec {
     TerrainDescription d;
     d.engine = "rigid";
     d.name = !options_.road_class.empty() ? "rigid road of class " + options_.road_class
+             : options_.map               ? "rigid ground with a height map"
              : options_.profile.empty()   ? "rigid ground"
                                           : "rigid ground with a profile";
     d.gives_tangents = d.answers_at_once = true;
@@ -36,6 +39,8 @@ class GroundSpec final : public TerrainSpec {
       d.uneven_key = "profile";
     if (!options_.road_class.empty())
       d.uneven.from = options_.road_from, d.uneven.to = options_.road_from + options_.road_length;
+    else if (options_.map)
+      d.uneven = {options_.map->x.front(), options_.map->x.back(), options_.map->y.front(), options_.map->y.back()};
     else if (const auto [from, to] = uneven_range(options_.profile); from < to || from == to)
       d.uneven.from = from, d.uneven.to = to;
     return d;
@@ -44,8 +49,10 @@ class GroundSpec final : public TerrainSpec {
     TerrainEstimate e;
     e.text = !options_.road_class.empty() ? fmt::format("rigid road of class {} (ISO 8608), {:g} m long",
                                                         options_.road_class, options_.road_length)
-             : options_.profile.empty()   ? "rigid plane z = 0"
-                                          : fmt::format("rigid profile of {} points", options_.profile.size());
+             : options_.map
+                 ? fmt::format("rigid height map of {} by {} nodes", options_.map->x.size(), options_.map->y.size())
+             : options_.profile.empty() ? "rigid plane z = 0"
+                                        : fmt::format("rigid profile of {} points", options_.profile.size());
     e.stable_reason = "no grains";
     return e;
   }
@@ -92,7 +99,9 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
   check_profile(options.profile, context.file, context.key("profile"));
   if (!options.profile_file.empty()) {
     options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
-    options.profile = read_road(options.profile_file, options.profile_v);
+    const RoadPlace place{options.profile_v, options.profile_from};
+    if (options.profile_across) options.map = read_map(options.profile_file, place);
+    if (!options.map) options.profile = read_road(options.profile_file, place);
   }
   return make_ground_spec(options);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "protocol/files/key_schema.hpp"
 #include "terrain/rigid/ground_accounts.hpp"
 #include "terrain/rigid/ground_friction.hpp"
+#include "terrain/rigid/ground_map.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
 #include "terrain/rigid/ground_profile.hpp"
 #include "terrain/surface/surface_forces.hpp"
@@ -51,26 +53,24 @@ Vec3 weighted(const std::array<double, 3>& weight, const std::vector<Vec3>& valu
   return weight[0] * values[at[0]] + weight[1] * values[at[1]] + weight[2] * values[at[2]];
 }
 
-/// Unit normal of a triangle, outwards, without its part along y: what a profile presses on per area.
-Vec3 flat_normal(const std::array<Vec3, 3>& x) {
-  const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
-  const double size = normal.norm();
-  return size > 0.0 ? Vec3(normal.x() / size, 0.0, normal.z() / size) : Vec3::Zero();
-}
-
 class RigidGround final : public Terrain {
  public:
   explicit RigidGround(const GroundOptions& options)
       : Terrain(true),
         options_(options),
         profile_(options.profile),
-        plane_(profile_.level(profile_.first(), profile_.last(), 0.0)),
+        plane_(!options.map && profile_.level(profile_.first(), profile_.last(), 0.0)),
         height_(plane_ ? profile_.height(0.0) : 0.0) {
+    if (options.map) map_.emplace(*options.map);
     check_values(options, options.scenario, "terrain");
   }
 
-  double gather_top_height(double from, double to, double, double) const override { return profile_.highest(from, to); }
-  double gather_mean_height(double from, double to, double, double) const override { return profile_.mean(from, to); }
+  double gather_top_height(double from, double to, double right, double left) const override {
+    return map_ ? map_->highest(from, to, right, left) : profile_.highest(from, to);
+  }
+  double gather_mean_height(double from, double to, double right, double left) const override {
+    return map_ ? map_->mean(from, to, right, left) : profile_.mean(from, to);
+  }
   double floor_height() const override { return 0.0; }
   HeightField gather_height_field() const override;
   void state_contacts(std::span<const StatedContact> contacts) override;
@@ -102,11 +102,14 @@ class RigidGround final : public Terrain {
   void rub(GroundSurface& surface, const GroundLaw& law, double dt);
   void measure(GroundSurface& surface) const;
   double measure_profile(const GroundSurface& surface) const;
+  int uneven_points(const std::array<Vec3, 3>& corner, ProfilePointList& points) const;
+  Vec3 pressed_normal(const std::array<Vec3, 3>& x) const;
 
   GroundOptions options_;
   GroundProfile profile_;
-  bool plane_;     // there is no profile, or it is level everywhere
-  double height_;  // of the plane, m
+  std::optional<GroundMap> map_;  // in place of the profile
+  bool plane_;                    // there is no map, and no profile, or it is level everywhere
+  double height_;                 // of the plane, m
   std::vector<GroundSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
@@ -120,6 +123,7 @@ HeightField RigidGround::gather_height_field() const {
   field.nx = field.ny = 1;
   field.height = {height_};
   if (plane_) return field;
+  if (map_) return map_->field();
   field.cell = std::max(kLeastFieldCell, (profile_.last() - profile_.first()) / kFieldCells);
   field.x0 = profile_.first() - 0.5 * kFieldCells * field.cell;
   field.nx = 2 * kFieldCells;
@@ -155,7 +159,7 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
 void RigidGround::do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
   double deepest = 0.0;
   for (const Vec3& x : start.position)
-    deepest = std::max(deepest, plane_ ? height_ - x.z() : profile_.depth(x.x(), x.z()));
+    deepest = std::max(deepest, plane_ ? height_ - x.z() : map_ ? map_->depth(x) : profile_.depth(x.x(), x.z()));
   if (deepest > kMaxStartDepth)
     throw input_error("surface " + std::to_string(surfaces_.size()), "",
                       "starts " + std::to_string(deepest) + " m below the ground, expected at most " +
@@ -207,7 +211,20 @@ void RigidGround::press(GroundSurface& surface, double dt) {
   rub(surface, law, dt);
 }
 
-/// The same on a profile: the pressure acts along the surface's normal in x and z.
+int RigidGround::uneven_points(const std::array<Vec3, 3>& corner, ProfilePointList& points) const {
+  return map_ ? map_->points(corner, points) : profile_points(profile_, corner, points);
+}
+
+/// Unit normal of a triangle, outwards, on a profile without its part along y: what the ground presses on per area.
+Vec3 RigidGround::pressed_normal(const std::array<Vec3, 3>& x) const {
+  Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
+  const double size = normal.norm();
+  if (!(size > 0.0)) return Vec3::Zero();
+  if (!map_) normal.y() = 0.0;
+  return normal / size;
+}
+
+/// The same on a profile or a height map: the pressure acts along the surface's normal.
 void RigidGround::press_profile(GroundSurface& surface, const GroundLaw& law, double dt) {
   std::fill(surface.push.begin(), surface.push.end(), Vec3::Zero());
   ProfilePointList points;
@@ -215,8 +232,8 @@ void RigidGround::press_profile(GroundSurface& surface, const GroundLaw& law, do
   for (int t = 0; t < static_cast<int>(surface.mesh.triangles.size()); ++t) {
     const auto& v = surface.mesh.triangles[t];
     const std::array<Vec3, 3> corner{x[v[0]], x[v[1]], x[v[2]]};
-    const Vec3 normal = flat_normal(corner);
-    const int count = profile_points(profile_, corner, points);
+    const Vec3 normal = pressed_normal(corner);
+    const int count = uneven_points(corner, points);
     for (int i = 0; i < count; ++i) {
       const GroundPoint& at = points[i];
       const Vec3 velocity = weighted(at.weight, surface.velocity, v);
@@ -253,17 +270,18 @@ void RigidGround::rub(GroundSurface& surface, const GroundLaw& law, double dt) {
     if (now > before) surface.shear[vertex] *= before / now;  // what has just touched is not yet sheared
     const GroundShear begin{surface.shear[vertex], now};
     double grip = 0.0;
-    // On a profile shear and friction lie in the plane that the vertex's normal force stands on: x' and y.
-    Vec3 along = Vec3::UnitX(), velocity = surface.velocity[vertex], normal = Vec3::UnitZ();
+    // Elsewhere shear and friction lie in the plane that the vertex's normal force stands on: x', y'.
+    Vec3 along = Vec3::UnitX(), across = Vec3::UnitY(), velocity = surface.velocity[vertex], normal = Vec3::UnitZ();
     if (!plane_ && surface.load[vertex] > 0.0) {
       normal = surface.push[vertex] / surface.load[vertex];
       along = Vec3(normal.z(), 0.0, -normal.x());
-      velocity = Vec3(along.dot(velocity), velocity.y(), 0.0);
+      if (map_) along.normalize(), across = normal.cross(along);
+      velocity = Vec3(along.dot(velocity), across.dot(velocity), 0.0);
     }
     Vec3 force = slide(law, surface.load[vertex], surface.area[vertex], velocity, dt, surface.shear[vertex], &grip);
     if (before > 0.0 || now > 0.0)
       add_shear_losses(law, left, begin, {surface.shear[vertex], now}, force, velocity, dt, losses_);
-    if (!plane_) force = force.x() * along + Vec3(0.0, force.y(), 0.0);
+    if (!plane_) force = force.x() * along + force.y() * across;
     if (force.isZero(0.0) && !(options_.contact_tangents && grip > 0.0)) continue;
     SurfaceContactForce contact;
     const auto [triangle, corner] = surface.corner[vertex];
@@ -325,19 +343,20 @@ void RigidGround::measure(GroundSurface& surface) const {
   }
 }
 
-/// (1) of ground_profile.hpp.
+/// (1) of ground_profile.hpp, (2) of ground_map.hpp.
 double RigidGround::measure_profile(const GroundSurface& surface) const {
   double energy = 0.0;
   ProfilePointList points;
   const auto& x = surface.last;
   for (const auto& v : surface.mesh.triangles) {
     const std::array<Vec3, 3> corner{x[v[0]], x[v[1]], x[v[2]]};
-    const double down = -flat_normal(corner).z();
-    const int count = profile_points(profile_, corner, points);
+    const double down = -pressed_normal(corner).z();
+    const int count = uneven_points(corner, points);
     for (int i = 0; i < count; ++i) {
       const GroundPoint& at = points[i];
       const Vec3 point = weighted(at.weight, x, v);
-      const double column = at.level ? 0.5 * at.depth * at.depth : profile_.column(point.x(), point.z());
+      const double column =
+          at.level || map_ ? 0.5 * at.depth * at.depth / at.cosine : profile_.column(point.x(), point.z());
       energy += options_.ground_stiffness * column * down * at.area;
     }
   }

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool csv = data[0] == 'c';
   try {
     const terrain::ProfilePoints road =
-        terrain::read_road(fuzz::input_file(csv ? "road.csv" : "road.crg", data + 1, size - 1), 0.1);
+        terrain::read_road(fuzz::input_file(csv ? "road.csv" : "road.crg", data + 1, size - 1), {.v = 0.1});
     if (road.empty() || road.size() > terrain::kMostProfilePoints) __builtin_trap();
     for (std::size_t k = 0; k < road.size(); ++k)
       if (terrain::fault_of(road, k) != terrain::ProfileFault::none || !std::isfinite(road[k][0] + road[k][1]))

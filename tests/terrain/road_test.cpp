@@ -126,12 +126,12 @@ TEST_F(RoadFile, the_four_formats_hold_the_same_road) {
     EXPECT_EQ(road.v, (std::vector<double>{-0.5, 0.0, 0.5}));
     ASSERT_EQ(road.count(), 3U);
     EXPECT_TRUE(std::isnan(road.heights[2]));
-    const ProfilePoints middle = read_road(folder_.path() / "road.crg", 0.0);
+    const ProfilePoints middle = read_road(folder_.path() / "road.crg", {0.0});
     ASSERT_EQ(middle.size(), 3U);
     EXPECT_EQ(middle[0][0], 2.0);
     EXPECT_EQ(middle[2][0], 4.0);
     EXPECT_NEAR(middle[1][1], -0.03, 1e-8);
-    EXPECT_NEAR(read_road(folder_.path() / "road.crg", -0.25)[2][1], 0.055, 1e-8);
+    EXPECT_NEAR(read_road(folder_.path() / "road.crg", {-0.25})[2][1], 0.055, 1e-8);
   }
 }
 
@@ -146,7 +146,7 @@ TEST_F(RoadFile, slope_and_banking_of_the_reference_line_are_added) {
       " 0.0000000 0.0500000 0.0300000 0.0100000 0.0200000\n"
       " 0.0000000-0.0100000 0.0000000 0.0100000 0.0200000\n";
   const std::filesystem::path file = put("sloped.crg", bytes);
-  const ProfilePoints left = read_road(file, 1.0), right = read_road(file, -1.0);
+  const ProfilePoints left = read_road(file, {1.0}), right = read_road(file, {-1.0});
   const double z_left[] = {1.01, 1.1 + 0.01 + 0.03, 1.08 + 0.01}, z_right[] = {1.02, 1.1 + 0.02 - 0.03, 1.08 + 0.02};
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(left[k][1], z_left[k], 1e-12);
@@ -180,7 +180,7 @@ TEST_F(RoadFile, options_and_modifiers_that_are_defaults_or_scale_heights_are_ho
       "$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\nREFLINE_OFFSET_Z = 1.0\nREFLINE_OFFSET_X = 7\n"
       "grid_nan_mode = 2.000000000+e00\nGRID_NAN_OFFSET = 0.25\n$\n";
   const std::filesystem::path file = put("ROAD.CRG", kRoad + opts + mods + "$KD_DEFINITION\n#:LRFI\n" + kCuts + rows);
-  const ProfilePoints middle = read_road(file, 0.0), right = read_road(file, -0.5), left = read_road(file, 0.5);
+  const ProfilePoints middle = read_road(file, {0.0}), right = read_road(file, {-0.5}), left = read_road(file, {0.5});
   EXPECT_NEAR(middle[0][1], 1.02, 1e-12);
   EXPECT_NEAR(middle[2][1], 1.06, 1e-12);
   EXPECT_NEAR(right[0][1], 1.02 + 0.25, 1e-12);  // the height beside it, and the offset
@@ -274,15 +274,15 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
   const std::string short_road = with("END_U = 4.0", "END_U = 3.0");
   const std::filesystem::path file =
       put("road.crg", short_road + text + "$$\n *missing* 0.0000000 0.0000000\n 0.0000000 0.0000000 0.0000000\n");
-  expect_told("expected terrain.profile_v from -0.5 to 0.5 m", [&] { read_road(file, 0.75); });
-  expect_told("has no height at u = 2 m, v = -0.2 m", [&] { read_road(file, -0.2); });
+  expect_told("expected terrain.profile_v from -0.5 to 0.5 m", [&] { read_road(file, {0.75}); });
+  expect_told("has no height at u = 2 m, v = -0.2 m", [&] { read_road(file, {-0.2}); });
   const std::filesystem::path high =
       put("high.crg", short_road + text + "$$\n 0.0000000 0.0000000 0.0000000\n 0.0000000  9.00e+08 0.0000000\n");
-  expect_told("has the height 9e+08 m at u = 3 m, v = 0 m", [&] { read_road(high, 0.0); });
+  expect_told("has the height 9e+08 m at u = 3 m, v = 0 m", [&] { read_road(high, {0.0}); });
 }
 
 TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
-  const ProfilePoints curb = read_road(put("curb.csv", "# a curb\nx_m,z_m\n-1,0\r\n6,0\n6,0.2\n"), 0.0);
+  const ProfilePoints curb = read_road(put("curb.csv", "# a curb\nx_m,z_m\n-1,0\r\n6,0\n6,0.2\n"), {0.0});
   EXPECT_EQ(curb, (ProfilePoints{{-1.0, 0.0}, {6.0, 0.0}, {6.0, 0.2}}));
   const std::pair<const char*, const char*> wrong[] = {
       {"x_m,z_m\n1,0\n0,0\n", "line 3': x_m is 0, expected 1"},
@@ -295,7 +295,7 @@ TEST_F(RoadFile, a_profile_in_csv_is_read_and_its_mistakes_are_told_by_line) {
       {"x_m,z_m\n1\n", "line 2': has 1 values, expected 2"}};
   for (const auto& [text, words] : wrong) {
     const std::filesystem::path file = put("wrong.csv", text);
-    expect_told(words, [&] { read_road(file, 0.0); });
+    expect_told(words, [&] { read_road(file, {0.0}); });
   }
 }
 

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "protocol/files/csv_file.hpp"
+#include "terrain/rigid/ground_map.hpp"
 #include "terrain/rigid/roads/open_crg.hpp"
+#include "terrain/rigid/roads/read_map.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -41,21 +43,33 @@ ProfilePoints read_csv(const std::filesystem::path& file) {
   return points;
 }
 
-/// By the ending, in any case.
-bool is_open_crg(const std::filesystem::path& file) {
-  std::string end = file.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-  return end == ".crg";
+/// A grid cut along x at y = 0.
+ProfilePoints cut(const HeightMap& map, const std::filesystem::path& file, const RoadPlace& place) {
+  if (map.y.front() > 0.0 || map.y.back() < 0.0)
+    throw input_error(file.string(), "",
+                      fmt::format("has no height at y = {:g} m, expected terrain.profile_v from {:g} to {:g} m",
+                                  place.v, place.v + map.y.front(), place.v + map.y.back()));
+  const GroundMap ground(map);
+  ProfilePoints points;
+  for (const double x : map.x) points.push_back({x, ground.height(x, 0.0)});
+  return points;
 }
 
 }  // namespace
 
-ProfilePoints read_road(const std::filesystem::path& file, double v) {
-  const ProfilePoints points = is_open_crg(file) ? profile_of(read_open_crg(file), v, file) : read_csv(file);
+ProfilePoints read_road(const std::filesystem::path& file, const RoadPlace& place) {
+  ProfilePoints points;
+  if (has_ending(file, ".crg"))
+    points = profile_of(read_open_crg(file), place.v, file);
+  else if (const auto map = read_map(file, place))
+    points = cut(*map, file, place);
+  else
+    points = read_csv(file);
   if (points.size() > kMostProfilePoints)
     throw input_error(file.string(), "",
                       fmt::format("has {} points, expected at most {}", points.size(), kMostProfilePoints));
+  const double shift = place.shift(points.front()[0]);
+  for (auto& point : points) point[0] += shift;
   return points;
 }
 

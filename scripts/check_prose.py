@@ -23,7 +23,6 @@ FINDINGS = [(re.compile(rf"\b(?:{word})\b", re.IGNORECASE), instead) for word, i
 EXEMPT = {
     "CHANGELOG.md", "CODE_OF_CONDUCT.md", "nodes/checkpoint/README.md", "nodes/output/README.md",
     "nodes/scenario/README.md", "tests/README.md", "tests/studies/README.md", "tests/tire/verification/README.md",
-    "vehicle/README.md",
 }
 MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|`[^`]*`")
 END = re.compile(r"(?<=[.!?:;])\)?\s+(?=[\"'(*`\[A-Z])")

@@ -22,7 +22,7 @@ WORDS = {r"(?<!there )(?:is|are|was|were) no (?!longer|more|less)\w+": "'is not 
 FINDINGS = [(re.compile(rf"\b(?:{word})\b", re.IGNORECASE), instead) for word, instead in WORDS.items()]
 EXEMPT = {
     "CHANGELOG.md", "CODE_OF_CONDUCT.md", "nodes/checkpoint/README.md", "nodes/output/README.md",
-    "nodes/scenario/README.md", "tests/studies/README.md",
+    "nodes/scenario/README.md",
 }
 MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|`[^`]*`")
 END = re.compile(r"(?<=[.!?:;])\)?\s+(?=[\"'(*`\[A-Z])")

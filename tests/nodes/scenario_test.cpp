@@ -189,7 +189,7 @@ TEST(Scales, sinkage_by_bearing_capacity_is_near_that_of_the_runs) {
                                 {{"terrain.cohesion", cohesion}, {"rig.carrier_mass", carrier}});
     return scenario::wheel_scales(s).front().grains->sinkage;
   };
-  // Runs at slip 0.3: 20, 35 and, on a deep bed, 77 mm (tests/studies/README.md); 33 mm with twice the load (f06f6f2).
+  // At slip 0.3: 20, 35 and, on a deep bed, 77 mm (tests/studies/slip_passes.md); 33 mm with twice the load (f06f6f2).
   EXPECT_NEAR(sinkage("80e3", "450") / 0.020, 1.0, 0.4);
   EXPECT_NEAR(sinkage("40e3", "450") / 0.035, 1.0, 0.4);
   EXPECT_NEAR(sinkage("20e3", "450") / 0.077, 1.0, 0.4);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kBytesPerCoordinate = 20e3;        // shell matrices, tangent and its factors
 constexpr double kBytesPerSavedCoordinate = 110.0;  // coordinates, velocities, and those that factors were made from
-// Of τ that the step may be, without and with contact tangents: tests/studies/README.md, "Step of the flexible tire".
+// Of τ that the step may be, without and with contact tangents: tests/studies/steps.md, "Step of the flexible tire".
 constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
 int most_layers(const TireFile& file) {

@@ -8,7 +8,6 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "co-simulation of flexible tires on granul
 set(CPACK_PACKAGE_DESCRIPTION "Furrow simulates a flexible tire, or a vehicle, on soil made of grains.
 It computes pull, sinkage and rut from the tire's layup and inflation pressure
 and from the contacts between grains, on several ranks of MPI.")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};furrow;program;/")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -24,4 +23,9 @@ if(FURROW_NATIVE)
   set(CPACK_DEBIAN_FILE_NAME furrow_${PROJECT_VERSION}_${_architecture}_native.deb)
 endif()
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/package/copyright DESTINATION share/doc/furrow)
+# `cmake --build build --target package_source`: the archive of a release, which needs no git.
+set(CPACK_SOURCE_GENERATOR TXZ)
+set(CPACK_SOURCE_PACKAGE_FILE_NAME furrow-${PROJECT_VERSION})
+set(CPACK_SOURCE_IGNORE_FILES "/\\.git/" "/build[^/]*/" "^${CMAKE_SOURCE_DIR}/results/" "__pycache__" "\\.tar\\.xz$"
+  "/node_modules/")
 include(CPack)

@@ -53,7 +53,7 @@ def budget():
 
 def lete_sand():
     """Pull and gross traction of the shipped example against slip, with 95 % intervals over beds, beside the report's
-    soil and the regressions for the cone index of the sand."""
+    soil and the regressions for the cone index of the sand. Open: more than a quarter of the beds is not steady."""
     rows = provenance.read_table(driver.HERE / "lete_sand_slip.csv")
     means = [row for row in rows if not row["seed"]]
     old = {float(row["variant"].removeprefix("slip ")) if row["variant"] != "base" else 0.3: row
@@ -67,6 +67,9 @@ def lete_sand():
         slips = [float(row["slip"]) for row in means]
         axes.errorbar(slips, [float(row[f"{what}_N"]) / LOAD for row in means], capsize=3, marker="o", color="C0",
                       yerr=[float(row[f"{what}_N_half"] or 0.0) / LOAD for row in means], label="LETE sand")
+        for slip, row in zip(slips, means):
+            if int(row["steady"]) < 0.75 * int(row["beds"]):
+                axes.plot(slip, float(row[f"{what}_N"]) / LOAD, marker="o", mfc="white", mec="C0", ls="none", zorder=5)
         axes.errorbar(list(old), [float(row[f"{of_old}_N"]) / LOAD for row in old.values()], capsize=3, marker="s",
                       yerr=[float(row[f"{of_old}_N_half_95"]) / LOAD for row in old.values()], color="C1", ls="none",
                       label="the report's soil, bed 113 mm deep")

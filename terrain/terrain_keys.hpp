@@ -30,4 +30,19 @@ inline constexpr Key kFrictionVelocityScale =
     key("friction_velocity_scale", "s/m", allowed::above(0).to(1e6),
         "Constant c in F_t = μ F_e tanh(c |v_t|), law hertz_tanh and engine rigid.");
 
+inline constexpr Key kProfileFile =
+    key("profile_file", "", allowed::not_empty().or_null(),
+        "File with the heights of the ground, engines rigid and scm: CSV with the columns x_m and z_m, or x_m, y_m and "
+        "z_m at the nodes of a grid; a grid in ASCII after ESRI, with the ending .asc; or a measured road in OpenCRG, "
+        "with the ending .crg, whose u is x. Relative to the scenario. In place of profile and road_class.");
+inline constexpr Key kProfileAcross =
+    key("profile_across", "",
+        "Each wheel meets the heights where it is across profile_file. false: those at profile_v, alike for all y.");
+inline constexpr Key kProfileV = key(
+    "profile_v", "m", allowed::from(-1e7, 1e7),
+    "What lies at y = 0 of the scenario: v of profile_file in OpenCRG, to the left of its reference line, or y of a "
+    "grid.");
+inline constexpr Key kProfileFrom = key("profile_from", "m", allowed::from(0, 1e6).or_null(),
+                                        "x where the first height of profile_file lies. null: where the file says.");
+
 }  // namespace furrow::terrain::keys

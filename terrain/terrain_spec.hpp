@@ -8,10 +8,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/ground_heights.hpp"
 #include "protocol/core/key.hpp"
 #include "protocol/core/rank_group.hpp"
 #include "terrain/terrain.hpp"
@@ -64,19 +66,21 @@ struct UnevenPart {
 
 /// What the keys alone say.
 struct TerrainDescription {
-  std::string engine;                        // terrain.engine
-  std::string name;                          // for people: "grains, law mindlin"
-  std::string law;                           // of contact between grains; empty: there are none
-  double grain_radius = 0.0;                 // m; 0: there are none
-  int most_ranks = 1;                        // that the engine can use
-  bool core_per_rank = false;                // each rank computes on one core, and no grain sleeps
-  bool exact_restart = true;                 // a run continued from a checkpoint has the same bits
-  bool gives_tangents = false;               // sends contact tangents beside forces where tires ask for them
-  bool yields = true;                        // under a wheel; false: a wheel can climb it
-  bool answers_at_once = false;              // so cheap that rig and tires can wait for its forces in each step
-  bool takes_stated_contacts = false;        // of tires that know the ground by themselves: Terrain::state_contacts
-  std::string uneven_key;                    // of the section, whose value makes it uneven; empty: it is level ground
-  UnevenPart uneven;                         // where uneven_key is given
+  std::string engine;                  // terrain.engine
+  std::string name;                    // for people: "grains, law mindlin"
+  std::string law;                     // of contact between grains; empty: there are none
+  double grain_radius = 0.0;           // m; 0: there are none
+  int most_ranks = 1;                  // that the engine can use
+  bool core_per_rank = false;          // each rank computes on one core, and no grain sleeps
+  bool exact_restart = true;           // a run continued from a checkpoint has the same bits
+  bool gives_tangents = false;         // sends contact tangents beside forces where tires ask for them
+  bool yields = true;                  // under a wheel; false: a wheel can climb it
+  bool answers_at_once = false;        // so cheap that rig and tires can wait for its forces in each step
+  bool takes_stated_contacts = false;  // of tires that know the ground by themselves: Terrain::state_contacts
+  std::string uneven_key;              // of the section, whose value makes it uneven; empty: it is level ground
+  UnevenPart uneven;                   // where uneven_key is given
+  /// Keys of the section whose values are not followed to the letter, and how.
+  std::vector<std::pair<std::string, std::string>> remarks;
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
   std::optional<TerrainBounds> bounds;       // none: unbounded
   std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured
@@ -116,6 +120,8 @@ class TerrainSpec {
   virtual std::string lacking() const { return {}; }
   /// Against a rigid wheel that stands on it, N/m; 0: not known. @param width m @param load N
   virtual double stiffness_under(double /*radius*/, double /*width*/, double /*load*/) const { return 0.0; }
+  /// Heights of ground that takes stated contacts; empty: it is the plane z = 0.
+  virtual GroundHeights heights(const TerrainContext&) const { return {}; }
   /// Length of that wheel's contact in nodes of a grid; infinite where there is no grid.
   virtual double nodes_under(double /*radius*/, double /*width*/, double /*load*/) const {
     return std::numeric_limits<double>::infinity();

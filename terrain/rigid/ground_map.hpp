@@ -22,6 +22,7 @@ namespace furrow::terrain {
 struct HeightMap {
   std::vector<double> x, y;  // of the nodes, rising, two at least, m
   std::vector<double> z;     // [ix * y.size() + iy], finite
+  double turn = 0.0;         // of the line that is laid straight along x, rad
 };
 
 class GroundMap {

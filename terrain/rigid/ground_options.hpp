@@ -51,21 +51,10 @@ void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
           "Height z of the ground at x, alike for all y, engine rigid: straight between the entries, level before the "
           "first and after the last. Two entries at one x are an upright face, such as a curb. null: the plane z = "
           "0."));
-  visit(s.profile_file,
-        key("profile_file", "", not_empty().or_null(),
-            "File with the heights of the ground, in place of profile, engine rigid: CSV with the columns x_m and z_m, "
-            "or x_m, y_m and z_m at the nodes of a grid; a grid in ASCII after ESRI, with the ending .asc; or a "
-            "measured road in OpenCRG, with the ending .crg, whose u is x. Relative to the scenario."));
-  visit(s.profile_across,
-        key("profile_across", "",
-            "Each wheel meets the heights where it is across profile_file, engine rigid. false: those at profile_v, "
-            "alike for all y."));
-  visit(s.profile_v,
-        key("profile_v", "m", from(-1e7, 1e7),
-            "What lies at y = 0 of the scenario: v of profile_file in OpenCRG, to the left of its reference line, or y "
-            "of a grid, engine rigid."));
-  visit(s.profile_from, key("profile_from", "m", from(0, 1e6).or_null(),
-                            "x where the first height of profile_file lies, engine rigid. null: where the file says."));
+  visit(s.profile_file, keys::kProfileFile);
+  visit(s.profile_across, keys::kProfileAcross);
+  visit(s.profile_v, keys::kProfileV);
+  visit(s.profile_from, keys::kProfileFrom);
   visit(s.road_class,
         key("road_class", "", words("A B C D E F G H").or_null(),
             "Class of a random road after ISO 8608, from A (very smooth) to H, in place of profile, engine rigid. "

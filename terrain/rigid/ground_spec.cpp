@@ -1,6 +1,7 @@
 #include "terrain/rigid/ground_spec.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,10 +10,9 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "terrain/rigid/ground_map.hpp"
+#include "terrain/rigid/ground_shape.hpp"
 #include "terrain/rigid/rigid_ground.hpp"
 #include "terrain/rigid/roads/iso_8608.hpp"
-#include "terrain/rigid/roads/read_map.hpp"
-#include "terrain/rigid/roads/read_road.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -39,10 +39,9 @@ class GroundSpec final : public TerrainSpec {
       d.uneven_key = "profile";
     if (!options_.road_class.empty())
       d.uneven.from = options_.road_from, d.uneven.to = options_.road_from + options_.road_length;
-    else if (options_.map)
-      d.uneven = {options_.map->x.front(), options_.map->x.back(), options_.map->y.front(), options_.map->y.back()};
-    else if (const auto [from, to] = uneven_range(options_.profile); from < to || from == to)
-      d.uneven.from = from, d.uneven.to = to;
+    else
+      d.uneven = GroundShape{options_.profile, options_.map}.uneven();
+    d.remarks = GroundShape{{}, options_.map}.remarks();
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {
@@ -59,9 +58,11 @@ class GroundSpec final : public TerrainSpec {
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
     GroundOptions options = options_;
     static_cast<TerrainContext&>(options) = context;
-    if (!options.road_class.empty())
-      options.profile = iso_8608_road(options.road_class.front(), options.road_from, options.road_length, context.seed);
+    options.profile = profile(context);
     return make_rigid_ground(options);
+  }
+  GroundHeights heights(const TerrainContext& context) const override {
+    return GroundShape{profile(context), options_.map}.heights();
   }
   /// W = ∫ κ (δ − x²/2R) b dx over the contact of half length a = √(2 R δ) is ⅔ κ b a³/R; dW/dδ = 2 κ b a.
   double stiffness_under(double radius, double width, double load) const override {
@@ -74,6 +75,11 @@ class GroundSpec final : public TerrainSpec {
   }
 
  private:
+  ProfilePoints profile(const TerrainContext& context) const {
+    if (options_.road_class.empty()) return options_.profile;
+    return iso_8608_road(options_.road_class.front(), options_.road_from, options_.road_length, context.seed);
+  }
+
   GroundOptions options_;
 };
 
@@ -99,9 +105,10 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
   check_profile(options.profile, context.file, context.key("profile"));
   if (!options.profile_file.empty()) {
     options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
-    const RoadPlace place{options.profile_v, options.profile_from};
-    if (options.profile_across) options.map = read_map(options.profile_file, place);
-    if (!options.map) options.profile = read_road(options.profile_file, place);
+    GroundShape shape =
+        read_shape(options.profile_file, {options.profile_v, options.profile_from}, options.profile_across);
+    options.map = std::move(shape.map);
+    options.profile = std::move(shape.profile);
   }
   return make_ground_spec(options);
 }

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "protocol/core/error.hpp"
+#include "terrain/rigid/ground_map.hpp"
+#include "terrain/rigid/ground_shape.hpp"
 #include "terrain/rigid/roads/iso_8608.hpp"
 #include "terrain/rigid/roads/open_crg.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
@@ -152,6 +154,24 @@ TEST_F(RoadFile, slope_and_banking_of_the_reference_line_are_added) {
     EXPECT_NEAR(left[k][1], z_left[k], 1e-12);
     EXPECT_NEAR(right[k][1], z_right[k], 1e-12);
   }
+}
+
+/// Headings −0.1, 0.3 and, once round, 0.2 rad from where the first row ends; a scale of 0 makes the line straight.
+TEST_F(RoadFile, a_reference_line_that_turns_is_laid_straight_and_said_to_turn) {
+  const auto road = [&](const std::string& mods) {
+    return put("turning.crg", "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\n$\n" + mods +
+                                  "$KD_DEFINITION\n#:LRFI\nD:reference line phi,rad\n"
+                                  "D:long section at v = 1.0,m\nD:long section at v = -1.0,m\n$\n$$\n"
+                                  " *missing* 0.0100000 0.0200000\n-0.1000000 0.0100000 0.0200000\n"
+                                  " 0.3000000 0.0100000 0.0200000\n 6.4831853 0.0100000 0.0200000\n");
+  };
+  const GroundShape shape = read_shape(road(""), {}, true);
+  ASSERT_TRUE(shape.map);
+  EXPECT_NEAR(shape.map->turn, 0.4, 1e-6);
+  EXPECT_EQ(shape.map->x.back(), 6.0);
+  ASSERT_EQ(shape.remarks().size(), 1U);
+  EXPECT_TRUE(holds(shape.remarks()[0].second, "turns by 0.4 rad: it is laid straight")) << shape.remarks()[0].second;
+  EXPECT_TRUE(read_shape(road("$ROAD_CRG_MODS\nSCALE_CURVATURE = 0\n$\n"), {}, true).remarks().empty());
 }
 
 TEST_F(RoadFile, a_row_of_more_than_eight_channels_goes_on_in_the_next_record) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,7 +46,7 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
-enum class Channel { cut, slope, banking, left_out };
+enum class Channel { cut, slope, banking, heading, left_out };
 
 class Reader {
  public:
@@ -132,6 +133,8 @@ class Reader {
     } else if (channel.starts_with("REFERENCE LINE BANKING")) {
       expect_unit(channel, "M/M");
       channels_.push_back(Channel::banking);
+    } else if (channel.starts_with("REFERENCE LINE PHI")) {
+      channels_.push_back(Channel::heading);
     } else {
       channels_.push_back(Channel::left_out);
     }
@@ -312,6 +315,7 @@ class Reader {
                   parameter("REFLINE_OFFSET_Z", 0.0);
     const double steeper = parameter("SCALE_SLOPE", 1.0), banked = parameter("SCALE_BANKING", 1.0);
     const std::size_t width = channels_.size();
+    double before = kNaN, heading = 0.0, least = 0.0, most = 0.0;
     for (std::size_t row = 0; row + width <= rows.size(); row += width) {
       double slope = slope_before, banking = banking_before;
       std::vector<double> cuts;
@@ -320,6 +324,10 @@ class Reader {
         if (channels_[k] == Channel::cut) cuts.push_back(value * parameter("SCALE_Z_GRID", 1.0));
         if (channels_[k] == Channel::slope) slope = value;
         if (channels_[k] == Channel::banking) banking = value;
+        if (channels_[k] != Channel::heading || row == 0) continue;
+        if (!std::isnan(before)) heading += std::remainder(value - before, 2.0 * std::numbers::pi);
+        before = value;
+        least = std::min(least, heading), most = std::max(most, heading);
       }
       // As the heading, the slope of a row is that from the row before to it; the first has none.
       if (row > 0) line += steeper * slope * road.increment;
@@ -329,6 +337,7 @@ class Reader {
       for (std::size_t k = 0; k < across.size(); ++k)
         road.heights.push_back(across[k] + line + banked * banking * road.v[k]);
     }
+    road.turn = (most - least) * std::abs(parameter("SCALE_CURVATURE", 1.0));
     if (road.count() < 2) throw wrong("", fmt::format("has {} cross-sections, expected two at least", road.count()));
     return road;
   }

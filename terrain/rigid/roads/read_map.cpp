@@ -34,6 +34,7 @@ HeightMap map_of(const OpenCrg& road, const std::filesystem::path& file) {
   HeightMap map;
   map.y = road.v;
   map.z = road.heights;
+  map.turn = road.turn;
   const std::size_t cuts = road.v.size();
   for (std::size_t k = 0; k < road.count(); ++k) {
     map.x.push_back(road.start + static_cast<double>(k) * road.increment);

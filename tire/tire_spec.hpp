@@ -13,6 +13,7 @@
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/fields.hpp"
+#include "protocol/core/ground_heights.hpp"
 #include "protocol/core/key.hpp"
 #include "tire/pressure_schedule.hpp"
 #include "tire/rim_properties.hpp"
@@ -111,7 +112,8 @@ struct TireDescription {
   /// Of a tire whose contact is its own, under its nominal load: N/m upwards, N/m along where slip relaxes over a
   /// length, N s/m along where it does not. 0: it has no such thing.
   double vertical_stiffness = 0.0, grip_stiffness = 0.0, grip_damping = 0.0;
-  double most_load = 0.0;  // that its file was measured up to, N; 0: not known
+  double contact_length = 0.0;  // likewise, m
+  double most_load = 0.0;       // that its file was measured up to, N; 0: not known
   /// Why this tire can be pressed but not made and run: "whose key 'integrator' is …"; empty: it can.
   std::string static_only;
   NamedValues model;  // what else there is to know of this model: "layers"
@@ -120,11 +122,13 @@ struct TireDescription {
 /// How a model computes, and under which gravity; what is not given is as the model takes it on its own.
 struct TireContext {
   int threads = 1;
-  std::optional<double> tolerance = {};        // of the solver's residual, relative
-  std::optional<double> renewal = {};          // change of shape at which the solver renews its factors
-  Vec3 gravity = standard_gravity();           // m/s²
-  std::optional<double> ground_friction = {};  // where the scenario states it, -; for tires with a contact of their own
-  std::function<void()> alive = {};            // called now and then while the tire is inflated; may throw to stop
+  std::optional<double> tolerance = {};  // of the solver's residual, relative
+  std::optional<double> renewal = {};    // change of shape at which the solver renews its factors
+  Vec3 gravity = standard_gravity();     // m/s²
+  // For tires with a contact of their own.
+  std::optional<double> ground_friction = {};  // where the scenario states it, -
+  GroundHeights ground_heights = {};
+  std::function<void()> alive = {};  // called now and then while the tire is inflated; may throw to stop
 };
 
 class TireSpec;

@@ -25,6 +25,12 @@
 namespace furrow::ranks {
 namespace {
 
+/// For a tire whose contact is its own.
+GroundHeights ground_heights(const scenario::Scenario& scenario, int index) {
+  if (scenario.tires.at(index)->describe().own_contact.empty()) return {};
+  return scenario.terrain->heights(scenario.terrain_context());
+}
+
 class TireNode : public Node {
  public:
   TireNode(const scenario::Scenario& scenario, int index, std::function<void()> alive)
@@ -34,6 +40,7 @@ class TireNode : public Node {
         pressure_(scenario.tires.at(index)->options().pressure),
         tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(),
                                               .ground_friction = scenario.ground_friction,
+                                              .ground_heights = ground_heights(scenario, index),
                                               .alive = std::move(alive)})),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
     report_.prompt = scenario.prompt(index);

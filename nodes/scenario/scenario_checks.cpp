@@ -15,6 +15,7 @@
 #include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_text.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/host.hpp"
 #include "terrain/dem/beds/bed_packing.hpp"
 
@@ -26,6 +27,8 @@ constexpr double kLeastPart = 6.0;    // radii along x that a rank's part of the
 constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kBeyond = 1.5;       // of the load that a tire was fitted to
+constexpr double kMostBend = 0.1;     // of ground under a tire that takes it as a plane: R/radius of the ground
+constexpr double kMostScanned = 2e5;  // points of it
 constexpr double kGigabyte = 1e9;
 constexpr double kWallShare = 0.05, kMostWallMargin = 0.02;  // of the tire's radius; m
 constexpr double kRounding = 1e-9;                           // relative, of times that people write as decimals
@@ -101,6 +104,7 @@ class Checks {
       if (std::any_of(s_.tires.begin(), s_.tires.begin() + static_cast<std::ptrdiff_t>(k), same)) continue;
       for (const auto& [key, what] : s_.tires[k]->unlikely_values())
         warn_of(input_error(s_.tires[k]->options().file.string(), key, what));
+      rim_values(*s_.tires[k]);
     }
     tires_ = describe_tires(s_);
     for (std::size_t k = 0; k < tires_.size(); ++k)
@@ -117,6 +121,18 @@ class Checks {
     if (rig.speeds_up_until > s_.run.average_from + 1e-12)
       warn("run.average_from", "the window begins at {} s, while the wheel still speeds up until {} = {} s",
            number_text(s_.run.average_from), rig.speeds_up_key, number_text(rig.speeds_up_until));
+  }
+
+  /// Of the block `rim` of a tire's file: another unit?
+  void rim_values(const tire::TireSpec& tire) {
+    const tire::RimProperties& rim = tire.rim();
+    for (const auto& [key, value, low, high, unit] :
+         {std::tuple{"rim.mass", rim.mass, 0.01, 2e3, "kg"},
+          {"rim.spin_inertia", rim.spin_inertia, 1e-6, 1e3, "kg m²"},
+          {"rim.diametral_inertia", rim.diametral_inertia, 1e-6, 1e3, "kg m²"},
+          {"rim.carrier_mass", rim.carrier_mass, 0.1, 2e4, "kg"}})
+      if (const std::string odd = value > 0.0 ? unusual_text(value, low, high, unit) : ""; !odd.empty())
+        warn_of(input_error(tire.options().file.string(), key, odd));
   }
 
   /// Steps at which forces at the contact of a wheel decide the result by their timing.
@@ -146,19 +162,16 @@ class Checks {
       throw wrong(s_.tire_key(wheel, "contact_tangent"),
                   "is true, expected false: {} (terrain.engine '{}') gives no contact tangents", terrain_.name,
                   terrain_.engine);
-    if (!tires_[wheel].own_contact.empty()) require_level_ground(wheel);
+    if (!tires_[wheel].own_contact.empty()) require_hard_ground(wheel);
     for (const std::string& key : tire::idle_keys(tire))
       warn(s_.tire_key(wheel, key), "is ignored: a {} does not use it", in_words(tires_[wheel]));
   }
 
   /// A tire that states its contact needs a terrain that lets it.
-  void require_level_ground(std::size_t wheel) {
-    std::string key = terrain_.uneven_key, what = "is given, expected level ground";
+  void require_hard_ground(std::size_t wheel) {
     if (!terrain_.takes_stated_contacts)
-      key = "engine",
-      what = fmt::format("is '{}', expected {}", terrain_.engine, terrain::engines_with_stated_contacts());
-    if (!key.empty())
-      throw wrong("terrain." + key, "{}: {} is a {}, {}", what, s_.tire_key(wheel, "file"), in_words(tires_[wheel]),
+      throw wrong("terrain.engine", "is '{}', expected {}: {} is a {}, {}", terrain_.engine,
+                  terrain::engines_with_stated_contacts(), s_.tire_key(wheel, "file"), in_words(tires_[wheel]),
                   tires_[wheel].own_contact);
   }
 
@@ -238,7 +251,9 @@ class Checks {
     rig_.fill_starts(wheel_sizes(tires_), s_.run.end,
                      terrain_.bounds ? std::optional(terrain_.bounds->length) : std::nullopt, margins);
     for (const auto& [key, what] : rig_.unlikely_values()) warn(key, "{}", what);
+    for (const auto& [key, what] : terrain_.remarks) warn("terrain." + key, "{}", what);
     road();
+    bends();
     if (!terrain_.bounds) return;
     const double length = terrain_.bounds->length;
     for (const rigs::WheelDescription& wheel : describe().wheels) {
@@ -278,12 +293,51 @@ class Checks {
              number_text(wheel.lateral));
         break;
       }
+    if (to >= road.from && from <= road.to) return;
     const auto moves = [](const rigs::WheelDescription& wheel) { return wheel.from != wheel.to; };
-    if ((to >= road.from && from <= road.to) || !std::ranges::any_of(wheels, moves)) return;
+    if (!std::ranges::any_of(wheels, moves)) {
+      // Ground of keys may begin ahead of a vehicle.
+      if (from > road.to || terrain_.uneven_key == "profile_file")
+        warn("terrain." + terrain_.uneven_key,
+             "is uneven from x = {} to {} m, and the wheels start from x = {} to {} m, on level ground; {}{} places "
+             "them",
+             number_text(road.from), number_text(road.to), number_text(from), number_text(to), wheels.front().start_key,
+             terrain_.uneven_key == "profile_file" ? " or terrain.profile_from" : "");
+      return;
+    }
     warn("terrain." + terrain_.uneven_key,
          "is uneven from x = {} to {} m, and no wheel comes there: they are on level ground from x = {} to {} m; "
          "{} places them",
          number_text(road.from), number_text(road.to), number_text(from), number_text(to), wheels.front().start_key);
+  }
+
+  /// Ground that bends within the contact of a tire that takes it as a plane (tire/handling/road_plane.hpp).
+  void bends() {
+    const auto in_planes = [](const tire::TireDescription& tire) { return tire.contact_length > 0.0; };
+    if (terrain_.uneven_key.empty() || std::ranges::none_of(tires_, in_planes)) return;
+    const GroundHeights heights = s_.terrain->heights(s_.terrain_context());
+    const terrain::UnevenPart& road = terrain_.uneven;
+    if (!heights || !std::isfinite(road.from) || !std::isfinite(road.to)) return;
+    double most = kMostBend, worst_at = 0.0, worst_bend = 0.0, worst_length = 0.0;
+    const std::vector<rigs::WheelDescription> wheels = describe().wheels;
+    for (std::size_t k = 0; k < wheels.size(); ++k) {
+      const double half = 0.5 * tires_[k].contact_length, y = wheels[k].lateral;
+      if (!(half > 0.0)) continue;
+      double from = road.from - half, to = road.to + half;
+      if (const auto [first, last] = std::minmax(wheels[k].from, wheels[k].to); first < last)
+        from = std::max(from, first), to = std::min(to, last);
+      const double apart = std::max(0.5 * half, (to - from) / kMostScanned);
+      for (double x = from; x <= to; x += apart) {
+        const double bend = 0.5 * std::abs(heights(x - half, y) - 2.0 * heights(x, y) + heights(x + half, y));
+        if (const double share = 2.0 * bend * tires_[k].radius / (half * half); share > most)
+          most = share, worst_at = x, worst_bend = bend, worst_length = 2.0 * half;
+      }
+    }
+    if (most > kMostBend)
+      warn("terrain." + terrain_.uneven_key,
+           "bends by {} mm within the {} mm of a tire's contact at x = {} m: a handling tire takes the mean height and "
+           "slope there, and follows only longer waves; rings and shells follow the shape",
+           digits(1e3 * worst_bend), digits(1e3 * worst_length), number_text(short_decimal(worst_at)));
   }
 
   /// What is wrong with the start of a wheel that stands in a wall of the bin.

@@ -101,12 +101,12 @@ Scales scales_of(const Scenario& s) {
   return scales;
 }
 
-/// A tire whose file holds for hard level ground gets that; a soil file without properties of grains is empirical soil.
+/// A tire whose file holds for hard ground gets that; a soil file without properties of grains is empirical soil.
 Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
   const bool hard = s.has_own_contact();
   if (hard && !o.soil.empty())
     throw input_error("command line", "--soil",
-                      "is given, expected none: the file of '{}' holds for hard level ground; with --rigid the tires "
+                      "is given, expected none: the file of '{}' holds for hard ground; with --rigid the tires "
                       "keep their shape and roll on soil",
                       s.tires.front()->options().file.filename().string());
   if (hard) return Ground::hard;

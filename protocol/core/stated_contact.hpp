@@ -10,11 +10,13 @@ namespace furrow {
 struct StatedContact {
   bool given =
       false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
-  NodalForces forces;  // on the tire, for the interval that begins; without tangents
+  NodalForces forces;           // on the tire, for the interval that begins; without tangents
+  Vec3 normal = Vec3::UnitZ();  // of the ground where they act: the rest of a force is friction
 };
 void visit_fields(FieldsOf<StatedContact> auto& s, auto&& visit) {
   visit(s.given, Field{"given", ""});
   visit(s.forces, Field{"forces", ""});
+  visit(s.normal, Field{"normal", ""});
 }
 
 }  // namespace furrow

@@ -301,9 +301,10 @@ void RigidGround::state_contacts(std::span<const StatedContact> contacts) {
 }
 
 /// The forces that a tire states, in place of the ground's own: what they do along the ground is lost by sliding, what
-/// they do up and down is the damping of the pair.
+/// they do along its normal is the damping of the pair.
 void RigidGround::give_stated(GroundSurface& surface, double dt) {
   const NodalForces& stated = surface.stated.forces;
+  const Vec3& normal = surface.stated.normal;
   surface.contacts.clear();
   surface.floor_force = 0.0;
   for (std::size_t i = 0; i < stated.vertex.size(); ++i) {
@@ -314,7 +315,7 @@ void RigidGround::give_stated(GroundSurface& surface, double dt) {
     contact.triangle = triangle;
     contact.weight[corner] = 1.0;
     contact.point = surface.position[vertex];
-    contact.normal = Vec3(0.0, 0.0, stated.force[i].z());
+    contact.normal = stated.force[i].dot(normal) * normal;
     contact.tangential = stated.force[i] - contact.normal;
     surface.contacts.push_back(contact);
     surface.floor_force += contact.normal.z();

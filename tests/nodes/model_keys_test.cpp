@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "nodes/scenario/explain.hpp"
@@ -72,6 +73,54 @@ TEST(TerrainKeys, ground_whose_uneven_part_no_wheel_meets_is_warned_of) {
   for (const char* const met : {R"({"engine": "rigid", "profile": [[0, 0], [1, 0.1]]})",
                                 R"({"engine": "rigid", "profile": [[0, 0.1], [1000, 0.1]]})"})
     EXPECT_TRUE(with_terrain(met).load().warnings.empty()) << met;
+}
+
+/// How far a steered vehicle drives is not known; a road of keys may begin ahead of it.
+TEST(TerrainKeys, a_vehicle_that_starts_beside_a_road_is_warned_of) {
+  const auto told = [](const std::string& terrain, const char* start) {
+    const ScenarioFile file(R"({"rig": {"type": "vehicle", "vehicle": "hmmwv.json"}, "tire": {"rigid": true},
+                               "terrain": )" +
+                            terrain + "}");
+    std::ofstream(file.path().parent_path() / "road.csv") << "x_m,z_m\n20,0\n30,0.1\n40,0\n";
+    return fmt::format("{}", fmt::join(file.load({{"rig.start", start}}).warnings, "\n"));
+  };
+  const std::string road = R"({"engine": "rigid", "profile_file": "road.csv"})",
+                    drawn = R"({"engine": "rigid", "road_class": "A"})";
+  EXPECT_EQ(told(road, "22"), "");
+  EXPECT_TRUE(
+      holds(told(road, "5"), "'terrain.profile_file': is uneven from x = 20 to 40 m, and the wheels start from"))
+      << told(road, "5");
+  EXPECT_TRUE(holds(told(road, "5"), "rig.start or terrain.profile_from places them"));
+  EXPECT_EQ(told(drawn, "3"), "");
+  EXPECT_TRUE(holds(told(drawn, "300"), "'terrain.road_class': is uneven from x = 5 to 105 m, and the wheels start"));
+}
+
+TEST(TerrainKeys, heights_of_empirical_soil_are_warned_of_where_they_are_steep) {
+  const auto told = [](double rise) {
+    const ScenarioFile file = with_terrain(R"({"engine": "scm", "profile_file": "ramp.csv"})");
+    std::ofstream(file.path().parent_path() / "ramp.csv") << "x_m,z_m\n0,0\n10," << rise << "\n";
+    const scenario::Scenario s = file.load();
+    EXPECT_EQ(s.terrain->files().size(), 1U);
+    EXPECT_FALSE(s.terrain->describe().undisturbed_height);
+    return fmt::format("{}", fmt::join(s.warnings, "\n"));
+  };
+  EXPECT_EQ(told(2.0), "");
+  EXPECT_TRUE(holds(told(4.0), "key 'terrain.profile_file': rises by 22° at its steepest, expected at most 15°"))
+      << told(4.0);
+}
+
+TEST(TerrainKeys, ground_that_bends_within_the_contact_of_a_handling_tire_is_warned_of) {
+  const auto told = [](const char* terrain) {
+    const ScenarioFile file(fmt::format(R"({{"tire": {{"file": "hmmwv_handling.json"}}, "rig": {{"start": 1}},
+                                             "run": {{"end": 3}}, "terrain": {}}})",
+                                        terrain));
+    return fmt::format("{}", fmt::join(file.load().warnings, "\n"));
+  };
+  EXPECT_FALSE(holds(told(R"({"engine": "rigid", "profile": [[0, 0], [40, 4]]})"), "bends by"));
+  EXPECT_FALSE(holds(told(R"({"engine": "rigid", "road_class": "A", "road_from": 1})"), "bends by"));
+  const std::string curb = told(R"({"engine": "rigid", "profile": [[2, 0], [2, 0.1]]})");
+  EXPECT_TRUE(holds(curb, "key 'terrain.profile': bends by 50 mm within the ")) << curb;
+  EXPECT_TRUE(holds(curb, "takes the mean height and slope there")) << curb;
 }
 
 TEST(TerrainKeys, what_an_engine_cannot_do_is_refused_even_where_it_is_the_default) {

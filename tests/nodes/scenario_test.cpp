@@ -370,6 +370,16 @@ TEST_F(Smallest, magnitudes_of_another_unit_are_warned_of) {
   EXPECT_TRUE(file_.load({{"tire.pressure", "0"}, {"terrain.cohesion", "0"}}).warnings.empty());
 }
 
+TEST_F(Smallest, masses_of_a_rim_in_another_unit_are_warned_of) {
+  nlohmann::json tire = nlohmann::json::parse(std::ifstream(data_folder() / "tire" / "data" / "hmmwv_layered.json"));
+  tire["rim"]["mass"] = 15000;         // g
+  tire["rim"]["carrier_mass"] = 0.05;  // of a ton
+  std::ofstream(file_.path().parent_path() / "mine.json") << tire.dump();
+  const auto told = fmt::format("{}", fmt::join(file_.load({{"tire.file", "mine.json"}}).warnings, "\n"));
+  EXPECT_TRUE(holds(told, "mine.json: key 'rim.mass': 15000 kg is unusually large")) << told;
+  EXPECT_TRUE(holds(told, "mine.json: key 'rim.carrier_mass': 0.05 kg is unusually small")) << told;
+}
+
 TEST_F(Smallest, times_that_are_no_whole_steps_are_told) {
   const auto warnings = [&](const char* key, const char* value) { return file_.load({{key, value}}).warnings; };
   const auto only = [&](const char* key, const char* value, const std::string& expected) {

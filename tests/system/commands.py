@@ -164,7 +164,7 @@ class Commands(SystemTest):
                 self.assertEqual(report["warnings"], [])
                 self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
         self.furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", code=2,
-                    says="--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard level "
+                    says="--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard "
                     "ground; with --rigid")
 
     def test_new_leaves_no_file_where_it_fails_and_none_of_yours_is_touched(self):

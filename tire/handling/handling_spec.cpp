@@ -40,7 +40,7 @@ class HandlingSpec final : public TireSpec {
     require_inertia(file_);
     return std::make_unique<handling::HandlingTire>(
         context.ground_friction ? handling::on_ground_of(file_.formula, *context.ground_friction) : file_.formula,
-        shape(), context.gravity, file_.tir.string());
+        shape(), context.gravity, file_.tir.string(), context.ground_heights);
   }
   TireShape shape() const override;
   std::unique_ptr<StaticTest> static_test() const override {
@@ -83,6 +83,7 @@ TireDescription HandlingSpec::describe() const {
   if (t.conditions.nompres > 0.0) d.takes = {"pressure"};
   const double slip_stiffness = std::abs(handling::evaluate(t, {.load = t.vertical.fnomin}).slip_stiffness);
   d.vertical_stiffness = handling::spring_stiffness(t, t.vertical.fnomin);
+  d.contact_length = handling::contact_length(t);
   d.most_load = t.load.most;
   if (s.longitudinal > 0.0)
     d.grip_stiffness = slip_stiffness / s.longitudinal;
@@ -90,7 +91,7 @@ TireDescription HandlingSpec::describe() const {
     d.grip_damping = slip_stiffness / t.low_speed;
   if (!file_.lacking.empty())
     d.static_only = fmt::format("whose key '{}' in {} {}", file_.lacking_key, file_.path, file_.lacking);
-  d.own_contact = "its forces are those of the Magic Formula, which holds for hard level ground";
+  d.own_contact = "its forces are those of the Magic Formula, which holds for hard ground";
   return d;
 }
 

@@ -17,7 +17,7 @@ namespace furrow::tire {
 /// The keys of a tire file of this model.
 struct HandlingFile {
   static constexpr SchemaName kSchema{"handling",
-                                      "A tire on hard level ground by the Magic Formula: names a tire property file "
+                                      "A tire on hard ground by the Magic Formula: names a tire property file "
                                       "(.tir) of MF-Tyre 5.2, PAC2002 or Magic Formula 6.1, which may be "
                                       "the tire's file itself where it has a section [INERTIA]. SI units."};
   std::string path;

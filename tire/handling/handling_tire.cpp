@@ -29,9 +29,11 @@ RimState later(const RimState& rim, double duration) {
 
 }  // namespace
 
-HandlingTire::HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file)
+HandlingTire::HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file,
+                           GroundHeights heights)
     : Tire(gravity, std::move(shape)), formula_(std::move(formula)), file_(std::move(file)), body_(shape_, gravity) {
   FURROW_ASSERT(shape_.radius == formula_.dimension.unloaded_radius, shape_.radius);
+  if (heights) road_ = RoadPlane(std::move(heights), 0.5 * contact_length(formula_), 0.5 * formula_.dimension.width);
   stated_.given = true;
 }
 
@@ -55,14 +57,17 @@ void HandlingTire::move(const RimState& rim, std::vector<Vec3>& position, std::v
   position.resize(count);
   if (velocity) velocity->resize(count);
   const Mat3 turn = rim.orientation.toRotationMatrix();
-  const bool flat = on_ground(contact_motion(formula_, rim));
+  const ContactMotion motion = motion_of(rim);
+  const Vec3& up = motion.axes.z;
+  const bool flat = on_ground(motion);
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3 arm = turn * shape_.vertex[k];
     position[k] = rim.position + arm;
     if (velocity) (*velocity)[k] = rim.velocity + rim.angular_velocity.cross(arm);
-    if (!flat || position[k].z() >= 0.0) continue;
-    position[k].z() = 0.0;
-    if (velocity) (*velocity)[k].z() = 0.0;
+    const double height = motion.axes.height(position[k]);
+    if (!flat || height >= 0.0) continue;
+    position[k] -= height * up;
+    if (velocity) (*velocity)[k] -= (*velocity)[k].dot(up) * up;
   }
 }
 
@@ -87,12 +92,12 @@ Outcome HandlingTire::state_contact(const RimState& now, double duration) {
     RimState middle = later(met_, 0.5 * duration);
     middle.velocity = 0.5 * (met_.velocity + now.velocity);
     middle.angular_velocity = 0.5 * (met_.angular_velocity + now.angular_velocity);
-    patch_ = advanced(formula_, contact_motion(formula_, middle), patch_, duration);
+    patch_ = advanced(formula_, motion_of(middle), patch_, duration);
   }
   standing_ = false;
   met_ = now;
   stated_.forces.clear();
-  const double pressed = contact_motion(formula_, now).deflection,
+  const double pressed = motion_of(now).deflection,
                most = formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
   if (pressed >= most)
     return Outcome::failure(
@@ -100,13 +105,14 @@ Outcome HandlingTire::state_contact(const RimState& now, double duration) {
         fmt::format("{}: [DIMENSION] RIM_RADIUS leaves {:.4g} m; expected less load or drop", file_, most));
 
   const RimState rim = later(now, 0.5 * duration);
-  const ContactMotion motion = contact_motion(formula_, rim);
+  const ContactMotion motion = motion_of(rim);
   if (!on_ground(motion) || !(motion.load > 0.0)) return {};
   const HandlingForces f = contact_forces(formula_, motion, advanced(formula_, motion, patch_, 0.5 * duration));
   const WheelAxes& axes = motion.axes;
   const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z, f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
   move(rim, before_, &moving_);
-  distribute(wanted, axes.origin);
+  stated_.normal = axes.z;
+  distribute(wanted, axes);
   double power = -spring_force(formula_, motion.deflection) * motion.rate;
   for (std::size_t i = 0; i < stated_.forces.vertex.size(); ++i) {
     const int k = stated_.forces.vertex[i];
@@ -117,12 +123,12 @@ Outcome HandlingTire::state_contact(const RimState& now, double duration) {
   return {};
 }
 
-void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
+void HandlingTire::distribute(const Wrench& wanted, const WheelAxes& axes) {
   const double reach = kNear * shape_.radius;
   double sum = 0.0;
   Vec3 mean = Vec3::Zero();
   const auto weight = [&](const Vec3& x) {
-    const double height = std::max(0.0, reach - x.z());
+    const double height = std::max(0.0, reach - axes.height(x));
     return height * height;
   };
   const int vertices = static_cast<int>(shape_.vertex.size()) - 2;  // without the middles of the discs
@@ -141,7 +147,7 @@ void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
     const Vec3 d = before_[k] - mean;
     spread += w * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
   }
-  const Vec3 turn = spread.ldlt().solve(wanted.moment + (centre - mean).cross(wanted.force));
+  const Vec3 turn = spread.ldlt().solve(wanted.moment + (axes.origin - mean).cross(wanted.force));
   for (int k = 0; k < vertices; ++k) {
     const double w = weight(before_[k]);
     if (!(w > 0.0)) continue;
@@ -152,7 +158,7 @@ void HandlingTire::distribute(const Wrench& wanted, const Vec3& centre) {
 
 TireDiagnostics HandlingTire::diagnostics() const {
   TireDiagnostics d = body_.diagnostics();
-  const double deflection = standing_ ? 0.0 : std::max(0.0, contact_motion(formula_, rim_).deflection);
+  const double deflection = standing_ ? 0.0 : std::max(0.0, motion_of(rim_).deflection);
   d.elastic_energy = spring_energy(formula_, deflection);
   d.dissipation = dissipation_;
   return d;

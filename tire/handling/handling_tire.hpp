@@ -1,11 +1,13 @@
-// A tire that the Magic Formula describes: on level hard ground. It states its contact itself (stated_contact()): the
+// A tire that the Magic Formula describes: on hard ground. It states its contact itself (stated_contact()): the
 // terrain gives the forces that it asks for, on its own surface and in its own books, and adds none of its own.
 //
 // The forces of an interval of the length H from t are those of the rim's motion extrapolated from t to its middle;
 // they act over the same interval. To patch and tire, which are springs, that is the leapfrog rule: it makes no energy.
 //
-// Surface: a cylinder of R_0, flattened where it would be below the ground. Its vertices otherwise move with the rim.
+// Surface: a cylinder of R_0, flattened where it would be below the ground, which where it is not level is the plane
+// under the wheel (road_plane.hpp). Its vertices otherwise move with the rim.
 // Force and moment about the contact centre C go to the vertices near the ground with the weights w = max(0, ε − z)²,
+// z the height above that plane,
 //
 //   f_k = w_k [F/Σw + θ × (x_k − x̄)],   Σ w [d² I − d dᵀ] θ = M + (C − x̄) × F,   x̄ = Σ w x/Σ w, d = x − x̄,
 //
@@ -26,8 +28,9 @@ namespace furrow::tire::handling {
 
 class HandlingTire final : public Tire {
  public:
-  /// @param shape with the radius R_0 @param file for messages
-  HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file);
+  /// @param shape with the radius R_0 @param file for messages @param heights of the ground
+  HandlingTire(MagicFormula formula, TireShape shape, const Vec3& gravity, std::string file,
+               GroundHeights heights = {});
 
   int coordinates() const override { return 2; }
 
@@ -56,11 +59,13 @@ class HandlingTire final : public Tire {
   /// Vertices of the wheel at a pose, flattened by the ground. @param velocity may be null
   void move(const RimState& rim, std::vector<Vec3>& position, std::vector<Vec3>* velocity) const;
   bool on_ground(const ContactMotion& motion) const;
-  /// Gives `wanted`, about `centre`, to the vertices near the ground.
-  void distribute(const Wrench& wanted, const Vec3& centre);
+  ContactMotion motion_of(const RimState& rim) const { return contact_motion(formula_, rim, road_); }
+  /// Gives `wanted`, about the contact centre, to the vertices near the ground.
+  void distribute(const Wrench& wanted, const WheelAxes& axes);
 
   MagicFormula formula_;
   std::string file_;
+  RoadPlane road_;
   RigidTire body_;            // its mass
   RimState met_;              // where the last interval began
   PatchState patch_;          // there

@@ -387,6 +387,12 @@ double spring_deflection(const MagicFormula& tire, double load) {
                        : 2.0 * load / (stiffness + std::sqrt(std::max(0.0, square(stiffness) + 4.0 * growth * load)));
 }
 
+double contact_length(const MagicFormula& tire) {
+  const double radius = tire.dimension.unloaded_radius;
+  const double loaded = std::max(0.0, radius - spring_deflection(tire, tire.vertical.fnomin));
+  return 2.0 * std::sqrt(radius * radius - loaded * loaded);
+}
+
 double spring_stiffness(const MagicFormula& tire, double load) {
   const double deflection = spring_deflection(tire, load);
   if (const auto& curve = tire.load_curve; !curve.empty())

@@ -1,4 +1,4 @@
-// The Magic Formula, steady state: forces and moments of a tire that rolls on hard level ground.
+// The Magic Formula, steady state: forces and moments of a tire that rolls on hard ground.
 //
 //   y = D sin[C atan{B x − E (B x − atan(B x))}]
 //
@@ -93,6 +93,8 @@ double spring_force(const MagicFormula& tire, double deflection);
 double spring_energy(const MagicFormula& tire, double deflection);
 /// @param load ≥ 0, N @return ρ, m
 double spring_deflection(const MagicFormula& tire, double load);
+/// Of the cylinder of R_0 flattened by FNOMIN, m.
+double contact_length(const MagicFormula& tire);
 /// dF/dρ under the load, N/m.
 double spring_stiffness(const MagicFormula& tire, double load);
 

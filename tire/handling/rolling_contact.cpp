@@ -75,14 +75,14 @@ HandlingForces forces_forward(const MagicFormula& tire, const ContactMotion& mot
 
 }  // namespace
 
-ContactMotion contact_motion(const MagicFormula& tire, const RimState& rim) {
+ContactMotion contact_motion(const MagicFormula& tire, const RimState& rim, const RoadPlane& road) {
   ContactMotion m;
   const Vec3 axle = rim.orientation * Vec3::UnitY();
-  m.axes = wheel_axes(rim, axle.cross(Vec3::UnitZ()).normalized(), 0.0);
+  m.axes = road.axes_of(rim, axle.cross(Vec3::UnitZ()).normalized(), tire.dimension.unloaded_radius);
   m.deflection = tire.dimension.unloaded_radius - m.axes.loaded_radius;
   const double spin = rim.angular_velocity.dot(axle), cosine = std::cos(m.axes.camber_angle);
   const Vec3 carried = rim.velocity + (rim.angular_velocity - spin * axle).cross(m.axes.origin - rim.position);
-  m.rate = -carried.z() / cosine;
+  m.rate = -carried.dot(m.axes.z) / cosine;
   m.travel = carried.dot(m.axes.x);
   m.slip_x = m.travel - spin * rolling_radius(tire, std::max(0.0, m.deflection));
   m.slip_y = carried.dot(m.axes.y);

@@ -1,11 +1,12 @@
-// How a handling tire stands and slips on level hard ground: what the Magic Formula needs of the rim's motion, with
+// How a handling tire stands and slips on hard ground: what the Magic Formula needs of the rim's motion, with
 // slips that follow it over a relaxation length.
 //
 // With the W-axes of tire/wheel_axes.hpp at the contact centre C, the loaded radius R_l and the camber angle γ:
 //
 //   deflection ρ = R_0 − R_l,   F_z = (F(ρ) + K_z ρ̇)/cos γ ≥ 0,   F = C_z ρ or as the file says (spring_force())
 //
-// F_z acts at C: so ∫ F dρ is a potential, and what the ground does not get back of F_z's work is K_z ρ̇².
+// On uneven ground the W-axes are those of the plane of road_plane.hpp. F_z acts at C: so ∫ F dρ is a potential, and
+// what the ground does not get back of F_z's work is K_z ρ̇².
 //
 //   V_C = v + (ω − Ω a) × (C − r),   V_sx = V_Cx − Ω R_e(ρ),   V_sy = V_Cy,   Ω the spin about the axle a
 //   u̇ = −V_sx − |V_Cx| u/σ_κ,   v̇ = −V_sy − |V_Cx| v/σ_α                     [1, chapter 7: (7.7), (7.9)]
@@ -24,6 +25,7 @@
 
 #include "protocol/core/fields.hpp"
 #include "tire/handling/magic_formula.hpp"
+#include "tire/handling/road_plane.hpp"
 #include "tire/wheel_axes.hpp"
 
 namespace furrow::tire::handling {
@@ -47,7 +49,7 @@ struct ContactMotion {
   double slip_x = 0.0, slip_y = 0.0;  // V_sx, V_sy, m/s
 };
 
-ContactMotion contact_motion(const MagicFormula& tire, const RimState& rim);
+ContactMotion contact_motion(const MagicFormula& tire, const RimState& rim, const RoadPlane& road = {});
 
 /// The patch after `duration` of such a motion. @pre duration ≥ 0, s
 PatchState advanced(const MagicFormula& tire, const ContactMotion& motion, const PatchState& patch, double duration);

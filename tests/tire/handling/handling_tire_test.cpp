@@ -28,10 +28,10 @@ namespace {
 
 constexpr double kStep = 1e-4;  // s
 
-HandlingTire make(const MagicFormula& formula = example_tire()) {
+HandlingTire make(const MagicFormula& formula = example_tire(), GroundHeights heights = {}) {
   TireShape shape = cylinder(96, formula.dimension.unloaded_radius, formula.dimension.width, 7);
   shape.mass = {10.0, Vec3(0.5, 0.9, 0.5).asDiagonal()};
-  return HandlingTire(formula, shape, standard_gravity(), "a.tir");
+  return HandlingTire(formula, shape, standard_gravity(), "a.tir", std::move(heights));
 }
 
 /// A rim that rolls along x, turned by `toe` about z and leaning by `camber`, its wheel's lowest point `depth` deep.
@@ -190,6 +190,103 @@ TEST(HandlingTire, accounts_close_while_it_rolls_and_slides) {
     EXPECT_LT(std::abs(left), 2e-3 * std::max(turned_over, 50.0)) << slip;
     EXPECT_LE(run.terrain_work, 0.0) << "the ground takes";
   }
+}
+
+RimState turned(const Quat& turn, RimState rim) {
+  rim.position = turn * rim.position;
+  rim.orientation = turn * rim.orientation;
+  rim.velocity = turn * rim.velocity;
+  rim.angular_velocity = turn * rim.angular_velocity;
+  return rim;
+}
+
+/// Waves along x, m.
+GroundHeights waves(double amplitude, double length) {
+  return [=](double x, double) { return amplitude * std::sin(2.0 * std::numbers::pi * x / length); };
+}
+
+/// About the rim's centre, without the tire's own weight.
+Wrench stated_wrench(HandlingTire& tire, const RimState& rim) {
+  SurfaceState surface;
+  tire.surface_on(rim, surface);
+  Wrench sum;
+  const NodalForces& stated = tire.stated_contact()->forces;
+  for (std::size_t i = 0; i < stated.vertex.size(); ++i) {
+    sum.force += stated.force[i];
+    sum.moment += (surface.position[stated.vertex[i]] - rim.position).cross(stated.force[i]);
+  }
+  return sum;
+}
+
+TEST(HandlingTire, a_slope_gives_the_forces_of_level_ground_turned_with_it) {
+  for (const auto& [sx, sy] : {std::pair{0.0, 0.3}, {0.3, 0.0}, {-0.25, 0.15}}) {
+    const Vec3 normal = Vec3(-sx, -sy, 1.0).normalized();
+    const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+    HandlingTire on_level = make(),
+                 on_slope = make(example_tire(), [=](double x, double y) { return sx * x + sy * y; });
+    const RimState start = rolling(0.018, 8.0, 24.0, 0.05, -0.1);
+    Rolling level(on_level, start), slope(on_slope, turned(turn, start));
+    for (int n = 0; n < 300; ++n) {
+      level.step(), slope.step();
+      const Wrench a = stated_wrench(on_level, level.rim()), b = stated_wrench(on_slope, slope.rim());
+      ASSERT_LT((turn * a.force - b.force).norm(), 1e-8 * a.force.norm()) << n;
+      ASSERT_LT((turn * a.moment - b.moment).norm(), 1e-8 * a.force.norm()) << n;
+    }
+    EXPECT_LT((on_slope.stated_contact()->normal - normal).norm(), 1e-12);
+    EXPECT_NEAR(on_slope.diagnostics().elastic_energy, on_level.diagnostics().elastic_energy, 1e-6);
+  }
+}
+
+/// F = C_z ρ + K_z ρ̇ with ρ = depth + A sinc(k a) sin k x of an axle held level, k²A R « 1: heights are means over 2a.
+TEST(HandlingTire, an_axle_held_level_over_long_waves_has_the_load_of_their_height) {
+  const MagicFormula t = example_tire();
+  const double amplitude = 2e-3, length = 4.0, speed = 10.0, depth = 0.015, k = 2.0 * std::numbers::pi / length;
+  HandlingTire tire = make(t, waves(amplitude, length));
+  Rolling run(tire, rolling(depth, speed, speed / rolling_radius(t, depth), 0.0, 0.0));
+  const double a = 0.5 * contact_length(t), seen = amplitude * std::sin(k * a) / (k * a);
+  EXPECT_NEAR(contact_length(t), 2.0 * std::sqrt(2.0 * 0.35 * spring_deflection(t, t.vertical.fnomin)), 0.02 * 2.0 * a);
+  double off = 0.0;
+  for (int n = 0; n < 4000; ++n) {
+    const double x = run.rim().position.x() + 0.5 * kStep * speed;
+    run.step();
+    const double load = 2.2e5 * (depth + seen * std::sin(k * x)) + 150.0 * seen * k * speed * std::cos(k * x);
+    off = std::max(off, std::abs(stated_wrench(tire, run.rim()).force.z() - load));
+  }
+  EXPECT_LT(off, 5e-3 * 2.2e5 * amplitude);
+}
+
+/// The spring's force does the work that it stores, n·v = −ρ̇: also over waves of a few contact lengths.
+TEST(HandlingTire, waves_make_no_energy_of_the_spring) {
+  const MagicFormula t = example_tire();
+  for (const double length : {0.6, 1.0, 3.0}) {
+    const double amplitude = 0.02 * length * length, slope = amplitude * 2.0 * std::numbers::pi / length;
+    const RoadPlane road([=](double x, double y) { return waves(amplitude, length)(x + 0.3 * y, y); },
+                         0.5 * contact_length(t), 0.5 * t.dimension.width);
+    for (double x = 0.0; x < length; x += 0.07 * length) {
+      RimState rim = rolling(0.01, 1.0, 3.0, 0.1, 0.05), before = rim, after = rim;
+      rim.position.x() = x;
+      rim.velocity = Vec3(1.0, 0.2, 0.0);
+      before = after = rim;
+      before.position -= 1e-6 * rim.velocity;
+      after.position += 1e-6 * rim.velocity;
+      const double change = contact_motion(t, after, road).deflection - contact_motion(t, before, road).deflection;
+      EXPECT_NEAR(contact_motion(t, rim, road).rate, change / 2e-6, 0.01 * slope) << length << " m, x " << x;
+    }
+  }
+}
+
+TEST(HandlingTire, accounts_close_over_waves) {
+  HandlingTire tire = make(example_tire(), waves(5e-3, 2.0));
+  const double speed = 8.0, depth = 0.016;
+  Rolling run(tire, rolling(depth, speed, 1.05 * speed / rolling_radius(example_tire(), depth), 0.02, 0.0));
+  for (int n = 0; n < 2500; ++n) run.step();
+  const TireDiagnostics before = tire.diagnostics();
+  const double rim = run.rim_work, ground = run.terrain_work;
+  for (int n = 0; n < 2500; ++n) run.step();  // once over a wave
+  const TireDiagnostics after = tire.diagnostics();
+  const double left = run.rim_work - rim + run.terrain_work - ground - (after.stored() - before.stored()) -
+                      (after.losses() - before.losses());
+  EXPECT_LT(std::abs(left), 2e-3 * std::abs(run.terrain_work - ground));
 }
 
 /// At rest the patch is a spring: F = K/σ × the way of the rim; it does not creep.

@@ -33,6 +33,12 @@ Grid Grid::over(double length, double width, double spacing) {
 int Grid::first_x(double at) const { return first_at(at, spacing, nx); }
 int Grid::first_y(double at) const { return first_at(at + 0.5 * ny * spacing, spacing, ny); }
 
+FootprintFinder::FootprintFinder(const Grid& grid, std::vector<double> ground)
+    : grid_(grid), ground_(std::move(ground)), slot_(grid.count(), -1) {
+  FURROW_ASSERT(ground_.empty() || ground_.size() == slot_.size(), ground_.size(), slot_.size());
+  if (!ground_.empty()) top_ = *std::max_element(ground_.begin(), ground_.end());
+}
+
 void FootprintFinder::find(std::span<const std::array<int, 3>> triangles, std::span<const Vec3> position, double height,
                            std::vector<NodeHit>& hits) {
   found_.clear();
@@ -40,7 +46,7 @@ void FootprintFinder::find(std::span<const std::array<int, 3>> triangles, std::s
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     const auto& v = triangles[t];
     const std::array<Vec3, 3> corner{position[v[0]], position[v[1]], position[v[2]]};
-    if (std::min({corner[0].z(), corner[1].z(), corner[2].z()}) < height) cover(t, corner, height);
+    if (std::min({corner[0].z(), corner[1].z(), corner[2].z()}) < top_ + height) cover(t, corner, height);
   }
   hits.clear();
   for (int i = low_[0]; i <= high_[0]; ++i)
@@ -65,15 +71,16 @@ void FootprintFinder::cover(int triangle, const std::array<Vec3, 3>& corner, dou
       const double v = (dx * ac.y() - dy * ac.x()) / outward.z(), w = (ab.x() * dy - ab.y() * dx) / outward.z();
       if (!(v >= kEdge && w >= kEdge && v + w <= 1.0 - kEdge)) continue;
       const double z = corner[0].z() + v * ab.z() + w * ac.z();
-      if (!(z < height)) continue;
       const int node = grid_.index(i, j);
+      const double sinkage = ground(node) - z;
+      if (!(sinkage > -height)) continue;
       if (slot_[node] < 0) {
         slot_[node] = static_cast<std::int32_t>(found_.size());
-        found_.push_back({node, triangle, {1.0 - v - w, v, w}, -z, push});
+        found_.push_back({node, triangle, {1.0 - v - w, v, w}, sinkage, push});
         low_ = {std::min(low_[0], i), std::min(low_[1], j)};
         high_ = {std::max(high_[0], i), std::max(high_[1], j)};
-      } else if (NodeHit& other = found_[slot_[node]]; - z > other.sinkage) {
-        other = {node, triangle, {1.0 - v - w, v, w}, -z, push};
+      } else if (NodeHit& other = found_[slot_[node]]; sinkage > other.sinkage) {
+        other = {node, triangle, {1.0 - v - w, v, w}, sinkage, push};
       }
     }
 }

@@ -32,7 +32,7 @@ struct NodeHit {
   int node = -1;
   int triangle = -1;
   std::array<double, 3> weight{};  // barycentric, of the point above the node
-  double sinkage = 0.0;            // of the point below the undisturbed surface, m
+  double sinkage = 0.0;            // of the point below the undisturbed surface, straight down, m
   Vec3 push = Vec3::Zero();        // n/|n_z|, n the normal into the surface: force per pressure and area of a cell
 };
 
@@ -41,9 +41,11 @@ inline constexpr double kLeastVertical = 0.17364817766693033;
 
 class FootprintFinder {
  public:
-  explicit FootprintFinder(const Grid& grid) : grid_(grid), slot_(grid.count(), -1) {}
+  /// @param ground heights of the undisturbed surface at the nodes, m; none: all are 0
+  FootprintFinder(const Grid& grid, std::vector<double> ground);
 
-  /// Nodes under those faces that look down and reach below `height` (m), in ascending order.
+  double ground(int node) const { return ground_.empty() ? 0.0 : ground_[node]; }
+  /// Nodes under those faces that look down and reach below `height` (m) above the ground, in ascending order.
   void find(std::span<const std::array<int, 3>> triangles, std::span<const Vec3> position, double height,
             std::vector<NodeHit>& hits);
 
@@ -51,6 +53,8 @@ class FootprintFinder {
   void cover(int triangle, const std::array<Vec3, 3>& corner, double height);
 
   Grid grid_;
+  std::vector<double> ground_;
+  double top_ = 0.0;                // of the ground, m
   std::vector<std::int32_t> slot_;  // of each node: its place in found_ while find runs; −1: none
   std::vector<NodeHit> found_;
   std::array<int, 2> low_{}, high_{};  // the cells of all that is found: first and last along x and y

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "protocol/core/assert.hpp"
 
@@ -21,11 +22,11 @@ Vec3 laid_into(const Vec3& v, const Vec3& n) {
 
 }  // namespace
 
-SoilField::SoilField(const Grid& grid, const PressureLaw& law, double patch_width)
+SoilField::SoilField(const Grid& grid, const PressureLaw& law, double patch_width, std::vector<double> ground)
     : grid_(grid),
       law_(law),
       patch_width_(patch_width),
-      finder_(grid),
+      finder_(grid, std::move(ground)),
       node_(grid.count()),
       mark_(grid.count(), kUncovered) {}
 

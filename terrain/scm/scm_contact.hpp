@@ -47,7 +47,8 @@ void visit_fields(FieldsOf<ContactNode> auto& s, auto&& visit) {
 /// The grid with what every surface on it shares.
 class SoilField {
  public:
-  SoilField(const Grid& grid, const PressureLaw& law, double patch_width);
+  /// @param ground heights before the run at the nodes, m; none: all are 0
+  SoilField(const Grid& grid, const PressureLaw& law, double patch_width, std::vector<double> ground = {});
 
   /// One step of a surface at `now`. Replaces `bearing`, the nodes of the step before, by those of this one and fills
   /// `contacts` with their forces on the surface. @param shear with the friction of this surface
@@ -61,6 +62,7 @@ class SoilField {
   const Grid& grid() const { return grid_; }
   std::vector<SoilNode>& nodes() { return node_; }
   const std::vector<SoilNode>& nodes() const { return node_; }
+  double height(int node) const { return finder_.ground(node) - node_[node].plastic; }  // of the surface now, m
 
  private:
   void find_moduli();

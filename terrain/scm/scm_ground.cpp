@@ -38,6 +38,17 @@ struct SoilSurface {
   double floor_force = 0.0;  // N
 };
 
+std::vector<double> heights_at_nodes(const ScmOptions& options) {
+  std::vector<double> out;
+  const GroundHeights heights = options.shape.heights();
+  if (!heights) return out;
+  const Grid grid = Grid::over(options.length, options.width, options.grid_spacing);
+  out.reserve(grid.count());
+  for (int i = 0; i < grid.nx; ++i)
+    for (int j = 0; j < grid.ny; ++j) out.push_back(heights(grid.x(i), grid.y(j)));
+  return out;
+}
+
 class ScmGround final : public Terrain {
  public:
   explicit ScmGround(const ScmOptions& options)
@@ -50,7 +61,8 @@ class ScmGround final : public Terrain {
                .unloading = options.unloading_stiffness,
                .unloading_rate = options.unloading_stiffness_rate,
                .damping = options.rebound_damping},
-              options.patch_width) {}
+              options.patch_width, heights_at_nodes(options)),
+        heights_(options.shape.heights()) {}
 
   double gather_top_height(double x_min, double x_max, double y_min, double y_max) const override;
   double gather_mean_height(double x_min, double x_max, double y_min, double y_max) const override;
@@ -79,10 +91,12 @@ class ScmGround final : public Terrain {
   template <class Use>
   void each_node(double x_min, double x_max, double y_min, double y_max, Use&& use) const;
   void add_surface(const SurfaceMesh& mesh, const ContactMaterial& material, std::vector<Vec3> last);
+  double ground_at(const Vec3& x) const { return heights_ ? heights_(x.x(), x.y()) : 0.0; }  // before the run, m
   Outcome set_motion(SoilSurface& surface, const SurfaceState& target, double duration, std::size_t k) const;
 
   ScmOptions options_;
   SoilField soil_;
+  GroundHeights heights_;  // before the run; empty: level
   std::vector<SoilSurface> surfaces_;
   Vec3 surface_impulse_ = Vec3::Zero();  // by surfaces on the ground, N s
   double surface_work_ = 0.0;            // by the ground on surfaces, J
@@ -94,20 +108,20 @@ void ScmGround::each_node(double x_min, double x_max, double y_min, double y_max
   const Grid& grid = soil_.grid();
   const int i_end = grid.first_x(x_max), j_begin = grid.first_y(y_min), j_end = grid.first_y(y_max);
   for (int i = grid.first_x(x_min); i < i_end; ++i)
-    for (int j = j_begin; j < j_end; ++j) use(soil_.nodes()[grid.index(i, j)]);
+    for (int j = j_begin; j < j_end; ++j) use(soil_.height(grid.index(i, j)));
 }
 
 double ScmGround::gather_top_height(double x_min, double x_max, double y_min, double y_max) const {
-  double least = std::numeric_limits<double>::infinity();
-  each_node(x_min, x_max, y_min, y_max, [&](const SoilNode& node) { least = std::min(least, node.plastic); });
-  return std::isfinite(least) ? -least : 0.0;
+  double most = -std::numeric_limits<double>::infinity();
+  each_node(x_min, x_max, y_min, y_max, [&](double height) { most = std::max(most, height); });
+  return std::isfinite(most) ? most : 0.0;
 }
 
 double ScmGround::gather_mean_height(double x_min, double x_max, double y_min, double y_max) const {
   double sum = 0.0;
   std::int64_t count = 0;
-  each_node(x_min, x_max, y_min, y_max, [&](const SoilNode& node) { sum += node.plastic, ++count; });
-  return count > 0 ? -sum / static_cast<double>(count) : 0.0;
+  each_node(x_min, x_max, y_min, y_max, [&](double height) { sum += height, ++count; });
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
 HeightField ScmGround::gather_height_field() const {
@@ -119,7 +133,7 @@ HeightField ScmGround::gather_height_field() const {
   field.nx = grid.nx;
   field.ny = grid.ny;
   field.height.reserve(soil_.nodes().size());
-  for (const SoilNode& node : soil_.nodes()) field.height.push_back(-node.plastic);
+  for (int k = 0; k < grid.count(); ++k) field.height.push_back(soil_.height(k));
   return field;
 }
 
@@ -129,7 +143,7 @@ void ScmGround::gather_frame(TerrainFrame& out) const {
   out = TerrainFrame{};
   for (int k = 0; k < grid.count(); ++k) {
     const auto [i, j] = grid.cell(k);
-    for (const double value : {grid.x(i), grid.y(j), -soil_.nodes()[k].plastic})
+    for (const double value : {grid.x(i), grid.y(j), soil_.height(k)})
       out.position.push_back(static_cast<float>(value));
   }
   out.speed.assign(grid.count(), 0.0F);
@@ -155,11 +169,11 @@ void ScmGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& mate
 }
 
 void ScmGround::do_attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start) {
-  double lowest = 0.0;
-  for (const Vec3& x : start.position) lowest = std::min(lowest, x.z());
-  if (lowest < -kMaxStartDepth)
+  double deepest = 0.0;
+  for (const Vec3& x : start.position) deepest = std::max(deepest, ground_at(x) - x.z());
+  if (deepest > kMaxStartDepth)
     throw input_error(fmt::format("surface {}", surfaces_.size()), "",
-                      fmt::format("starts {:g} m below the ground, expected at most {:g} m", -lowest, kMaxStartDepth));
+                      fmt::format("starts {:g} m below the ground, expected at most {:g} m", deepest, kMaxStartDepth));
   add_surface(mesh, material, start.position);
 }
 
@@ -168,7 +182,8 @@ Outcome ScmGround::set_motion(SoilSurface& surface, const SurfaceState& target, 
   const std::size_t count = surface.last.size();
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3 end = target.position[v] + duration * target.velocity[v];
-    if (end.z() < 0.0 && (end.x() < 0.0 || end.x() > options_.length || std::abs(end.y()) > 0.5 * options_.width))
+    if ((end.x() < 0.0 || end.x() > options_.length || std::abs(end.y()) > 0.5 * options_.width) &&
+        end.z() < ground_at(end))
       return Outcome::failure(
           "was left by a tire",
           fmt::format("surface {} stands beside it, x = ({:.6g}, {:.6g}, {:.6g}) m", k, end.x(), end.y(), end.z()));

@@ -5,6 +5,7 @@
 
 #include "protocol/core/fields.hpp"
 #include "protocol/core/key.hpp"
+#include "terrain/rigid/ground_shape.hpp"
 #include "terrain/terrain_keys.hpp"
 #include "terrain/terrain_spec.hpp"
 
@@ -21,6 +22,12 @@ struct ScmOptions : TerrainContext {
   double width = 0.6;          // y from −width/2 to width/2, m
   double grid_spacing = 0.01;  // between nodes, m
   double patch_width = -1.0;   // b of Bekker's law, m; negative: found from each contact patch
+  // Heights before the run.
+  std::string profile_file;    // none: level, z = 0
+  bool profile_across = true;  // heights of the file may change across
+  double profile_v = 0.0;      // of the file where y = 0, m
+  double profile_from = -1.0;  // x where the file's first height lies, m; negative: where the file says
+  GroundShape shape;           // of the file
   // Soil.
   double bekker_k_c = 102e3;              // N/m^(n+1)
   double bekker_k_phi = 5301e3;           // N/m^(n+2)
@@ -46,6 +53,10 @@ void visit_fields(FieldsOf<ScmOptions> auto& s, auto&& visit) {
         key("patch_width", "m", above(0).to(1e4).usual(0.01, 2).or_null(),
             "Width b in (k_c/b + k_φ) zⁿ, engine scm. null: 2 × area/perimeter of each contact patch, which is the "
             "smaller side of a long patch and the radius of a round one."));
+  visit(s.profile_file, keys::kProfileFile);
+  visit(s.profile_across, keys::kProfileAcross);
+  visit(s.profile_v, keys::kProfileV);
+  visit(s.profile_from, keys::kProfileFrom);
   visit(s.bekker_k_c,
         key("bekker_k_c", "N/m^(n+1)", kSoil, from(-1e12, 1e12).usual(-1e6, 1e6),
             "Bekker's k_c in p = (k_c/b + k_φ) zⁿ, the pressure under a plate of width b at sinkage z, engine scm. It "

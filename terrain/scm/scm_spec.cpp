@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "terrain/bulk_cohesion.hpp"
 #include "terrain/scm/scm_ground.hpp"
@@ -15,9 +17,26 @@ namespace {
 
 constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
 
+constexpr double kMostSlope = 0.268;  // 15°
+constexpr double kMostSlopes = 1e6;   // places where the slope is measured
+
+/// Over the distance of nodes, or where there are very many, of some of them.
+double steepest_slope(const ScmOptions& o) {
+  const GroundHeights heights = o.shape.heights();
+  if (!heights) return 0.0;
+  const double apart = std::max(o.grid_spacing, std::sqrt(o.length * o.width / kMostSlopes));
+  double most = 0.0;
+  for (double x = 0.0; x < o.length; x += apart)
+    for (double y = -0.5 * o.width; y < 0.5 * o.width; y += apart) {
+      const double z = heights(x, y);
+      most = std::max(most, std::hypot(heights(x + apart, y) - z, heights(x, y + apart) - z) / apart);
+    }
+  return most;
+}
+
 class ScmSpec final : public TerrainSpec {
  public:
-  explicit ScmSpec(ScmOptions options) : options_(std::move(options)) {}
+  explicit ScmSpec(ScmOptions options) : options_(std::move(options)), steepest_(steepest_slope(options_)) {}
 
   TerrainDescription describe() const override {
     TerrainDescription d;
@@ -25,7 +44,18 @@ class ScmSpec final : public TerrainSpec {
     d.name = "empirical soil";
     d.bounds = {options_.length, options_.width};
     d.gives_tangents = d.answers_at_once = true;
-    d.undisturbed_height = 0.0;
+    if (options_.shape.given()) {
+      d.uneven_key = "profile_file";
+      d.uneven = options_.shape.uneven();
+      d.remarks = options_.shape.remarks();
+      if (steepest_ > kMostSlope)
+        d.remarks.emplace_back("profile_file",
+                               fmt::format("rises by {:.0f}° at its steepest, expected at most 15°: empirical soil "
+                                           "sinks straight down and does not slide",
+                                           std::atan(steepest_) * 180.0 / std::numbers::pi));
+    } else {
+      d.undisturbed_height = 0.0;
+    }
     if (options_.cone_index > 0.0) d.cone_index = options_.cone_index;
     d.cohesive = options_.mohr_cohesion > kCohesionOfSand;
     return d;
@@ -36,7 +66,7 @@ class ScmSpec final : public TerrainSpec {
     TerrainEstimate e;
     e.text = fmt::format("grid of {:.0f} nodes, {:g} mm apart", nodes, 1e3 * options_.grid_spacing);
     e.stable_reason = "no grains";
-    e.memory_bytes = kMemoryPerNode * nodes;
+    e.memory_bytes = (kMemoryPerNode + (options_.shape.given() ? sizeof(double) : 0)) * nodes;
     e.frame_bytes = kFrameBytes * nodes;
     e.checkpoint_bytes = kSavedPerNode * nodes;
     return e;
@@ -57,6 +87,10 @@ class ScmSpec final : public TerrainSpec {
     static_cast<TerrainContext&>(options) = context;
     return make_scm_ground(options);
   }
+  std::vector<TerrainFile> files() const override {
+    if (options_.profile_file.empty()) return {};
+    return {{"profile_file", options_.profile_file}};
+  }
 
  private:
   /// Bekker's of a rigid wheel [Bekker 1969], W = ⅓ (3 − n) (k_c/b + k_φ) b √(2R) z^(n + ½), m.
@@ -68,6 +102,7 @@ class ScmSpec final : public TerrainSpec {
   }
 
   ScmOptions options_;
+  double steepest_;
 };
 
 }  // namespace
@@ -76,6 +111,10 @@ std::unique_ptr<TerrainSpec> read_scm_spec(const nlohmann::json& section, const 
   ScmOptions options;
   options.scenario = context.file;
   read_fields(section, options);
+  if (!options.profile_file.empty()) {
+    options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
+    options.shape = read_shape(options.profile_file, {options.profile_v, options.profile_from}, options.profile_across);
+  }
   return make_scm_spec(options);
 }
 

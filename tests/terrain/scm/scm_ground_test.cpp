@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "protocol/core/error.hpp"
+#include "terrain/rigid/ground_map.hpp"
 #include "tests/refusal.hpp"
 #include "tests/saved.hpp"
 #include "tests/terrain/scm/driven_surface.hpp"
@@ -204,6 +206,75 @@ TEST(ScmGround, continues_bit_for_bit_from_what_it_saved) {
   const TerrainEnergies a = ground->gather_state().energies, b = again->gather_state().energies;
   EXPECT_EQ(a.losses(), b.losses());
   EXPECT_EQ(a.stored(), b.stored());
+}
+
+/// Heights before the run, straight from (0, `first`) to (1, `last`).
+GroundShape ramp(double first, double last) { return {{{0.0, first}, {1.0, last}}, nullptr}; }
+
+TEST(ScmGround, level_heights_of_a_file_give_level_soil_moved_up_by_them) {
+  const double up = 0.37;
+  ScmOptions raised = small_bed();
+  raised.shape = {{}, std::make_shared<HeightMap>(HeightMap{{0.0, 1.0}, {-1.0, 1.0}, {up, up, up, up}})};
+  for (const ScmOptions& options : {raised, [&] {
+                                      ScmOptions o = small_bed();
+                                      o.shape = ramp(up, up);
+                                      return o;
+                                    }()}) {
+    const auto level = make_scm_ground(small_bed()), high = make_scm_ground(options);
+    DrivenSurface low{testing::wheel(0.15, 0.1, 60, 4), {0.3, 0.0, 0.151}}, tool = low;
+    tool.position.z() += up;
+    low.attach(*level, 0.8), tool.attach(*high, 0.8);
+    EXPECT_EQ(high->gather_top_height(0.1, 0.5, -0.1, 0.1), up);
+    for (int i = 0; i < 150; ++i) {
+      const Vec3 velocity(0.5, 0.02, -0.1 * std::cos(0.03 * i));
+      low.move(*level, velocity, 4.5, 1e-3), tool.move(*high, velocity, 4.5, 1e-3);
+      ASSERT_LT((low.sums.force - tool.sums.force).norm(), 1e-9 * (1.0 + low.sums.force.norm())) << i;
+    }
+    EXPECT_GT(level->gather_state().energies.losses(), 1.0);
+    EXPECT_NEAR(high->gather_mean_height(0.3, 0.4, -0.03, 0.03), up + level->gather_mean_height(0.3, 0.4, -0.03, 0.03),
+                1e-12);
+    EXPECT_NEAR(high->gather_state().energies.losses(), level->gather_state().energies.losses(), 1e-9);
+  }
+}
+
+/// p A (−tan β, 0, 1) of a smooth plate that lies on a ramp and sinks straight down.
+TEST(ScmGround, a_smooth_plate_that_lies_on_a_ramp_meets_bekkers_pressure_along_its_normal) {
+  ScmOptions options = small_bed();
+  options.patch_width = 0.1;
+  const double slope = 0.2;
+  options.shape = ramp(-0.1, 0.1);
+  const auto ground = make_scm_ground(options);
+  DrivenSurface tool = plate();
+  tool.turn = -std::atan(slope);
+  tool.attach(*ground, 0.0);
+  const double dt = 1e-3, speed = 0.1;
+  for (int i = 0; i < 100; ++i) {
+    tool.move(*ground, {0.0, 0.0, -speed}, 0.0, dt);
+    const double area = 1e-4 * static_cast<double>(ground->gather_state().contacts), z = speed * dt * (i + 0.5);
+    EXPECT_NEAR(area, kArea * std::cos(tool.turn), 1.1e-3);
+    const Vec3 expected = area * bekker(options, 0.1, z) * Vec3(-slope, 0.0, 1.0);
+    EXPECT_LT((tool.sums.force - expected).norm(), 1e-9 * expected.norm()) << i;
+  }
+  EXPECT_LT(std::abs(testing::residual(*ground)), 0.02 * ground->gather_state().energies.surface_work);
+}
+
+TEST(ScmGround, accounts_close_under_a_wheel_that_climbs_a_ramp) {
+  ScmOptions options = small_bed();
+  options.shape = ramp(0.0, 0.2);
+  const auto ground = make_scm_ground(options);
+  const double slope = 0.2, sunk = 0.01, c = std::sqrt(1.0 + slope * slope);
+  DrivenSurface tool{testing::wheel(0.15, 0.1, 60, 4), {0.25, 0.0, 0.05 + 0.15 * c}};
+  tool.attach(*ground, 0.8);
+  for (int i = 0; i < 100; ++i) tool.move(*ground, {0.5, 0.0, 0.5 * slope - sunk / 0.1}, 3.5, 1e-3);
+  for (int i = 0; i < 700; ++i) tool.move(*ground, {0.5, 0.0, 0.5 * slope}, 3.5, 1e-3);
+  const TerrainEnergies e = ground->gather_state().energies;
+  EXPECT_GT(e.losses(), 10.0);
+  EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * e.losses());
+  // The rut runs along the ramp.
+  const double early = ground->gather_mean_height(0.395, 0.405, -0.02, 0.02),
+               late = ground->gather_mean_height(0.495, 0.505, -0.02, 0.02);
+  EXPECT_NEAR(late - early, 0.1 * slope, 1e-3);
+  EXPECT_LT(early, 0.4 * slope - 0.5 * sunk);
 }
 
 /// What a scenario may say is asked of the program by tests/system/bad_input.py.

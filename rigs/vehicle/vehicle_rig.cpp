@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <Eigen/QR>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -23,6 +24,7 @@ namespace furrow::rigs {
 namespace {
 
 constexpr double kTraceSpacing = 0.05;  // of ruts, in radii
+constexpr double kLeastTilt = 0.02;     // rad; grains below the wheels of a level bed differ by less
 constexpr double kTraceDepth = 1e-3;    // in radii, below which there is no rut
 
 struct VehicleRecord {
@@ -63,6 +65,8 @@ class VehicleRig final : public Rig {
   std::vector<double> radii() const;
   std::vector<double> loads() const;
   void build();
+  void lift(std::span<const double> axle_height);
+  Vec3 upright(std::span<const double> axle_height) const;
   void roll();
   void drive();
   void note_findings(std::span<const Wrench> wrenches);
@@ -120,19 +124,41 @@ void VehicleRig::do_place(std::span<const double> axle_height) {
     build();
     const vehicle::Trim trim = stand(*car_, radii(), plan_.options.heading);
     for (int k = 0; k < wheel_count(); ++k) wheels_[k].load = trim.wheels[k].load;
-    car_->turn(plan_.options.heading, car_->origin());
+    car_->turn(Quat(Eigen::AngleAxisd(plan_.options.heading, Vec3::UnitZ())), car_->origin());
     const Vec3 origin = car_->origin();
     car_->move(Vec3(plan_.options.start - origin.x(), plan_.options.lateral - origin.y(), 0.0));
   }
-  double up = -std::numeric_limits<double>::infinity();
-  for (int k = 0; k < wheel_count(); ++k) up = std::max(up, axle_height[k] - car_->rim(k).position.z());
-  car_->move(Vec3(0.0, 0.0, up));
+  lift(axle_height);
   if (plan_.options.start_speed > 0.0) roll();
+  if (const Vec3 up = upright(axle_height); up.z() < std::cos(kLeastTilt)) {
+    car_->turn(Quat::FromTwoVectors(Vec3::UnitZ(), up), car_->origin());
+    lift(axle_height);
+  }
   record_ = {};
   record_.inputs = parked();
   for (WheelRecord& wheel : wheels_) wheel = {{}, {}, wheel.load};
   for (int k = 0; k < wheel_count(); ++k) measure_end(k);
   measure_now(*car_, record_.inputs, record_.row);
+}
+
+/// Until no axle is below these heights, m.
+void VehicleRig::lift(std::span<const double> axle_height) {
+  double up = -std::numeric_limits<double>::infinity();
+  for (int k = 0; k < wheel_count(); ++k) up = std::max(up, axle_height[k] - car_->rim(k).position.z());
+  car_->move(Vec3(0.0, 0.0, up));
+}
+
+/// Normal of the plane by least squares through the axles at these heights, as they stand level now.
+Vec3 VehicleRig::upright(std::span<const double> axle_height) const {
+  Eigen::MatrixXd places(wheel_count(), 3);
+  Eigen::VectorXd heights(wheel_count());
+  for (int k = 0; k < wheel_count(); ++k) {
+    const Vec3 at = car_->rim(k).position;
+    places.row(k) << at.x(), at.y(), 1.0;
+    heights[k] = axle_height[k] - at.z();
+  }
+  const Eigen::VectorXd plane = places.completeOrthogonalDecomposition().solve(heights);
+  return Vec3(-plane[0], -plane[1], 1.0).normalized();
 }
 
 /// From the first instant on, in the gear that the driver holds then.

@@ -1,6 +1,7 @@
 // A whole vehicle as a rig: it carries its tires, a driver drives it, and nothing else holds it.
 //
 // Start: in the trim of hard level ground (vehicle_start.hpp), turned to its heading, each tire just above the surface.
+// Where the ground under its wheels slopes by more than 0.02 rad, all of it is tilted onto that slope.
 // A damper above the chassis, c = weight/lowering_speed, lets it down until touchdown_time;
 // with lowering_speed 0 it falls.
 //

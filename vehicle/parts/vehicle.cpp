@@ -110,9 +110,8 @@ void Vehicle::move(const Vec3& by) {
   system_.assemble(system_.time());
 }
 
-void Vehicle::turn(double angle, const Vec3& about) {
-  FURROW_ASSERT(std::isfinite(angle), angle);
-  const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+void Vehicle::turn(const Quat& turn, const Vec3& about) {
+  FURROW_ASSERT(std::abs(turn.norm() - 1.0) < 1e-9, turn.norm());
   for (int i = 0; i < system_.body_count(); ++i) {
     BodyState state = system_.body(i).state;
     state.position = about + turn * (state.position - about);

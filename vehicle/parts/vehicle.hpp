@@ -56,8 +56,8 @@ class Vehicle {
   void set_inputs(const VehicleInputs& inputs);
   /// Moves everything by a displacement, m.
   void move(const Vec3& by);
-  /// Turns everything about the upright line through a point, rad.
-  void turn(double angle, const Vec3& about);
+  /// Turns everything about a point.
+  void turn(const Quat& turn, const Vec3& about);
   /// Moves everything along the vehicle's heading, m/s, on wheels of these radii, m, that roll; in a forward gear from
   /// 1, or with 0 as the gearbox decides. @pre before the first step
   void begin_rolling(double speed, std::span<const double> radii, int gear);

@@ -2,12 +2,16 @@
 #include "vehicle/analysis/vehicle_page.hpp"
 #include "tests/refusal.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "tests/vehicle/shipped.hpp"
+#include "vehicle/analysis/kinematics.hpp"
 
 using namespace furrow;
 using namespace furrow::testing;
@@ -46,6 +50,28 @@ TEST(VehiclePage, of_the_hmmwv_has_its_counts_masses_and_stops) {
   for (const char* part :
        {"19, 100 rows, 14 degrees of freedom", "12, 1 more degree", "4 × a tire, 25.00 kg each", "front left, spring"})
     EXPECT_TRUE(holds(text, part)) << part << "\n" << text;
+}
+
+// c i²/(2 √(k m)): m by the spring's force at rest, k by kc, c of the file.
+TEST(VehiclePage, damping_ratios_are_those_of_rates_ratios_and_the_mass_on_each_spring) {
+  const vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  const VehiclePage page = vehicle::vehicle_page(spec, tires(4, 25.0, 0.4673, 3.3e5));
+  ASSERT_EQ(page.damping_ratios.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const vehicle::WheelTrim& wheel = page.trim.wheels[k];
+    const auto rows = vehicle::kinematics(spec, page.loaded_radii, {.travel = std::abs(wheel.travel), .points = 2});
+    const auto at = std::find_if(rows.begin(), rows.end(), [&](const vehicle::KinematicsRow& row) {
+      return row.motion == "parallel" && row.wheel == wheel.name && row.travel * wheel.travel > 0.0;
+    });
+    ASSERT_NE(at, rows.end());
+    const auto& shock =
+        std::get<vehicle::DoubleWishboneSpec>(spec.axles[k / 2].corners[k % 2].suspension).shock.value();
+    ASSERT_GT(wheel.shock->to_shortest, 0.02);
+    ASSERT_GT(wheel.shock->to_longest, 0.02);
+    const double damping = 0.5 * (shock.compression + shock.rebound) * at->shock_ratio * at->shock_ratio;
+    const double mass = wheel.spring->force * at->spring_ratio / kStandardGravity;
+    EXPECT_NEAR(page.damping_ratios[k], damping / (2.0 * std::sqrt(at->wheel_rate * mass)), 2e-3) << wheel.name;
+  }
 }
 
 // The centre of mass is that at which the axle loads balance; a wheel command to the left turns the front wheels left.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -18,6 +19,7 @@ namespace furrow::vehicle {
 namespace {
 
 constexpr double kRateStep = 5e-4;  // of the travel, for wheel rates, m
+constexpr double kSlow = 1e-3;      // of a shock absorber, for its coefficient, m/s
 constexpr double kQuiet = 2.0;      // before progress is told, s
 
 /// How far a steering goes to the left.
@@ -76,6 +78,9 @@ class Bench {
     return statics_.tangent(lifts_[2 * axle]) + right * statics_.tangent(lifts_[2 * axle + 1]);
   }
 
+  /// Takes a posture; of the axle's wheels the wheel rates there.
+  std::array<double, 2> wheel_rates(int axle, double left, double right, double steering);
+  double damping_ratio(int k, double wheel_rate, const Eigen::VectorXd& parallel) const;
   KinematicsRow row(int k) const;
   void add_slopes(int axle, KinematicsRow* rows) const;
   double support(int k, const Eigen::VectorXd& parallel) const;
@@ -115,6 +120,29 @@ double Bench::support(int k, const Eigen::VectorXd& parallel) const {
   if (!spring) return KinematicsRow::kNone;
   const ForceElement& e = system().element(*spring);
   return e.law(row_value(system(), e.row), 0.0, 0.0).force * ratio(spring, parallel);
+}
+
+std::array<double, 2> Bench::wheel_rates(int axle, double left, double right, double steering) {
+  std::array<double, 2> rates{};
+  for (const double step : {-kRateStep, kRateStep, 0.0}) {
+    take(axle, left + step, right + step, steering);
+    if (step == 0.0) break;
+    const Eigen::VectorXd parallel = tangent(axle, 1.0);
+    for (int side = 0; side < 2; ++side)
+      rates[side] += (step > 0.0 ? 0.5 : -0.5) / kRateStep * support(2 * axle + side, parallel);
+  }
+  return rates;
+}
+
+double Bench::damping_ratio(int k, double wheel_rate, const Eigen::VectorXd& parallel) const {
+  const std::optional<int>& shock = vehicle_.wheel(k).shock;
+  const double carried = support(k, parallel);
+  if (!shock || !(wheel_rate > 0.0) || !(carried > 0.0)) return KinematicsRow::kNone;
+  const ForceElement& e = system().element(*shock);
+  const double length = row_value(system(), e.row), moved = ratio(shock, parallel);
+  const double damping =
+      (e.law(length, -kSlow, 0.0).force - e.law(length, kSlow, 0.0).force) / (2.0 * kSlow) * moved * moved;
+  return damping / (2.0 * std::sqrt(wheel_rate * carried / system().gravity().norm()));
 }
 
 KinematicsRow Bench::row(int k) const {
@@ -261,14 +289,7 @@ class Sweep {
       tell_("moving the suspensions", static_cast<double>(done_++) / postures_);
       const double share = last > 0 ? 2.0 * i / last - 1.0 : 0.0;
       KinematicsRow rows[2];
-      double rates[2] = {};
-      for (const double step : {-kRateStep, kRateStep, 0.0}) {
-        bench_.take(axle, share * left + step, share * right + step, share * steering);
-        if (step == 0.0) break;
-        const Eigen::VectorXd parallel = bench_.tangent(axle, 1.0);
-        for (int side = 0; side < 2; ++side)
-          rates[side] += (step > 0.0 ? 0.5 : -0.5) / kRateStep * bench_.support(2 * axle + side, parallel);
-      }
+      const std::array<double, 2> rates = bench_.wheel_rates(axle, share * left, share * right, share * steering);
       for (int side = 0; side < 2; ++side) {
         rows[side] = bench_.row(2 * axle + side);
         rows[side].motion = motion;
@@ -300,6 +321,22 @@ std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const d
                                       const KinematicsOptions& options, const ProgressCall& progress) {
   FURROW_ASSERT(options.points > 0, options.points);
   return Sweep(spec, radii, options, progress).run();
+}
+
+std::vector<double> damping_ratios(const VehicleSpec& spec, std::span<const double> radii,
+                                   std::span<const double> travel) {
+  FURROW_ASSERT(travel.size() == radii.size(), travel.size(), radii.size());
+  Bench bench(spec, radii);
+  std::vector<double> ratios(travel.size(), KinematicsRow::kNone);
+  for (std::size_t k = 0; k + 1 < travel.size(); k += 2) {
+    const int axle = static_cast<int>(k / 2);
+    if (!bench.lifts(axle)) continue;
+    const std::array<double, 2> rates = bench.wheel_rates(axle, travel[k], travel[k + 1], 0.0);
+    const Eigen::VectorXd parallel = bench.tangent(axle, 1.0);
+    for (int side = 0; side < 2; ++side)
+      ratios[k + side] = bench.damping_ratio(static_cast<int>(k) + side, rates[side], parallel);
+  }
+  return ratios;
 }
 
 void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress) {

@@ -80,6 +80,13 @@ struct KinematicsOptions {
 std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const double> radii,
                                       const KinematicsOptions& options = {}, const ProgressCall& progress = {});
 
+/// Of each wheel at its travel: c/(2 √(k m)) with the wheel rate k, the shock absorber's coefficient at small speeds,
+/// mean of both directions, moved to the wheel, c, and the mass m that the spring carries there [Gillespie 1992,
+/// Fundamentals of Vehicle Dynamics, chapter 5]. Not a number without spring or shock absorber.
+/// @param travel of each wheel, upward from the drawn position, m
+std::vector<double> damping_ratios(const VehicleSpec& spec, std::span<const double> radii,
+                                   std::span<const double> travel);
+
 /// Every steered axle must reach both ends of its steering, step by step from straight ahead, as drawn.
 /// @throws Error(bad_input) naming the key that says where the ends are
 void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress = {});

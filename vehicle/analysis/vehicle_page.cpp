@@ -173,6 +173,9 @@ VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> 
     check_travel(spec, page);
     check_locks(spec, page.loaded_radii, progress);
     page.full_steering = full_steering(spec, page.loaded_radii);
+    std::vector<double> travel;
+    for (const WheelTrim& wheel : page.trim.wheels) travel.push_back(wheel.travel);
+    page.damping_ratios = damping_ratios(spec, page.loaded_radii, travel);
     add_distances(spec, tires, page);
     add_gear_speeds(spec, page);
     return page;
@@ -255,13 +258,17 @@ std::string gears_text(const VehiclePage& page) {
   return fmt::format("{}, at {:.0f} rpm without slip", text, page.gear_speeds.front().engine_rpm);
 }
 
-std::string wheels_text(const Trim& trim) {
-  constexpr const char* kRow = "{:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n";
-  std::string text = fmt::format(kRow, "wheel", "load", "tire", "centre", "travel", "camber", "toe");
-  text += fmt::format(kRow, "", "N", "mm", "mm", "mm", "°", "°");
-  for (const WheelTrim& w : trim.wheels)
+std::string wheels_text(const VehiclePage& page) {
+  constexpr const char* kRow = "{:<14} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n";
+  std::string text = fmt::format(kRow, "wheel", "load", "tire", "centre", "travel", "camber", "toe", "damping");
+  text += fmt::format(kRow, "", "N", "mm", "mm", "mm", "°", "°", "%");
+  for (std::size_t k = 0; k < page.trim.wheels.size(); ++k) {
+    const WheelTrim& w = page.trim.wheels[k];
+    const double damping = page.damping_ratios[k];
     text += fmt::format(kRow, w.name, fixed(w.load, 0), fixed(1e3 * w.deflection, 1), fixed(1e3 * w.height, 1),
-                        fixed(1e3 * w.travel, 1), fixed(kDegrees * w.camber, 2), fixed(kDegrees * w.toe, 2));
+                        fixed(1e3 * w.travel, 1), fixed(kDegrees * w.camber, 2), fixed(kDegrees * w.toe, 2),
+                        std::isnan(damping) ? "none" : fixed(100.0 * damping, 0));
+  }
   return text;
 }
 
@@ -315,7 +322,7 @@ std::string page_text(const VehiclePage& page) {
   if (!page.gear_speeds.empty()) line("speeds", gears_text(page));
   if (const std::string steered = steering_text(page); !steered.empty())
     line("steering", "full left turns the wheels of " + steered);
-  return text + "\n" + wheels_text(page.trim) + "\n" + struts_text(page.trim) + modes_text(page.trim);
+  return text + "\n" + wheels_text(page) + "\n" + struts_text(page.trim) + modes_text(page.trim);
 }
 
 }  // namespace furrow::vehicle

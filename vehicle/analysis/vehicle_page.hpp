@@ -47,6 +47,7 @@ struct VehiclePage {
   // would tip [Transportation Research Board, Special Report 265, 2002, https://doi.org/10.17226/10308].
   double static_stability_factor = 0.0;
   std::vector<double> full_steering;   // of each axle (kinematics.hpp), rad
+  std::vector<double> damping_ratios;  // of each wheel at rest (kinematics.hpp)
   std::vector<GearSpeed> gear_speeds;  // at the highest speed at which the engine drives
   Trim trim;
 };
@@ -69,6 +70,7 @@ void visit_fields(FieldsOf<VehiclePage> auto& s, auto&& visit) {
   visit(s.tracks, Field{"tracks", "m"});
   visit(s.static_stability_factor, Field{"static_stability_factor"});
   visit(s.full_steering, Field{"full_steering", "rad"});
+  visit(s.damping_ratios, Field{"damping_ratios"});
   visit(s.gear_speeds, Field{"gear_speeds", ""});
   visit(s.trim, Field{"trim", ""});
 }

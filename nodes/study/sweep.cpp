@@ -28,6 +28,7 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/files/digits.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "terrain/dem/beds/bed_cache.hpp"
@@ -71,6 +72,23 @@ bool readable(const fs::path& bed) try {
   return true;
 } catch (const Error&) {
   return false;  // absent or damaged: made again
+}
+
+/// Names of all values as `results` takes them, "iso_w.force_N.0".
+void add_names(const Json& value, const std::string& name, std::vector<std::string>& names) {
+  if (!value.is_structured()) return names.push_back(name);
+  for (const auto& [key, one] : value.items()) add_names(one, name.empty() ? key : name + "." + key, names);
+}
+
+std::string without_result(const Json& summary, const std::string& name) {
+  std::vector<std::string> names;
+  add_names(summary, "", names);
+  const std::string text = "has no result '" + name + "'";
+  if (std::ranges::find(names, name) != names.end()) return text + ": it was not measured";
+  std::string similar;
+  for (const std::string& one : nearest_words(name, names))
+    similar += (similar.empty() ? "" : " or ") + fmt::format("'{}'", one);
+  return text + (similar.empty() ? ", expected a value of its summary.json" : ", expected " + similar + "?");
 }
 
 std::string state_name(int state) {
@@ -310,7 +328,7 @@ void Sweep::poll(Run& run) {
     run.state = State::done;
     keep_results(run, summary);
     for (const std::string& name : study_.chosen_results)
-      if (value_at(summary, name).is_null()) tell(run, "has no result '" + name + "'");
+      if (value_at(summary, name).is_null()) tell(run, without_result(summary, name));
     const double pull = number_at(summary, "drawbar_pull_N.mean");  // not every rig has one
     const bool unsteady = value_at(summary, "drawbar_pull_N.steady") == false;
     std::string told = "is done";

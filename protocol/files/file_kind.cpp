@@ -69,7 +69,8 @@ std::string part_of_chrono(const Json& document) {
 
 const char* instead_of_chrono(FileKind expected) {
   if (expected == FileKind::tire)
-    return "of its tires the template ANCFTire is read, and the tire property file (.tir) that a Pac02Tire names";
+    return "of its tires the template ANCFTire is read, and the tire property file (.tir) that a Pac02Tire names; "
+           "any tire of that size with tire.rigid takes the place of a RigidTire";
   if (expected == FileKind::vehicle) return "vehicle/data/hmmwv.json is Chrono's HMMWV as a vehicle file";
   return "its vehicles, suspensions, engines and terrains are not read";
 }

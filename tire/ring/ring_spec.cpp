@@ -81,6 +81,8 @@ class RingSpec final : public TireSpec {
 
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     auto odd = unusual_;
+    if (const std::string text = unusual_text(file_.sidewall[0], 1e3, 1e9, "N/m"); !text.empty())
+      odd.emplace_back("sidewall", "k1, " + text);
     if (file_.params.segments < file_segments_)
       odd.emplace_back("segments",
                        fmt::format("of the file is {}, the scenario's tire.elements_circumference makes it {}: the "

@@ -31,6 +31,7 @@ ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", 
             ("Momentum that does not close",
              ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
 
+STATES = ("gear", "shifting")  # whose means are no gear
 CHANGING = 0.05  # m/s²: a mean acceleration beyond it is no steady drive
 
 
@@ -47,6 +48,11 @@ def window_of(run):
 def all_rigid(run):
     """Whether no tire deflects: what its mesh, a polygon, leaves of a deflection is not shown."""
     return all(tire.get("rigid") for tire in run.scenario.get("tires") or [run.scenario.get("tire") or {}])
+
+
+def hard_ground(run):
+    """Whether nothing sinks into the ground."""
+    return run.told.get("terrain_engine") == "rigid"
 
 
 def pull_words(run, pull):
@@ -115,8 +121,7 @@ def answer_cards(run):
         items.append(blocks.card("drawbar pull", value, unit, "95 %" if half is not None else "",
                                  "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
-    hard = run.told.get("terrain_engine") == "rigid"  # ground into which nothing sinks
-    rigid = all_rigid(run)
+    hard, rigid = hard_ground(run), all_rigid(run)
     for key, sem, count, name in CARDS:
         if not is_number(summary.get(key)) or (hard and key == "sinkage_m") or (rigid and key == "tire_deflection_m"):
             continue
@@ -133,7 +138,7 @@ def vehicle_answer(run):
     for subject, values in (run.summary.get("subjects") or {}).items():
         rows = []
         for key, value in (values if isinstance(values, dict) else {}).items():
-            if is_number(value):
+            if is_number(value) and key not in STATES:
                 words, unit, _ = naming(key)
                 rows.append([words, blocks.quantity(key, value)[0], unit])
         if rows:
@@ -162,7 +167,8 @@ def wheels_table(run):
     wheels = [{**wheel, "vertical_force_N": vertical_force(wheel)}
               for wheel in run.summary.get("wheels") or [] if isinstance(wheel, dict)]
     names = [name for name in OF_WHEELS if any(is_number(wheel.get(name)) for wheel in wheels)
-             and not (name == "tire_deflection_m" and all_rigid(run))]
+             and not (name == "tire_deflection_m" and all_rigid(run))
+             and not (name == "sinkage_m" and hard_ground(run))]
     if len(wheels) < 2 or not names:
         return []
     columns = ["wheel"] + [", ".join(filter(None, (words, unit.replace(" ", "\u00a0")))) for words,

@@ -80,7 +80,9 @@ TEST(RingSpec, values_in_another_unit_are_named_with_their_key) {
   file["structural_damping"] = 2.2;  // ms
   file["tangential"] = 250;          // kN/m
   file["contact"]["friction"] = 90;  // per cent
-  EXPECT_EQ(odd_keys(file), "pressure tangential structural_damping contact.friction ");
+  file["sidewall"][0] = 235;         // kN/m
+  file["sidewall"][1] = 0;
+  EXPECT_EQ(odd_keys(file), "pressure tangential structural_damping contact.friction sidewall ");
 }
 
 TEST(RingSpec, a_scenario_may_change_pressure_friction_segments_and_damping) {

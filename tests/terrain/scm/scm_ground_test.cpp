@@ -225,12 +225,14 @@ TEST(ScmGround, level_heights_of_a_file_give_level_soil_moved_up_by_them) {
     tool.position.z() += up;
     low.attach(*level, 0.8), tool.attach(*high, 0.8);
     EXPECT_EQ(high->gather_top_height(0.1, 0.5, -0.1, 0.1), up);
+    double largest = 0.0;  // N
     for (int i = 0; i < 150; ++i) {
       const Vec3 velocity(0.5, 0.02, -0.1 * std::cos(0.03 * i));
       low.move(*level, velocity, 4.5, 1e-3), tool.move(*high, velocity, 4.5, 1e-3);
+      largest = std::max(largest, low.sums.force.norm());
       ASSERT_LT((low.sums.force - tool.sums.force).norm(), 1e-9 * (1.0 + low.sums.force.norm())) << i;
     }
-    EXPECT_GT(level->gather_state().energies.losses(), 1.0);
+    EXPECT_GT(largest, 10.0);
     EXPECT_NEAR(high->gather_mean_height(0.3, 0.4, -0.03, 0.03), up + level->gather_mean_height(0.3, 0.4, -0.03, 0.03),
                 1e-12);
     EXPECT_NEAR(high->gather_state().energies.losses(), level->gather_state().energies.losses(), 1e-9);

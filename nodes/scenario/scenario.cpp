@@ -15,7 +15,7 @@ namespace furrow::scenario {
 std::vector<std::string> Scenario::file_hashes() const {
   std::vector<std::string> hashes;
   for (const auto& tire : tires)
-    hashes.push_back(text_hash(read_text_file(tire->options().file, "a tire file in JSON")));
+    hashes.push_back(text_hash(read_text_file(tire->options().file, "a tire file in JSON", false)));
   for (const terrain::TerrainFile& file : terrain->files()) hashes.push_back(file_hash(file.path));
   for (const rigs::RigFile& file : rig->files()) hashes.push_back(file_hash(file.path));
   for (const auto& spec : tires)

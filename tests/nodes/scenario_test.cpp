@@ -380,6 +380,16 @@ TEST_F(Smallest, masses_of_a_rim_in_another_unit_are_warned_of) {
   EXPECT_TRUE(holds(told, "mine.json: key 'rim.carrier_mass': 0.05 kg is unusually small")) << told;
 }
 
+/// Of a .tir, whose comments may be in any encoding.
+TEST(Scenario, a_tire_property_file_with_a_comment_in_latin_1_is_read) {
+  const testing::ScenarioFile file(R"({"tire": {"file": "mine.tir"}, "terrain": {"engine": "rigid"}})");
+  std::ofstream(file.path().parent_path() / "mine.tir", std::ios::binary)
+      << "$ Gr\xf6\xdf"
+         "e\n"
+      << std::ifstream(data_folder() / "tire" / "data" / "hmmwv_handling.tir", std::ios::binary).rdbuf();
+  EXPECT_EQ(file.load().file_hashes().size(), 1U);
+}
+
 TEST_F(Smallest, times_that_are_no_whole_steps_are_told) {
   const auto warnings = [&](const char* key, const char* value) { return file_.load({{key, value}}).warnings; };
   const auto only = [&](const char* key, const char* value, const std::string& expected) {

@@ -42,8 +42,9 @@ std::filesystem::path cache_file(const TireSpec& tire, double deflection) {
   add(o.elements_width);
   add(o.structural_damping);
   add(o.pressure.empty() ? -1.0 : o.pressure.at(0.0));
-  hash.add(read_text_file(o.file, "a tire file in JSON"));
-  for (const std::filesystem::path& named : tire.files()) hash.add(read_text_file(named, "a tire's file"));
+  // Checked where they were read: comments of a .tir may be in any encoding.
+  hash.add(read_text_file(o.file, "a tire file in JSON", false));
+  for (const std::filesystem::path& named : tire.files()) hash.add(read_text_file(named, "a tire's file", false));
   return folder / (hash.hex() + ".json");
 }
 

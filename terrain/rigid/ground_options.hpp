@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "protocol/core/fields.hpp"
 #include "protocol/core/key.hpp"
@@ -28,9 +30,10 @@ struct GroundOptions : TerrainContext {
   double profile_v = 0.0;                // of the file where y = 0, m
   double profile_from = -1.0;            // x where the file's first height lies, m; negative: where the file says
   std::shared_ptr<const HeightMap> map;  // of the file, where heights change across: in place of `profile`
-  std::string road_class;                // of ISO 8608, A to H, in place of `profile`
-  double road_from = 5.0;                // x where it begins, m
-  double road_length = 100.0;            // m
+  std::vector<std::pair<std::string, std::string>> remarks;  // of the file (GroundShape)
+  std::string road_class;                                    // of ISO 8608, A to H, in place of `profile`
+  double road_from = 5.0;                                    // x where it begins, m
+  double road_length = 100.0;                                // m
 };
 void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
   using namespace allowed;

@@ -1,5 +1,8 @@
 #include "terrain/rigid/ground_shape.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "terrain/rigid/ground_map.hpp"
@@ -10,6 +13,7 @@ namespace furrow::terrain {
 namespace {
 
 constexpr double kStraight = 0.02;  // rad: a metre in fifty
+constexpr double kMostStep = 3.0;   // m, of what a wheel or a vehicle meets
 
 }  // namespace
 
@@ -21,11 +25,25 @@ UnevenPart GroundShape::uneven() const {
 }
 
 std::vector<std::pair<std::string, std::string>> GroundShape::remarks() const {
-  if (!map || !(map->turn > kStraight)) return {};
-  return {{"profile_file",
-           fmt::format("has a reference line that turns by {:.2g} rad: it is laid straight along x, its curves are not "
-                       "driven",
-                       map->turn)}};
+  std::vector<std::pair<std::string, std::string>> found;
+  if (map && map->turn > kStraight)
+    found.emplace_back("profile_file",
+                       fmt::format("has a reference line that turns by {:.2g} rad: it is laid straight along x, its "
+                                   "curves are not driven",
+                                   map->turn));
+  double rise = 0.0, at = 0.0;  // the largest step, m
+  const auto look = [&](double x, double run, double step) {
+    if (std::abs(step) > std::max(run, rise)) rise = std::abs(step), at = x;
+  };
+  for (std::size_t k = 1; k < profile.size(); ++k)
+    look(profile[k][0], profile[k][0] - profile[k - 1][0], profile[k][1] - profile[k - 1][1]);
+  const std::size_t across = map ? map->y.size() : 0;
+  for (std::size_t k = across; map && k < map->z.size(); ++k)
+    look(map->x[k / across], map->x[k / across] - map->x[k / across - 1], map->z[k] - map->z[k - across]);
+  if (rise > kMostStep)
+    found.emplace_back("profile_file",
+                       fmt::format("steps by {:g} m at x = {:g} m, expected heights in m: another unit?", rise, at));
+  return found;
 }
 
 GroundHeights GroundShape::heights() const {

@@ -22,7 +22,7 @@ struct GroundShape {
 
   bool given() const { return map || !profile.empty(); }
   UnevenPart uneven() const;
-  /// What of a file is not as it says, for TerrainDescription.
+  /// What of a file is not as it says, or not likely, for TerrainDescription. Looks at every height.
   std::vector<std::pair<std::string, std::string>> remarks() const;
   /// Empty where none is given.
   GroundHeights heights() const;

@@ -41,7 +41,7 @@ class GroundSpec final : public TerrainSpec {
       d.uneven.from = options_.road_from, d.uneven.to = options_.road_from + options_.road_length;
     else
       d.uneven = GroundShape{options_.profile, options_.map}.uneven();
-    d.remarks = GroundShape{{}, options_.map}.remarks();
+    d.remarks = options_.remarks;
     return d;
   }
   TerrainEstimate estimate(const TerrainContext&) const override {
@@ -107,6 +107,7 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
     options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
     GroundShape shape =
         read_shape(options.profile_file, {options.profile_v, options.profile_from}, options.profile_across);
+    options.remarks = shape.remarks();
     options.map = std::move(shape.map);
     options.profile = std::move(shape.profile);
   }

@@ -34,9 +34,19 @@ double steepest_slope(const ScmOptions& o) {
   return most;
 }
 
+std::vector<std::pair<std::string, std::string>> remarks_of(const ScmOptions& o) {
+  auto remarks = o.shape.remarks();
+  if (const double slope = steepest_slope(o); slope > kMostSlope)
+    remarks.emplace_back("profile_file",
+                         fmt::format("rises by {:.0f}° at its steepest, expected at most 15°: empirical soil sinks "
+                                     "straight down and does not slide",
+                                     std::atan(slope) * 180.0 / std::numbers::pi));
+  return remarks;
+}
+
 class ScmSpec final : public TerrainSpec {
  public:
-  explicit ScmSpec(ScmOptions options) : options_(std::move(options)), steepest_(steepest_slope(options_)) {}
+  explicit ScmSpec(ScmOptions options) : options_(std::move(options)), remarks_(remarks_of(options_)) {}
 
   TerrainDescription describe() const override {
     TerrainDescription d;
@@ -47,12 +57,7 @@ class ScmSpec final : public TerrainSpec {
     if (options_.shape.given()) {
       d.uneven_key = "profile_file";
       d.uneven = options_.shape.uneven();
-      d.remarks = options_.shape.remarks();
-      if (steepest_ > kMostSlope)
-        d.remarks.emplace_back("profile_file",
-                               fmt::format("rises by {:.0f}° at its steepest, expected at most 15°: empirical soil "
-                                           "sinks straight down and does not slide",
-                                           std::atan(steepest_) * 180.0 / std::numbers::pi));
+      d.remarks = remarks_;
     } else {
       d.undisturbed_height = 0.0;
     }
@@ -102,7 +107,7 @@ class ScmSpec final : public TerrainSpec {
   }
 
   ScmOptions options_;
-  double steepest_;
+  std::vector<std::pair<std::string, std::string>> remarks_;
 };
 
 }  // namespace

@@ -174,6 +174,17 @@ TEST_F(RoadFile, a_reference_line_that_turns_is_laid_straight_and_said_to_turn) 
   EXPECT_TRUE(read_shape(road("$ROAD_CRG_MODS\nSCALE_CURVATURE = 0\n$\n"), {}, true).remarks().empty());
 }
 
+TEST_F(RoadFile, heights_in_millimetres_are_said_to_step) {
+  const auto told = [&](const std::string& rows) {
+    const auto remarks = read_shape(put("road.csv", rows), {}, true).remarks();
+    return remarks.empty() ? std::string() : remarks[0].second;
+  };
+  EXPECT_EQ(told("x_m,z_m\n0,0\n1,0\n2,120\n"), "steps by 120 m at x = 2 m, expected heights in m: another unit?");
+  EXPECT_EQ(told("x_m,y_m,z_m\n0,0,0\n0,1,0\n1,0,0\n1,1,50\n"),
+            "steps by 50 m at x = 1 m, expected heights in m: another unit?");
+  EXPECT_EQ(told("x_m,z_m\n0,0\n1,0\n1,2.5\n500,300\n"), "");  // a wall, and a mountain
+}
+
 TEST_F(RoadFile, a_row_of_more_than_eight_channels_goes_on_in_the_next_record) {
   std::string bytes =
       "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\nLONG_SECTION_V_RIGHT = 0\nLONG_SECTION_V_INCREMENT = "

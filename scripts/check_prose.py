@@ -21,7 +21,7 @@ WORDS = {r"(?<!there )(?:is|are|was|were) no (?!longer|more|less)\w+": "'is not 
          r"in place of": "'instead of'", r"the house": "'the repository'", r"by name": "the name"}
 FINDINGS = [(re.compile(rf"\b(?:{word})\b", re.IGNORECASE), instead) for word, instead in WORDS.items()]
 EXEMPT = {
-    "CODE_OF_CONDUCT.md",
+
 }
 MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|`[^`]*`")
 END = re.compile(r"(?<=[.!?:;])\)?\s+(?=[\"'(*`\[A-Z])")

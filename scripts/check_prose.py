@@ -2,9 +2,7 @@
 """Checks the English of the pages: no sentence of more than 35 words, and none of the words that CONTRIBUTING.md
 replaces. Prints FILE:LINE with each finding; exit status 1 if there is one.
 
-usage: check_prose.py [--all] [--root DIR]     --all also prints the findings of exempt pages
-
-EXEMPT lists the pages that were written before the rule. A page leaves the list when it is clean, and none joins.
+usage: check_prose.py [--root DIR]
 """
 import argparse
 import pathlib
@@ -20,9 +18,6 @@ WORDS = {r"(?<!there )(?:is|are|was|were) no (?!longer|more|less)\w+": "'is not 
          r"mend(?:s|ed|ing)?": "'fix'", r"book(?:s|ed|ing)?": "'record'", r"likewise": "the noun again",
          r"in place of": "'instead of'", r"the house": "'the repository'", r"by name": "the name"}
 FINDINGS = [(re.compile(rf"\b(?:{word})\b", re.IGNORECASE), instead) for word, instead in WORDS.items()]
-EXEMPT = {
-
-}
 MARKUP = re.compile(r"!?\[([^\]]*)\]\([^)]*\)|`[^`]*`")
 END = re.compile(r"(?<=[.!?:;])\)?\s+(?=[\"'(*`\[A-Z])")
 
@@ -58,19 +53,13 @@ def findings(page):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--all", action="store_true")
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
     arguments = parser.parse_args()
     wrong = 0
     for page in check_docs.pages(arguments.root):
-        name, found = str(page.relative_to(arguments.root)), list(findings(page))
-        if name in EXEMPT and not found:
-            found = [(0, "is clean, expected that it leaves EXEMPT of check_prose.py")]
-        elif name in EXEMPT and not arguments.all:
-            continue
-        for line, what in found:
-            print(f"{name}:{line}: {what}")
-        wrong += len(found)
+        for line, what in findings(page):
+            print(f"{page.relative_to(arguments.root)}:{line}: {what}")
+            wrong += 1
     return 1 if wrong else 0
 
 

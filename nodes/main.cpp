@@ -1,4 +1,4 @@
-// furrow: the program. Every error ends here, as one message and the exit code that users script against.
+// furrow: the program. Every error ends here with one message and the exit code that scripts rely on.
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -26,20 +26,21 @@ int fail(const furrow::Error& error, bool as_rank) {
 int main(int argc, char** argv) {
   furrow::launch::occupy_closed_streams();
   const bool as_rank = furrow::commands::runs_as_rank(argc, argv);
-  // Reports a file that exceeds the limit of file sizes. A rank is killed by it, and its supervisor reports that.
+  // Without the signal, a file that exceeds the limit of file sizes is reported as an error. A rank is killed by the
+  // signal, and its supervisor reports that.
   if (!as_rank) std::signal(SIGXFSZ, SIG_IGN);
-  // Ignored, as a daemon may hand it on, it takes the exit codes of children away.
+  // A daemon may pass SIGCHLD on as ignored; then the exit codes of children are lost.
   std::signal(SIGCHLD, SIG_DFL);
   if (!as_rank) furrow::launch::end_on_stop_signals();
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
-    if (!as_rank)  // a rank has words of its own, after MPI has begun, which fails with the same status
+    if (!as_rank)  // a rank reports its errors after MPI has begun, whose failures have the same status
       furrow::launch::end_where_no_thread_starts(std::string("furrow: error: ") + furrow::launch::kNoThread + "\n");
     furrow::launch::require_stack(argv);
-    // Threads that spin while they wait make a short bed slow as soon as the machine has something else to do.
+    // Threads that spin while they wait slow down a short bed as soon as the machine does other work.
     const std::string command = argc > 1 ? argv[1] : "";
     if (command == "bed" || command == "sweep" || as_rank) furrow::launch::wait_passively(argv);
-    if (!as_rank) furrow::launch::end_where_processor_time_runs_out();  // the program does not start again after this
+    if (!as_rank) furrow::launch::end_where_processor_time_runs_out();  // the program must not restart after this
     const furrow::ExitCode code = furrow::commands::run_command_line(argc, argv);
     if (!std::cout.flush() && !furrow::launch::reader_is_gone())
       throw furrow::io_error("standard output", "cannot be written, expected room for the result");

@@ -112,7 +112,7 @@ void AssembledRig::begin_step() {
   }
 }
 
-/// A joint's reaction acts on body B in the axes of its frame on A, the rail's A being the ground.
+/// A joint's reaction acts on body B, in the axes of the joint's frame on A. For the rail, A is the ground.
 void AssembledRig::account(std::span<const Wrench> wrenches, double step) {
   const Mat3& axes = system_->joint(rail_).frame_a.axes;
   const vehicle::Reaction& reaction = system_->reaction(rail_);

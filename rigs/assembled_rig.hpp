@@ -1,10 +1,10 @@
-// A test rig that is a multibody system of its own: what drawbar rig, quarter car and half car have in common.
+// The common part of drawbar rig, quarter car and half car: a test rig that is a multibody system of its own.
 //
 //   ground –prismatic (imposed speed)– trolley – … – carrier –revolute– rim, for each wheel
 //
-// A rig states its bodies, joints, motors and force elements in build(), and what it measures beside the report of
-// every wheel. Its accounts are the energies of the system and of the named elements, and the works and impulses of
-// what acts from outside: rail, drive and tires. Both are mean force times way, step by step.
+// Each kind of rig defines its bodies, joints, motors and force elements in build(), and its own measurements besides
+// the report of every wheel. The accounts contain the energies of the system and of the chosen elements, and the works
+// and impulses of rail, drive and tires. Works are mean force times displacement, step by step.
 #pragma once
 
 #include <optional>
@@ -23,15 +23,15 @@ inline constexpr double kGuidedInertia = 20.0;
 
 /// A wheel of an assembled rig. Turns are about the axle, forward positive.
 struct AssembledWheel {
-  double placed_height = 0.0;             // of the axle, in which the joints were defined, m
+  double placed_height = 0.0;             // of the axle, at which the joints were defined, m
   int carrier = 0, rim = 0, spindle = 0;  // bodies, joint
   double carried_mass = 0.0;              // kg, including the tire's added mass
   WheelReport report;
-  // Of the present advance and step
+  // During an advance and its steps
   Vec3 begin = Vec3::Zero();         // of the rim's centre, m
   RimState from;                     // of the rim
   double angle = 0.0;                // of the spindle, rad
-  double turned = 0.0, turns = 0.0;  // in the last step; in the advance, rad
+  double turned = 0.0, turns = 0.0;  // in the last step; since the advance began, rad
 };
 
 class AssembledRig : public Rig {
@@ -40,24 +40,24 @@ class AssembledRig : public Rig {
   Vec3 heading(int) const override { return forward_; }
 
  protected:
-  /// How the rig starts from rest: at `from`, s, over `ramp`, s, along +x or −x as `travel_sign` says.
+  /// Start from rest: at `from`, s, over `ramp`, s, along +x or −x by the sign of `travel_sign`.
   struct Start {
     double from = 0.0, ramp = 0.0, travel_sign = 1.0;
   };
   AssembledRig(int wheels, const Start& start, const Vec3& gravity = standard_gravity());
 
   vehicle::MotionFunction from_rest(double speed) const;
-  /// 0 or `speed` at t = 0.
+  /// Speed at t = 0: 0 or `speed`.
   double at_first(double speed) const { return from_rest(speed)(0.0).rate; }
   const vehicle::BodyState& state(int body) const { return system_->body(body).state; }
   double mass(int body) const { return system_->body(body).mass; }
 
-  // For build()
+  // For use in build()
   int add_joint(vehicle::JointKind kind, const std::string& name, int a, int b, const Vec3& point, const Vec3& axis);
-  /// With the tire's mass. @param inertia of the rim, its principal moments, kg m²
+  /// Adds the rim with the tire's mass. @param inertia principal moments of the rim, kg m²
   void add_rim(AssembledWheel& wheel, const std::string& name, double mass, const Vec3& inertia,
                const vehicle::BodyState& state);
-  /// A damper c, N s/m, in a joint's free coordinate until a time, s. Its energy is kept before that of others.
+  /// Adds a damper c, N s/m, in a joint's free coordinate until a time, s. The accounts include its energy.
   int add_lowering_damper(const std::string& name, int joint, double c, double until);
   void keep_energy(int element);
 
@@ -69,18 +69,16 @@ class AssembledRig : public Rig {
   RigAccounts accounts_ = RigAccounts::none();
 
  private:
-  // What a rig states.
+  // Each kind of rig overrides these.
   /// Adds bodies, joints, motors and elements; sets the indices above, those of the wheels, and the masses.
   virtual void build() = 0;
-  /// Rows and reports of a rig that was just placed.
   virtual void begin_rows() = 0;
   virtual void begin_advance() {}
-  /// Sums of rows after a step, and works of what only this rig has.
+  /// Adds to the sums of rows after a step, and to the works that only this rig has.
   virtual void add_step() {}
   virtual void end_advance(double /*duration*/, int /*substeps*/) {}
-  /// Of all that wheel k carries, kg m/s. Here: of its carrier and rim.
+  /// Vertical momentum of all that wheel k carries, kg m/s. By default: of its carrier and rim.
   virtual double vertical_momentum(int k) const;
-  /// Rows of the instant.
   virtual void measure_rows() {}
   virtual void save_rows(Archive& archive) const = 0;
   virtual void restore_rows(const Archive& archive) = 0;
@@ -100,7 +98,7 @@ class AssembledRig : public Rig {
   Start start_;
   Vec3 gravity_;
   vehicle::BodyState trolley_from_;  // at the beginning of the step
-  std::vector<int> elements_;        // whose energies are kept
+  std::vector<int> elements_;        // whose energies the accounts include
 };
 
 }  // namespace furrow::rigs

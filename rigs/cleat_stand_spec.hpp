@@ -1,5 +1,5 @@
-// A cleat test stand as an entry of the table of rigs: the drawbar rig (drawbar_rig.hpp) with a freely rolling wheel
-// that a damper lets down on its load, and whose axle is then held at the height where it stands.
+// The cleat test stand as an entry of the table of rigs: the drawbar rig (drawbar_rig.hpp) with a freely rolling wheel.
+// A damper lowers the wheel until it rests on its load; then the axle is held at that height.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,10 @@
 
 namespace furrow::rigs {
 
-/// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
+/// Every field is the scenario key `rig.<name>`. A negative value is open: RigSpec::mount fills it in.
 struct CleatStandOptions : RailOptions {
-  double hold_axle_from = 0.5;  // until then the wheel is let down, from then on its axle keeps its height, s
-  double carrier_mass = -1.0;   // wheel carrier with ballast, kg; in place of the load
+  double hold_axle_from = 0.5;  // s; the wheel is lowered until then, and its axle keeps its height afterwards
+  double carrier_mass = -1.0;   // wheel carrier with ballast, kg; instead of the load
 };
 void visit_fields(FieldsOf<CleatStandOptions> auto& s, auto&& visit) {
   using namespace allowed;

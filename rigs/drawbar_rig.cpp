@@ -1,5 +1,5 @@
-// The drawbar rig as a multibody system. Frame of travel: e = ±x, l = z × e (left when looking along e), z
-// up. All bodies ride in the vertical plane of the axle line; chassis and set-toe are carried by the rail.
+// The drawbar rig as a multibody system. Frame of travel: e = ±x, l = z × e (left when looking along e), z up. All
+// bodies move in the vertical plane of the axle line; the rail carries chassis and set-toe.
 #include "rigs/drawbar_rig.hpp"
 
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace furrow::rigs {
 namespace {
 
-// Chassis and set-toe rotate only as imposed, so their inertia has no effect on any result either.
+// Chassis and set-toe rotate only as imposed, so their inertia does not affect any result.
 constexpr double kRidingInertia = 1.0;  // kg m²
 
 void validate(const DrawbarRigOptions& o) {
@@ -34,13 +34,13 @@ void validate(const DrawbarRigOptions& o) {
   FURROW_ASSERT(o.touchdown_damping >= 0.0 && o.touchdown_time >= 0.0, o.touchdown_damping, o.touchdown_time);
 }
 
-/// What the rig measures with its longitudinal drive and its damper: columns of the wheel's table.
+/// Columns of the wheel's table that the rig measures at its longitudinal drive and its damper.
 struct DrawbarRow {
-  double pull = 0.0;          // raw + m·a of everything the drive carries, N, positive when the tire pulls the rig
+  double pull = 0.0;          // raw + m·a of everything the drive carries, N, positive if the tire pulls the rig
   double pull_raw = 0.0;      // reaction of the longitudinal drive, N
   double damper_force = 0.0;  // touch-down damper on the slider, N
   double pull_work = 0.0;     // ∫ raw pull · v dt, J
-  double tractive_efficiency = 0.0;  // pull power / spindle power; 0 where the spindle gives none
+  double tractive_efficiency = 0.0;  // pull power / spindle power; 0 if the spindle gives no power
   double motion_resistance = 0.0;    // (torque / undeformed radius − pull) / load
 };
 void visit_fields(FieldsOf<DrawbarRow> auto& r, auto&& visit) {
@@ -96,7 +96,7 @@ class DrawbarRig final : public AssembledRig {
   int spindle_motor_ = 0, steering_ = 0;  // motors
   int damper_ = 0;                        // force element
   std::optional<double> held_;            // travel of the slider at which the stop holds it, m
-  double momentum_ = 0.0, toe_ = 0.0;     // along the rail when the advance began, kg m/s; at the last step, rad
+  double momentum_ = 0.0, toe_ = 0.0;     // along the rail when the advance began, kg m/s; rad, at the last step
   DrawbarRow row_;
 };
 
@@ -205,7 +205,7 @@ void DrawbarRig::end_advance(double duration, int substeps) {
   row_.damper_force /= substeps;
   WheelReport& report = wheels_[0].report;
   report.drive_torque = options_.travel_sign * report.drive_torque / substeps;
-  // Fused whatever else the compiler does here: the same bits in every build.
+  // An explicit fma gives the same bits in every build.
   row_.pull_work = std::fma(duration * row_.pull_raw, report.speed, row_.pull_work);
 }
 

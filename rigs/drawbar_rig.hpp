@@ -13,9 +13,9 @@
 
 namespace furrow::rigs {
 
-/// Every field but the gravity is the scenario key `rig.<name>`; `lateral` is that of an entry of `rig.wheels`. What is
-/// negative here is open: RigSpec::mount fills it in from the tire (drawbar_mount.hpp), and a rig is made of given
-/// values alone.
+/// Every field but the gravity is the scenario key `rig.<name>`; `lateral` is a key of an entry of `rig.wheels`. A
+/// negative value is open: RigSpec::mount fills it in from the tire (drawbar_mount.hpp). A rig is made only when every
+/// value is given.
 struct DrawbarRigOptions : RailOptions {
   std::string mode = "fixed_angular_speed";  // fixed_angular_speed: ω given, v = ω r (1 − s)
                                              // fixed_speed: v given, ω = v / (r (1 − s))
@@ -24,12 +24,12 @@ struct DrawbarRigOptions : RailOptions {
   double angular_speed = 8.56;               // rad/s
   double touchdown_damping = -1.0;           // N s/m, vertical damper between set-toe and carrier
   double toe_angle = 0.0;                    // rad, about +z
-  double toe_time = 0.0;              // s, when the wheel is turned from 0 to toe_angle; 0: it stands so from the start
-  double toe_ramp = 0.01;             // s, how long that takes
+  double toe_time = 0.0;              // s, when the wheel turns from 0 to toe_angle; 0: it has toe_angle from the start
+  double toe_ramp = 0.01;             // s, how long this turn takes
   double camber_angle = 0.0;          // rad, about the wheel's forward axis: positive leans the top to the right
   double travel_sign = 1.0;           // +1 along +x, −1 along −x (mirrored travel)
   double lateral = 0.0;               // y of the wheel's mid-plane, m
-  double carrier_mass = -1.0;         // wheel carrier with ballast, kg; in place of the load
+  double carrier_mass = -1.0;         // wheel carrier with ballast, kg; instead of the load
   double chassis_mass = 1.0;          // kg, rides on the rail
   double set_toe_mass = 1.0;          // kg, rides on the rail
   Vec3 gravity = standard_gravity();  // m/s²
@@ -84,8 +84,8 @@ void visit_fields(FieldsOf<DrawbarRigOptions> auto& s, auto&& visit) {
 
 std::unique_ptr<Rig> make_drawbar_rig(const DrawbarRigOptions& options);
 
-/// The same, until a stop takes hold of the vertical slider where the wheel then stands on its load. What speed the
-/// slider still has ends in the stop. @param hold_axle_from s, at touchdown_time or later
+/// Makes a drawbar rig whose vertical slider a stop holds from `hold_axle_from` on, at the height where the wheel then
+/// rests. The stop takes up any speed that the slider still has. @param hold_axle_from s, at touchdown_time or later
 std::unique_ptr<Rig> make_held_drawbar_rig(const DrawbarRigOptions& options, double hold_axle_from);
 
 }  // namespace furrow::rigs

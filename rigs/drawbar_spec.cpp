@@ -20,25 +20,25 @@ namespace {
 
 using nlohmann::json;
 
-/// A wheel's rig, and whether the scenario says where its axle starts.
+/// A wheel's rig, and whether the scenario gives the start of its axle.
 struct Place {
   DrawbarRigOptions rig;
   bool start_given = true;
-  bool start_listed = false;  // by its own entry of rig.wheels
+  bool start_listed = false;  // in its own entry of rig.wheels
 };
 
-/// Of the axle after the ramp, m/s, forward positive.
+/// Speed of the axle after the ramp, m/s, forward positive.
 double full_speed(const DrawbarRigOptions& rig, double tire_radius) {
   return rig.mode == "fixed_angular_speed" ? rig.angular_speed * tire_radius * (1.0 - rig.slip) : rig.speed;
 }
 
-/// Of the tread against the axle after the ramp, m/s, forward positive.
+/// Speed of the tread against the axle after the ramp, m/s, forward positive.
 double tread_speed(const DrawbarRigOptions& rig, double tire_radius) {
   if (rig.mode == "fixed_angular_speed") return rig.angular_speed * tire_radius;
   return rig.mode == "free_rolling" ? rig.speed : rig.speed / (1.0 - rig.slip);
 }
 
-/// Of the axle's travel, m, forward positive.
+/// Travel of the axle, m, forward positive.
 double travel(const DrawbarRigOptions& rig, double tire_radius, double duration) {
   // Over the ramp the mean speed is half of the full one.
   const double moving = std::max(0.0, duration - rig.move_from), ramped = std::min(rig.ramp, moving);
@@ -91,7 +91,7 @@ class DrawbarSpec final : public RigSpec {
     }
   }
 
-  /// What all wheels have in common is written for all; what follows from a load or a speed that is stated, is not.
+  /// Writes the values that all wheels share, but none that follows from a stated load or speed.
   void complete(json& section) const override {
     bool by_load = says(section, "load");
     for (const json& entry : section.value("wheels", json::array())) by_load |= says(entry, "load");
@@ -128,7 +128,7 @@ class DrawbarSpec final : public RigSpec {
     d.tread_speed = tread_speed(rig, tire.radius);
     d.lowering_time = rig.move_from;
     if (rig.touchdown_damping > 0.0) d.lowering_speed = rig.load / rig.touchdown_damping;
-    // Where several start, each in its own entry; of a single one it is where the value stands.
+    // With several wheels, each has its start in its own entry. A single wheel may have it there or in `rig`.
     const bool in_list = places_[k].start_listed || places_.size() > 1;
     d.start_key = listed_ && in_list ? fmt::format("rig.wheels.{}.start", k) : "rig.start";
     return d;
@@ -140,7 +140,7 @@ class DrawbarSpec final : public RigSpec {
     if (first >= 0.0 && std::all_of(places_.begin(), places_.end(), same)) section[key] = first;
   }
 
-  /// What stands before the name of a key of wheel k within the section.
+  /// Prefix of the keys of wheel k within the section.
   std::string wheel_key(std::size_t k) const {
     return listed_ && places_.size() > 1 ? fmt::format("wheels.{}.", k) : "";
   }

@@ -15,7 +15,7 @@
 
 namespace furrow::rigs {
 
-/// One of several wheels: what its entry of `rig.wheels` says, and for the rest what the rig says.
+/// One of several wheels: its entry of `rig.wheels`, with the keys of the rig where the entry gives none.
 struct DrawbarWheel {
   static constexpr SchemaName kSchema{"wheel",
                                       "One of several wheels, each on a rig of its own over the same terrain."};
@@ -39,7 +39,7 @@ void visit_fields(FieldsOf<DrawbarWheel> auto& s, auto&& visit) {
                                 "Carrier mass of this wheel. null: as the rig states, unless load is given here."));
 }
 
-/// The keys of the section: those of every wheel, and the list of what single wheels have otherwise.
+/// Keys of the section: those of every wheel, and the list of differing keys of single wheels.
 struct DrawbarKeys : DrawbarRigOptions {
   nlohmann::json wheels = nlohmann::json::array();  // each with the keys of DrawbarWheel
 };
@@ -59,7 +59,7 @@ void visit_fields(FieldsOf<DrawbarKeys> auto& s, auto&& visit) {
 /// @throws Error(bad_input) naming file and key
 std::unique_ptr<RigSpec> read_drawbar(const nlohmann::json& section, const ReadContext& context);
 
-/// One rig per wheel, each as its options say. @pre there is at least one
+/// Returns a spec with one rig per wheel. @pre there is at least one
 std::unique_ptr<RigSpec> drawbar_spec(std::vector<DrawbarRigOptions> rigs);
 
 }  // namespace furrow::rigs

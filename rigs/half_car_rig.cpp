@@ -8,7 +8,7 @@
 namespace furrow::rigs {
 namespace {
 
-constexpr double kHubShare = 0.01;    // of the body: heaves with it and does not pitch
+constexpr double kHubShare = 0.01;    // of the body: moves up and down with it and does not pitch
 constexpr double kStrutLength = 1.0;  // m, from the front carrier up to the body at rest
 
 class HalfCar final : public RideCar<HalfCarOptions> {

@@ -1,13 +1,13 @@
-// Half of a vehicle for ride: ground –prismatic (imposed speed)– trolley –vertical slider– hub –hinge about y– body; of
-// each of two wheels, front and rear: trolley –vertical slider– carrier –free revolute– rim, spring and damper between
-// carrier and body.
+// Half of a vehicle for ride: ground –prismatic (imposed speed)– trolley –vertical slider– hub –hinge about y– body.
+// For each of two wheels, front and rear: trolley –vertical slider– carrier –free revolute– rim, with spring and damper
+// between carrier and body.
 //
-// The wheels roll freely; what pulls them along is the trolley, so that only the suspensions pitch the body. With the
-// travel s of a suspension, positive in compression, the body is pushed up above the axle by
+// The wheels roll freely. The trolley pulls them along, so only the suspensions pitch the body. With the travel s of a
+// suspension, positive in compression, the body is pushed up above the axle by
 //   F = W + k s + c ṡ                                                                                          (1)
-// and the carrier down, W the body's weight there. The struts are 1 m long and stand upright at rest: (1) acts along
-// them, so the rig is linear in heights and pitch but for terms of third order. The hub is a hundredth of the body
-// and sits in its centre. A damper between trolley and hub lets the wheels down onto the ground.
+// and the carrier is pushed down; W is the body's weight there. The struts are 1 m long and upright at rest. Because
+// (1) acts along them, the rig is linear in heights and pitch except for terms of third order. The hub has a hundredth
+// of the body's mass and sits in its centre. A damper between trolley and hub lowers the wheels onto the ground.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@
 
 namespace furrow::rigs {
 
-/// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
+/// Every field is the scenario key `rig.<name>`. A negative value is open: RigSpec::mount fills it in.
 struct HalfCarOptions : QuarterCarOptions {
   double wheelbase = 2.7;                   // a + b, m
   double front_share = 0.5;                 // of the body's weight, on the front wheel: b/(a + b)
@@ -71,7 +71,7 @@ struct HalfCarBodyRow {
   double acceleration = 0.0;        // of the centre, upwards, m/s²
   double pitch = 0.0;               // nose down, rad
   double pitch_acceleration = 0.0;  // rad/s²
-  double drive_force = 0.0;         // of what keeps the trolley at its speed, N
+  double drive_force = 0.0;         // of the drive that keeps the trolley at its speed, N
 };
 void visit_fields(FieldsOf<HalfCarBodyRow> auto& r, auto&& visit) {
   using namespace column;

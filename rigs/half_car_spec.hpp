@@ -13,11 +13,12 @@
 
 namespace furrow::rigs {
 
-/// Fills in what is open from the tires, front and rear: rim and body (the carrier masses of both) as the block `rim`
-/// of their files says, a pitch inertia m a b, a hundredth of the rim for the rest of what is unsprung, the front of
-/// the body at 1.5 Hz with 0.3 of its critical damping, the rear likewise stiff and damped for the weight that it
-/// bears, and how the wheels are let down. Both rims are as the file of the front tire says.
-/// @throws Error(bad_input) naming the keys where neither of them says a mass
+/// Fills in open values from the tires, front and rear. The block `rim` of their files gives rim and body (the sum of
+/// both carrier masses); both rims are those of the front tire's file. The pitch inertia is m a b, and the rest of the
+/// unsprung mass is a hundredth of the rim's. The front of the body gets 1.5 Hz and 0.3 of its critical damping. The
+/// rear's stiffness and damping are the front's times the ratio of the weights. Also fills in how the wheels are
+/// lowered.
+/// @throws Error(bad_input) naming the keys if neither scenario nor tire file gives a mass
 HalfCarOptions mounted(HalfCarOptions rig, std::span<const MountedTire, 2> tires, const ReadContext& context);
 
 /// @pre the section was checked against the schema

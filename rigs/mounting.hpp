@@ -1,4 +1,4 @@
-// What rigs of single wheels take from their tires where the scenario leaves it open: what is negative is open.
+// Values that rigs of single wheels take from their tires if the scenario leaves them open; a negative value is open.
 // `Options` is the struct of a rig's keys.
 #pragma once
 
@@ -19,18 +19,17 @@
 
 namespace furrow::rigs {
 
-inline constexpr double kRingInertia = 0.5;  // of a thin ring about a diameter, of that about its axle
+inline constexpr double kRingInertia = 0.5;  // of a thin ring: inertia about a diameter over inertia about its axle
 
 inline bool is_open(double value) { return value < 0.0; }
-/// Fills in an open value.
 inline void take(double& value, double other) {
   if (is_open(value)) value = other;
 }
 
-/// Rims as the block `rim` of the first tire's file says, their diametral inertia else half of the spin inertia; what
-/// they carry, where no load is given, as those of all tires say.
-/// @param carried mass of the key `carried_key`, which may be given in place of the load, kg
-/// @throws Error(bad_input) naming the keys where neither scenario nor tire file say a mass
+/// Fills in the rims from the block `rim` of the first tire's file; the diametral inertia is otherwise half of the spin
+/// inertia. If no load is given, the carried mass is the sum over all tires' files.
+/// @param carried mass of the key `carried_key`, kg; it may be given instead of the load
+/// @throws Error(bad_input) naming the keys if neither scenario nor tire file gives a mass
 template <class Options>
 void mount_masses(Options& rig, double& carried, const char* carried_key, std::span<const MountedTire> tires,
                   const ReadContext& context) {
@@ -59,8 +58,8 @@ void mount_masses(Options& rig, double& carried, const char* carried_key, std::s
                                 context.key("load"), first.file));
 }
 
-/// load = (carried + rest) g: the one that is open from the other. @param key of the load @param rest kg, `rest_text`
-/// for people. @throws Error(bad_input) where the load is too small for the rest
+/// load = (carried + rest) g: computes the open one from the other. @param key of the load @param rest kg @param
+/// rest_text names the rest in the message. @throws Error(bad_input) if the load is too small for the rest
 inline void mount_load(double& load, double& carried, double rest, const std::string& rest_text,
                        const ReadContext& context, const std::string& key = "load") {
   if (is_open(load)) {
@@ -74,7 +73,7 @@ inline void mount_load(double& load, double& carried, double rest, const std::st
         fmt::format("is {} N, expected above {:.6g} N: {}", number_text(load), rest * kStandardGravity, rest_text));
 }
 
-/// How the wheels are let down. @param radius of the largest tire, m
+/// Fills in how the wheels are lowered. @param radius of the largest tire, m
 template <class Options>
 void mount_lowering(Options& rig, double radius) {
   take(rig.lowering_speed, kLoweringFroude * std::sqrt(kStandardGravity * radius));

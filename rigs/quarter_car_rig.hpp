@@ -3,7 +3,7 @@
 //
 // The wheel rolls freely. With the travel s of the suspension, positive in compression, the body is pushed up by
 //   F = m_b g + k s + c ṡ                                                                                      (1)
-// and the carrier down. A damper between trolley and body lets the wheel down onto the ground.
+// and the carrier is pushed down. A damper between trolley and body lowers the wheel onto the ground.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@
 
 namespace furrow::rigs {
 
-/// Every field is the scenario key `rig.<name>`. What is negative here is open: RigSpec::mount fills it in.
+/// Every field is the scenario key `rig.<name>`. A negative value is open: RigSpec::mount fills it in.
 struct QuarterCarOptions : RailOptions {
-  double body_mass = -1.0;             // m_b, kg; in place of the load
-  double unsprung_mass = -1.0;         // of the carrier, kg: what hangs under the spring beside rim and tire
+  double body_mass = -1.0;             // m_b, kg; instead of the load
+  double unsprung_mass = -1.0;         // of the carrier, kg: all unsprung mass but rim and tire
   double suspension_stiffness = -1.0;  // k, N/m
   double suspension_damping = -1.0;    // c, N s/m
 };

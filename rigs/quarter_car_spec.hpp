@@ -11,9 +11,10 @@
 
 namespace furrow::rigs {
 
-/// Fills in what is open from the tire: rim and body as the block `rim` of its file says, a hundredth of the rim for
-/// the rest of what is unsprung, a body at 1.5 Hz with 0.3 of its critical damping, and how it is let down.
-/// @throws Error(bad_input) naming the keys where neither of them says a mass
+/// Fills in open values from the tire. The block `rim` of its file gives rim and body. The rest of the unsprung mass is
+/// a hundredth of the rim's, and the body gets 1.5 Hz and 0.3 of its critical damping. Also fills in how the wheel is
+/// lowered.
+/// @throws Error(bad_input) naming the keys if neither scenario nor tire file gives a mass
 QuarterCarOptions mounted(QuarterCarOptions rig, const MountedTire& tire, const ReadContext& context);
 
 /// @pre the section was checked against the schema

@@ -1,5 +1,5 @@
-// A car for ride as a multibody system: what quarter car and half car have in common. Its trolley rides on a rail and
-// feels nothing but the drive; each wheel has a suspension, and what they carry is let down by a damper.
+// The common part of quarter car and half car: a car for ride as a multibody system. Its trolley rides on a rail, and
+// only the drive acts on it. Each wheel has a suspension, and a damper lowers what the wheels carry.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@
 namespace furrow::rigs {
 
 struct Suspension {
-  double body_share = 0.0;                // of the body's mass that it carries at rest, kg
+  double body_share = 0.0;                // part of the body's mass that it carries at rest, kg
   double stiffness = 0.0, damping = 0.0;  // N/m, N s/m
-  int element = 0;                        // in the system
-  double rose = 0.0;                      // of the body above the wheel when the advance began, upwards, m/s
+  int element = 0;                        // index in the system
+  double rose = 0.0;                      // speed of the body above the wheel when the advance began, upwards, m/s
   RideRow row = {};
 };
 
@@ -43,8 +43,8 @@ class RideCar : public AssembledRig {
       FURROW_ASSERT(s.body_share > 0.0 && s.stiffness >= 0.0 && s.damping >= 0.0, s.body_share, s.stiffness, s.damping);
   }
 
-  // For build(), in this order as far as bodies and joints are concerned.
-  /// The trolley. @returns its state, with which other bodies begin
+  // For build(); bodies and joints must be added in this order.
+  // Adds the trolley. @returns its state, with which other bodies begin
   vehicle::BodyState add_trolley(const Vec3& position) {
     constexpr double kTrolleyMass = 1.0;  // kg
     const vehicle::BodyState state{.position = position, .velocity = at_first(options_.speed) * forward_};
@@ -62,7 +62,7 @@ class RideCar : public AssembledRig {
                       forward_);
   }
   void add_drive() { drive_ = system_->add_motor("trolley drive", rail_, from_rest(options_.speed)); }
-  /// Carrier and rim. @param state of the wheel's centre
+  /// Adds carrier and rim. @param state of the wheel's centre
   void add_wheel(int k, const std::string& name, vehicle::BodyState state) {
     AssembledWheel& w = wheels_[k];
     w.carrier = system_->add_body(name + "carrier", options_.unsprung_mass, guided(), state);
@@ -87,9 +87,9 @@ class RideCar : public AssembledRig {
   std::vector<Suspension> suspensions_;  // of each wheel
 
  private:
-  /// Of the body above a wheel, m/s.
+  /// Vertical speed of the body above a wheel, m/s.
   virtual double rise(int k) const = 0;
-  /// Of a suspension upwards on the body, and of what keeps its wheel at its speed: means of the last step, N.
+  /// Upward force of a suspension on the body, and force that keeps its wheel at its speed: means of the last step, N.
   virtual double strut_force(int k) const = 0;
   virtual double held_force(int k) const = 0;
 

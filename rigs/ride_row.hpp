@@ -1,4 +1,4 @@
-// What the rigs for ride, quarter car and half car, add to the table of a wheel.
+// Columns that quarter car and half car add to the table of a wheel.
 #pragma once
 
 #include "protocol/core/column.hpp"
@@ -6,11 +6,11 @@
 namespace furrow::rigs {
 
 struct RideRow {
-  double body_height = 0.0;        // above where the body was placed, over this wheel, m
-  double body_acceleration = 0.0;  // likewise, upwards, m/s²
+  double body_height = 0.0;        // of the body above where it was placed, at this wheel, m
+  double body_acceleration = 0.0;  // of the body at this wheel, upwards, m/s²
   double travel = 0.0;             // of the suspension, positive in compression, m
   double force = 0.0;              // of the suspension upwards on the body, N
-  double drive_force = 0.0;        // of what keeps the wheel at its speed, N
+  double drive_force = 0.0;        // that keeps the wheel at its speed, N
 };
 void visit_fields(FieldsOf<RideRow> auto& r, auto&& visit) {
   visit(r.body_height, column::instant("body_height_m", "m"));

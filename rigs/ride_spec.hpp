@@ -1,5 +1,5 @@
-// A rig whose wheels start at rig.start and roll along +x at rig.speed, as an entry of the table of rigs: what quarter
-// car, half car and cleat stand have in common. `Options` is the struct that the rig is made of.
+// A rig whose wheels start at rig.start and roll along +x at rig.speed, as an entry of the table of rigs: the common
+// part of quarter car, half car and cleat stand. `Options` is the struct of the rig's keys.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +59,7 @@ class RideSpec : public RigSpec {
         offsets_(std::move(offsets)),
         start_given_(says(section, "start")) {}
 
-  /// Writes what was filled in into the scenario's section, without what is still open. A mass that follows from a
+  /// Writes the filled-in values into the scenario's section, without those still open. A mass that follows from a
   /// stated load is not written. @param values kg, m, s
   void write(nlohmann::json& section, std::pair<const char*, double> mass,
              std::initializer_list<std::pair<const char*, double>> values) const {
@@ -81,7 +81,7 @@ class RideSpec : public RigSpec {
  private:
   virtual void mount_tires(std::span<const MountedTire> tires) = 0;
   virtual std::string text() const = 0;
-  /// Without the tire, kg.
+  /// Mass without the tire, kg.
   virtual double carried_mass(std::size_t k) const = 0;
   virtual double unsprung_mass(std::size_t k) const = 0;
 
@@ -109,10 +109,10 @@ class RideSpec : public RigSpec {
   bool start_given_;
 };
 
-// What quarter car and half car have in common.
+// The common part of quarter car and half car.
 
-inline constexpr double kUnsprungShare = 0.01;  // of the rim, for the rest of what is unsprung
-/// A suspension that suits a body: this natural frequency on a held wheel, and this share of critical damping.
+inline constexpr double kUnsprungShare = 0.01;  // of the rim's mass, for the rest of the unsprung mass
+/// A usual suspension: natural frequency of the body on a held wheel, and share of critical damping.
 inline constexpr double kUsualBodyFrequency = 1.5, kUsualBodyDamping = 0.3;  // Hz; –
 
 /// N/m
@@ -126,7 +126,7 @@ inline double usual_damping(double body_mass, double stiffness) {
   return 2.0 * kUsualBodyDamping * std::sqrt(body_mass * stiffness);
 }
 
-/// All but the suspensions.
+/// Mounts everything but the suspensions.
 template <class Options>
 void mount_car(Options& rig, std::span<const MountedTire> tires, const ReadContext& context) {
   mount_masses(rig, rig.body_mass, "body_mass", tires, context);

@@ -1,4 +1,4 @@
-// What carries the tires: a test rig (or a vehicle) as a multibody assembly.
+// A rig carries the tires: a test rig or a vehicle, as a multibody assembly.
 #pragma once
 
 #include <limits>
@@ -19,25 +19,24 @@
 
 namespace furrow::rigs {
 
-/// What every rig measures of wheel k over the last advance. Forces, torques, speed, spin and slip are means over
-/// it; positions, vertical speed and momentum, and drift are those of its end. Frame of the heading: e forward, l
-/// = z × e (left when looking along e), z up.
-/// A wheel of a vehicle shares what it carries with the others: its carried mass is that of its load at rest.
+/// Measurements of wheel k. Forces, torques, speed, spin and slip are means over the last advance; positions, vertical
+/// speed, momentum and drift are values at its end. Frame of the heading: e forward, l = z × e (left when looking along
+/// e), z up. The wheels of a vehicle share what they carry: the carried mass of each follows from its load at rest.
 struct WheelReport {
   double slip = 0.0;               // 1 − v/(ω r), r the undeformed radius; at most ±1e6, 0 at rest
   double speed = 0.0;              // of the wheel's carrier along the heading, m/s
   double spin = 0.0;               // of the rim about its axle, rad/s, forward positive
-  double drive_torque = 0.0;       // of the spindle motor about the axle, N m, positive when it drives forward
+  double drive_torque = 0.0;       // of the spindle motor about the axle, N m, positive if it drives forward
   double lateral_force = 0.0;      // on the rim by the tire, along l, N
   double aligning_moment = 0.0;    // on the rim by the tire, about z, N m
   double axle_height = 0.0;        // z of the rim centre, m
-  double axle_position = 0.0;      // along the heading, of a vehicle along the one that it starts with, m
+  double axle_position = 0.0;      // along the heading; for a vehicle along its heading at t = 0, m
   double vertical_speed = 0.0;     // of the wheel carrier, m/s
   double vertical_momentum = 0.0;  // of all mass that the wheel carries (carrier, rim, added tire), kg m/s
   double carried_mass = 0.0;       // kg, including the tire's added mass
   double joint_drift = 0.0;        // largest constraint violation, m or rad
 
-  /// On all that the wheel carries, W, m/s².
+  /// Acceleration that acts on all that the wheel carries, W, m/s².
   Vec3 gravity = standard_gravity();
 
   /// Weight on the undisturbed ground of all that the wheel carries, N.
@@ -59,34 +58,33 @@ void visit_fields(FieldsOf<WheelReport> auto& s, auto&& visit) {
   visit(s.gravity, Field{"gravity", "m/s²"});
 }
 
-/// What a rig has to say in the live line.
 struct LiveNote {
-  double speed = std::numeric_limits<double>::quiet_NaN();  // m/s; not a number: that of the first wheel is shown
+  double speed = std::numeric_limits<double>::quiet_NaN();  // m/s; not a number: the first wheel's speed is shown
   std::string text;                                         // "gear 2"
 };
 
-/// Something that a rig measures and that has a table of results: a wheel, a body, the vehicle.
+/// A part of the rig with a table of results: a wheel, a body, the vehicle.
 struct Subject {
   std::string name;             // of its table: "wheel0", "vehicle"
-  std::vector<Column> columns;  // the rig's own; a wheel's table has them beside the columns of every wheel
+  std::vector<Column> columns;  // the rig's own, in addition to the columns of every wheel
 };
 
-/// Wheels without columns of the rig's own.
+/// Returns wheels without columns of the rig's own.
 inline std::vector<Subject> plain_wheels(int count) {
   std::vector<Subject> wheels;
   for (int k = 0; k < count; ++k) wheels.push_back({"wheel" + std::to_string(k), {}});
   return wheels;
 }
 
-/// Something that happened during a run and is worth telling.
+/// Something that happened during a run and is reported.
 struct RigEvent {
   std::string what;                                      // "wheel_lift"
-  int wheel = -1;                                        // -1: of no wheel
+  int wheel = -1;                                        // -1: it concerns no wheel
   double from = 0.0;                                     // s
   double to = std::numeric_limits<double>::quiet_NaN();  // s; not a number: not over yet
 };
 
-/// What a rig found during a run besides its columns, for the summary.
+/// Findings of a rig during a run besides its columns, for the summary.
 struct RigFindings {
   std::vector<RigEvent> events;                         // in the order in which they began
   std::vector<std::pair<std::string, double>> figures;  // named after their unit
@@ -109,17 +107,16 @@ class Rig {
 
   /// @pre placed or restored
   RimState rim(int wheel) const;
-  /// Whether it lies on its side or its roof: bodies do not touch the ground, so the run ends there.
+  /// Checks whether the vehicle lies on its side or its roof. Bodies do not touch the ground, so the run ends then.
   virtual bool overturned() const { return false; }
 
-  /// Advances by `duration` in `substeps` steps with the tires' wrenches (about the rim centres, W) held
-  /// constant.
-  /// @returns failure when the constraints cannot be satisfied, or a wrench or a state is not finite
+  /// Advances by `duration` in `substeps` steps; the tires' wrenches (about the rim centres, W) are constant.
+  /// @returns failure if the constraints cannot be satisfied, or a wrench or a state is not finite
   /// @pre placed or restored; one wrench for each wheel; duration > 0, substeps > 0
   Outcome advance(std::span<const Wrench> wrenches, double duration, int substeps);
 
-  /// At every synchronization after the first, before anything is measured: z of the lowest point of wheel k's tire and
-  /// of the undisturbed ground, m.
+  /// Receives z of the lowest point of wheel k's tire and z of the undisturbed ground, m. The node calls it at every
+  /// synchronization after the first, before anything is measured.
   virtual void observe(int /*wheel*/, double /*lowest_point*/, double /*ground*/) {}
 
   /// @pre placed or restored
@@ -131,26 +128,25 @@ class Rig {
   /// @pre placed or restored. @post every member is set and finite
   RigAccounts accounts() const;
 
-  /// Where wheel k travels now: unit, W. It is the direction of its slip, pull and position.
+  /// Direction in which wheel k travels now, in which its slip, pull and position are measured: unit, W.
   virtual Vec3 heading(int wheel) const = 0;
 
-  /// The wheels in their order, then what else has a table; always the same. Subject k below is the k-th of them.
+  /// The wheels in their order, then other subjects; always the same. Subject k below is the k-th of them.
   virtual std::vector<Subject> subjects() const { return plain_wheels(wheel_count()); }
-  /// Sets the values of subject k's columns as of the last advance; those of kind `derived` are not asked for.
+  /// Sets the values of subject k's columns after the last advance, except for those of kind `derived`.
   virtual void measure(int /*subject*/, std::span<double> /*values*/) const {}
-  /// Sets those of kind `derived` for a line whose other columns are given.
+  /// Sets the columns of kind `derived` for a line whose other columns are given.
   virtual void derive(int /*subject*/, const LineView& /*line*/, std::span<double> /*values*/) const {}
 
   /// @pre placed or restored
   void save(Archive& archive) const;
-  /// @pre every tire was added. @throws Error(io) where the state is that of a rig on other tires
+  /// @pre every tire was added. @throws Error(io) if the saved rig had other tires
   void restore(const Archive& archive);
-  /// What the findings are made of. It is no state: nothing that moves depends on it.
+  /// Save and restore the findings. They are not part of the state: nothing that moves depends on them.
   virtual void save_findings(Archive& /*archive*/) const {}
   virtual void restore_findings(const Archive& /*archive*/) {}
 
  protected:
-  /// What was added of a wheel's tire.
   struct RigTire {
     MassProperties mass;
     double radius = 0.0;  // undeformed, m
@@ -162,7 +158,8 @@ class Rig {
   bool placed() const { return placed_; }
 
  private:
-  // What a kind does where the function of the same name has checked its preconditions. Saved names begin with "rig/".
+  // Each kind of rig overrides these; the function without `do_` checks the preconditions. Saved names begin with
+  // "rig/".
   virtual void do_add_tire_mass(int /*wheel*/, const MassProperties& /*tire*/, double /*tire_radius*/) {}
   virtual void do_place(std::span<const double> axle_height) = 0;
   virtual RimState do_rim(int wheel) const = 0;

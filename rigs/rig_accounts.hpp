@@ -1,4 +1,4 @@
-// What every rig says of its own energy and momentum, whatever its kind.
+// Energy and momentum of a rig, the same for every kind.
 #pragma once
 
 #include <limits>
@@ -12,19 +12,19 @@
 
 namespace furrow::rigs {
 
-/// Account of all bodies of a rig, the tires' added masses among them, each entry from its own formula; cumulative
-/// since the rig was placed unless "now" is said. A rig must set every member: what it forgets is not a number, and the
-/// rig's rank refuses that by name. What they leave over,
+/// Account of all bodies of a rig, including the tires' added masses. Each entry has its own formula and is cumulative
+/// since the rig was placed, unless marked "now". A rig must set every member: the rig's rank names a missing one,
+/// which is not a number, and refuses it. The residuals
 ///   energy:    drive_work + tow_work + guide_work + tire_work − Δ(kinetic + potential) − damper_loss,
 ///   momentum:  Δmomentum − gravity_impulse − guide_impulse − tire_impulse,
-/// is the error of the rig's step, and round-off.
+/// are the error of the rig's step, and round-off.
 struct RigAccounts {
   static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   double kinetic_energy = kMissing;                 // J, now
   double potential_energy = kMissing;               // of gravity and of the rig's springs, J, now
-  double drive_work = kMissing;                     // by what turns the wheels, of a vehicle by its engine, J
-  double tow_work = kMissing;                       // by what moves the rig along against the tires' pull, J
-  double guide_work = kMissing;                     // by rails, steering and whatever else is imposed, J
+  double drive_work = kMissing;                     // by the drive of the wheels; for a vehicle, by its engine
+  double tow_work = kMissing;                       // by the drive that moves the rig along against the tires' pull, J
+  double guide_work = kMissing;                     // by rails, steering and all other imposed motion, J
   double tire_work = kMissing;                      // by the tires' wrenches as the rig received them, J
   double damper_loss = kMissing;                    // by dampers and brakes, and in the driveline, J
   Vec3 momentum = Vec3::Constant(kMissing);         // kg m/s, now
@@ -33,7 +33,7 @@ struct RigAccounts {
   Vec3 tire_impulse = Vec3::Constant(kMissing);     // by the tires as the rig received it, N s
 
   double stored() const { return kinetic_energy + potential_energy; }
-  /// All members 0, to count from.
+  /// Returns an account with all members 0, to count from.
   static RigAccounts none();
 };
 void visit_fields(FieldsOf<RigAccounts> auto& s, auto&& visit) {
@@ -60,7 +60,7 @@ inline RigAccounts RigAccounts::none() {
   });
 }
 
-/// Adds the work and the impulse of a tire's wrench over a step of h in which its rim moved: mean force times way.
+/// Adds the work (mean force times displacement) and the impulse of a tire's wrench over a step h.
 inline void add_tire(RigAccounts& a, const RimState& from, const RimState& to, const Wrench& wrench, double h) {
   a.tire_work +=
       wrench.force.dot(to.position - from.position) + wrench.moment.dot(mean_turn(from.orientation, to.orientation));

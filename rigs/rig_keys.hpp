@@ -1,4 +1,4 @@
-// Keys of the section `rig` that several kinds of rig take, and what they say of a rig on a rail.
+// Keys of the section `rig` that several kinds of rig share, and the options of a rig on a rail.
 #pragma once
 
 #include "protocol/core/key.hpp"
@@ -60,17 +60,17 @@ inline constexpr Key kSuspensionDamping =
 
 namespace furrow::rigs {
 
-/// Of a rig whose trolley runs along a rail. Below 0: the scenario does not say it, and it is filled in.
+/// Options of a rig whose trolley runs along a rail. A negative value is open: the scenario does not give it.
 struct RailOptions {
-  double speed = 4.0;              // of the trolley, m/s
-  double ramp = 0.15;              // smooth (C²) start from rest, s; 0: full speed from t = 0
-  double move_from = 0.0;          // when it starts, s: until then the wheels are let down and stand
-  double touchdown_time = -1.0;    // how long the damper lets the wheels down, s
-  double lowering_speed = -1.0;    // m/s, at which it does
-  double start = 0.0;              // x of the (front) axle at t = 0, m; filled in where the scenario does not say it
-  double load = -1.0;              // weight of all that the ground carries, tires included, N
-  double rim_mass = -1.0;          // of each rim, kg
-  double rim_spin_inertia = -1.0;  // kg m², about the axle
+  double speed = 4.0;                   // of the trolley, m/s
+  double ramp = 0.15;                   // smooth (C²) start from rest, s; 0: full speed from t = 0
+  double move_from = 0.0;               // when it starts, s; until then the wheels are lowered and do not roll
+  double touchdown_time = -1.0;         // how long the damper lowers the wheels, s
+  double lowering_speed = -1.0;         // at which the damper lowers the wheels, m/s
+  double start = 0.0;                   // x of the (front) axle at t = 0, m; filled in if the scenario does not give it
+  double load = -1.0;                   // weight of all that the ground carries, tires included, N
+  double rim_mass = -1.0;               // of each rim, kg
+  double rim_spin_inertia = -1.0;       // kg m², about the axle
   double rim_diametral_inertia = -1.0;  // kg m²
 };
 

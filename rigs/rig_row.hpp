@@ -8,7 +8,7 @@
 
 namespace furrow::rigs {
 
-/// Wheel k is that of the k-th rig and has its heading; other subjects of the rigs are left out.
+/// Wheel k is the wheel of the k-th rig and has its heading; other subjects of the rigs are left out.
 /// @pre there is at least one, and each has one wheel
 std::unique_ptr<Rig> make_rig_row(std::vector<std::unique_ptr<Rig>> rigs);
 

@@ -1,4 +1,4 @@
-// The kinds of rigs by the name that a scenario gives them. A new kind is one entry of the table in rigs.cpp.
+// The kinds of rigs by their names in scenarios. A new kind is one entry of the table in rigs.cpp.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace furrow::rigs {
 
-/// What the section `rig` says whatever the kind: every field is the key `rig.<name>`.
+/// Keys of the section `rig` that every kind has: every field is the key `rig.<name>`.
 struct RigOptions {
   std::string type = "drawbar";
   int substeps = 1;          // of the rig in one communication step
@@ -36,26 +36,26 @@ void visit_fields(FieldsOf<RigOptions> auto& s, auto&& visit) {
 
 struct RigKind {
   const char* name;  // rig.type
-  const char* says;  // what it does, for the description of that key: "holds a wheel"
+  const char* says;  // its function, for the description of that key: "holds a wheel"
   KeyList keys;      // of its options
   /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
   std::unique_ptr<RigSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
-  /// Of a kind whose wheels bring their tires, one for each wheel; empty where the section does not say enough. The
-  /// section was not checked. null: the scenario must say its tires. @throws Error(bad_input)
+  /// Returns the tires of a kind whose wheels bring them, one for each wheel; empty if the section gives too little.
+  /// The section was not checked. null: the scenario must give the tires. @throws Error(bad_input)
   std::vector<WheelTire> (*tires)(const nlohmann::json& section, const ReadContext& context) = nullptr;
 };
 
 std::span<const RigKind> rig_kinds();
 
-/// The tires that the rig of a section brings; empty where it brings none. The section was not checked.
+/// The tires that the rig of a section brings; empty if it brings none. The section was not checked.
 /// @throws Error(bad_input)
 std::vector<WheelTire> tires_of_rig(const nlohmann::json& section, const ReadContext& context);
 
-/// The kinds that take this key of the section; empty for the keys that all share and for those that none has.
+/// The kinds that have this key of the section; empty for a key that all share and for an unknown key.
 std::vector<std::string> kinds_of_key(const std::string& key);
 
-/// Reads the section of a scenario that describes its rig. @throws Error(bad_input); an unknown type lists the valid
-/// ones
+/// Reads the section of a scenario that describes its rig.
+/// @throws Error(bad_input); for an unknown type it lists the valid ones
 std::unique_ptr<RigSpec> read_rig(const nlohmann::json& section, const ReadContext& context);
 
 }  // namespace furrow::rigs

@@ -11,7 +11,7 @@ namespace furrow::rigs {
 namespace {
 
 constexpr double kGap = 1e-3;         // m, between ground and undeformed tire at the start
-constexpr double kGroundStep = 4e-5;  // s, up to which the default ground is stable under a tread vertex
+constexpr double kGroundStep = 4e-5;  // s, largest step at which the default ground is stable under a tread vertex
 constexpr double kFriction = 0.9, kVelocityScale = 50.0;  // -, s/m: the ground of rigs/rigid_ground.json
 
 }  // namespace
@@ -54,7 +54,7 @@ void RollingTire::roll() {
 
 void RollingTire::follow(double damper) {
   const double h = options_.step;
-  const Vec3 before = wrench_.force;  // as known to the carriage, one step late
+  const Vec3 before = wrench_.force;  // the carriage receives the force one step late
   wrench_ = tire_.spindle_wrench();
   rim_.velocity.x() += h * before.x() / options_.load;
   rim_.velocity.z() += h * ((before.z() - damper * rim_.velocity.z()) / options_.load - kStandardGravity);

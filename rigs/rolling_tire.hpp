@@ -1,8 +1,8 @@
-// A driven tire under a carriage on the plane z = 0, coupled as the ranks couple them: what a benchmark rolls.
+// A driven tire under a carriage on the plane z = 0, coupled like the ranks, for benchmarks.
 //
 // The wheel turns at constant speed. The carriage m is free along x and z, so that the wheel rolls without pull:
 //   m v' = F_spindle − (0, 0, m g) − (0, 0, c v_z).
-// The ground's forces come one step late, and so does the spindle's at the carriage.
+// The ground's forces act one step late, and so does the spindle's force on the carriage.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@
 
 namespace furrow::rigs {
 
-/// A rigid plane that is softened with the step above 4e-5 s, up to which the default one is stable under a tread
-/// vertex: its forces come one step late (terrain/rigid/rigid_ground.hpp).
+/// Returns a rigid plane that is softer for steps above 4e-5 s, the largest step at which the default plane is stable
+/// under a tread vertex. The reason is that its forces act one step late (terrain/rigid/rigid_ground.hpp).
 terrain::GroundOptions hard_ground(double step);
 
 struct RollingOptions {
@@ -31,11 +31,11 @@ class RollingTire {
   RollingTire(tire::Tire& tire, const RollingOptions& options);
 
   // One step is push(), roll() and follow(), in this order.
-  /// The ground answers to the tire where it stands. @throws Error(physics)
+  /// Computes the ground's forces on the tire in its present position. @throws Error(physics)
   void push();
-  /// The tire moves on, on its own for those who time it. @throws Error(physics)
+  /// Advances the tire by one step; a function of its own so that it can be timed. @throws Error(physics)
   void roll();
-  /// The carriage moves on, with a vertical damper c, N s/m.
+  /// Advances the carriage by one step, with a vertical damper c, N s/m.
   void follow(double damper);
 
   const Wrench& wrench() const { return wrench_; }     // of the tire on the rim, mean of the last step

@@ -1,5 +1,5 @@
-// The bottom of the ruts that wheels have rolled, as the lowest points of their tires: what a wheel that follows finds
-// already pressed. Elastic rebound and what falls back into a rut are not seen.
+// The bottom of the ruts that wheels have rolled, from the lowest points of their tires: the soil that a following
+// wheel finds already pressed. Elastic rebound and soil that falls back into a rut are ignored.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,9 @@ class RutTrace {
   /// @param spacing of its points, m @param half_width of the rut, m
   RutTrace(double spacing, double half_width);
 
-  /// The tire's lowest point is at `bottom` where the wheel's centre is above.
+  /// Adds the tire's lowest point below the wheel's centre.
   void add(const Vec3& bottom);
-  /// z of the nearest point, none where the rut does not pass: where all points are farther away than half its width.
+  /// Returns z of the nearest point; none if all points are farther away than half the rut's width.
   std::optional<double> bottom(double x, double y) const;
 
   void save(Archive& archive, const std::string& name) const;

@@ -1,4 +1,4 @@
-// Keys of the section `rig` as it stands in a scenario.
+// Keys of the section `rig` in a scenario.
 #pragma once
 
 #include <string>
@@ -11,14 +11,13 @@
 
 namespace furrow::rigs {
 
-/// Whether an object gives a key.
 inline bool says(const nlohmann::json& object, const char* name) {
   const auto entry = object.find(name);
   return entry != object.end() && !entry->is_null();
 }
 
-/// Of two keys that exclude each other. @param before what stands before their names: "", "wheels.1."
-/// @throws Error(bad_input) where an object gives both
+/// Refuses two keys that exclude each other. @param before prefix of their names: "", "wheels.1."
+/// @throws Error(bad_input) if an object gives both
 inline void refuse_both(const nlohmann::json& object, const char* one, const char* other, const ReadContext& context,
                         const std::string& before = "") {
   if (says(object, one) && says(object, other))

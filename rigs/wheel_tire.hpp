@@ -1,4 +1,4 @@
-// What a rig itself says of a wheel's tire.
+// The tire of a wheel as the rig itself gives it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 namespace furrow::rigs {
 
 struct WheelTire {
-  nlohmann::json section;  // of the scenario, `tires.<k>`, where that says nothing else
+  nlohmann::json section;  // of the scenario, `tires.<k>`, unless the scenario gives another
   int axle = 0;            // wheels of one axle may share an entry of `tires`
 };
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kWithin = 2.0;  // standard errors
 constexpr double kLeastRSquared = 0.5;
-constexpr double kLittleError = 0.1;  // of the peak: R² of data that hardly vary says nothing against such a model
+constexpr double kLittleError = 0.1;  // of the peak; for smaller errors R² means little, as the data hardly vary
 
-/// One for each figure that was not reached, with the range that was.
+/// Warns of each figure that was not reached, with the reached range.
 std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const std::vector<Reach>& reach) {
   std::vector<std::string> warnings;
   each_figure(fitted, [&](const Target& target, std::size_t k, std::size_t at) {
@@ -42,7 +42,7 @@ std::vector<std::string> reach_warnings(const std::vector<Target>& fitted, const
   return warnings;
 }
 
-/// Curves and tables that the fitted model does not describe.
+/// Warns of curves and tables that the fitted model does not describe.
 std::vector<std::string> misfit_warnings(const std::vector<Target>& targets, const Prediction& fitted) {
   std::vector<std::string> warnings;
   std::span<const double> rest = fitted.values;
@@ -73,7 +73,7 @@ CalibrationResults calibrate(const Calibration& calibration, const std::filesyst
   for (const Parameter& p : calibration.parameters) names.push_back(p.name);
   EvaluationTable table(folder, calibration.digest, names);
   double share = 0.0;
-  // An evaluation of a noisy model takes minutes: its own progress counts.
+  // An evaluation of a noisy model takes minutes, so its own progress counts.
   const double evaluation = calibration.kind->noisy ? 1.0 / calibration.evaluations : 0.0;
   const auto tell = [&](const std::string&, double done) {
     if (progress) progress("calibrating", std::min(share + evaluation * done, 1.0));

@@ -1,8 +1,8 @@
-// Fits a model to data: `furrow calibrate STUDY`. The folder of results holds
+// Fits a model to data: `furrow calibrate STUDY`. The folder of results contains
 //
-//   evaluations.csv    every prediction that was computed, by its parameters (evaluations.hpp)
-//   calibration.json   parameters with their confidence, how well each target is met, what the data do not determine,
-//                      and how every start went
+//   evaluations.csv    every computed prediction, by its parameters (evaluations.hpp)
+//   calibration.json   parameters with their confidence, how well each target is met, which combinations the data do
+//                      not determine, and the result of every start
 //   fit.csv            data and model at every point
 //   <result>.json      the fitted file
 #pragma once
@@ -25,16 +25,16 @@ struct CalibrationResults {
   Optimum optimum;
   Confidence confidence;
   std::vector<double> values;   // of the parameters, in their units
-  Prediction fitted, held_out;  // there
-  std::size_t asked = 0;        // evaluations, whether computed or known before
+  Prediction fitted, held_out;  // for these values
+  std::size_t asked = 0;        // evaluations, computed or read from the table
   std::size_t computed = 0;
-  double processor_time = 0.0;  // of all evaluations, whenever they were made, s; 0: not told
+  double processor_time = 0.0;  // of all evaluations, including earlier ones, s; 0: not measured
 };
 
 /// @param folder of the results; its table of evaluations is read and continued
-/// @param progress what is done, 0…1; called before each evaluation too, and may throw to stop
-/// @throws Error(bad_input) when the folder holds another calibration or the model has no answer to the start's own
-/// values for a reason of input, Error(physics) when it has none anywhere, Error(stopped)
+/// @param progress share done, 0…1; also called before each evaluation, and may throw to stop
+/// @throws Error(bad_input) if the folder contains another calibration, or if an error of input leaves the model
+/// without an answer to the start's own values; Error(physics) if it has no answer anywhere; Error(stopped)
 CalibrationResults calibrate(const Calibration& calibration, const std::filesystem::path& folder,
                              const ProgressCall& progress);
 
@@ -46,19 +46,17 @@ void each_figure(const std::vector<Target>& targets, Visit&& visit) {
     for (std::size_t k = 0; k < target.y.size(); ++k) visit(target, k, at++);
 }
 
-/// not_known: the surrogate errs by more than twice the target's standard error, so it cannot be told. reached: within
-/// two standard errors, of target and surrogate together. out_of_range: beyond what all evaluations span, by more than
-/// two. not_together: within that span, and still not met with the others.
+/// not_known: the surrogate's error is larger than twice the target's standard error. reached: within two standard
+/// errors of target and surrogate together. out_of_range: outside the range of all evaluations by more than two.
+/// not_together: within that range, but not reached together with the other targets.
 enum class ReachState { reached, out_of_range, not_together, not_known };
 /// @param sigma the target's standard error
 ReachState reach_state(const Reach& reach, double data, double sigma);
 
-/// calibration.json.
 nlohmann::ordered_json calibration_json(const Calibration& calibration, const CalibrationResults& results);
-/// What a reader must know before trusting the result: parameters at bounds, what is not
-/// determined, starts that differ.
+/// Warnings to read before trusting the result: parameters at bounds, undetermined combinations, differing starts.
 std::vector<std::string> calibration_warnings(const Calibration& calibration, const CalibrationResults& results);
-/// calibration.json, fit.csv and the fitted file. @throws Error(io)
+/// Writes calibration.json, fit.csv and the fitted file. @throws Error(io)
 void write_calibration(const Calibration& calibration, const CalibrationResults& results,
                        const std::filesystem::path& folder);
 

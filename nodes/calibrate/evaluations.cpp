@@ -50,7 +50,7 @@ std::string key_of(const std::string& state, std::span<const double> values) {
   return key;
 }
 
-/// A problem as one cell: it is for people, and is compared with nothing.
+/// A problem as one cell, for users; nothing is compared with it.
 std::string cell(std::string text) {
   for (char& c : text)
     if (c == ',' || c == '"' || c == '\n' || c == '\r') c = c == ',' ? ';' : ' ';
@@ -68,7 +68,7 @@ EvaluationTable::EvaluationTable(const std::filesystem::path& folder, const std:
   std::string text;
   if (std::filesystem::exists(file_, error)) {
     text = read_whole_file(file_);
-    text.resize(text.rfind('\n') + 1);  // 0 where it was cut short before the first line was whole
+    text.resize(text.rfind('\n') + 1);  // 0 if the file was cut short before the first line was complete
     if (!text.empty() && !text.starts_with(mark))
       throw input_error(folder.string(), "--out",
                         std::string(text.starts_with(kMark) ? "holds the evaluations of another calibration: its start "
@@ -91,7 +91,7 @@ void EvaluationTable::read(const std::string& text, const std::string& head) {
   };
   if (!text.starts_with(head)) throw damaged("its columns are not those of this study");
   const std::vector<std::string_view> lines = split(text, '\n');
-  for (std::size_t k = 1; k + 1 < lines.size(); ++k) {  // after the last line break is nothing
+  for (std::size_t k = 1; k + 1 < lines.size(); ++k) {  // nothing follows the last line break
     const std::vector<std::string_view> cells = split(lines[k], ',');
     const std::size_t problem = parameters_ + 1;
     const auto number = [&](std::size_t after) {

@@ -1,10 +1,11 @@
-// Every prediction that a calibration has asked for, by its parameters: the file evaluations.csv in its folder. A
-// calibration that was interrupted takes from it what it computed before, and so ends with the same bits.
+// All predictions that a calibration asked for, by their parameters: the file evaluations.csv in its folder. A resumed
+// calibration reads its earlier predictions from it, and so ends with the same bits.
 //
 //   # furrow calibrate 1 <digest of the study>
 //   set,bending,shear,…,problem,values,errors,processor_s
 //
-// Numbers have 17 digits; several of them have blanks between. The processor's time is left out where it is not told.
+// Numbers have 17 digits; blanks separate several numbers in a cell. The processor's time is empty if it was not
+// measured.
 #pragma once
 
 #include <cstdio>
@@ -23,17 +24,17 @@ inline constexpr const char* kEvaluations = "evaluations.csv";
 
 class EvaluationTable {
  public:
-  /// Reads the table of the folder, or begins one. A last line that was cut short is left out.
-  /// @param digest of the study @throws Error(bad_input) when it holds the table of another study, Error(io)
+  /// Reads the table of the folder, or begins one. Ignores a last line that was cut short.
+  /// @param digest of the study @throws Error(bad_input) if the folder has the table of another study, Error(io)
   EvaluationTable(const std::filesystem::path& folder, const std::string& digest,
                   const std::vector<std::string>& parameters);
 
-  /// @returns null where it is not known @param state what the prediction depends on besides the parameters
+  /// @returns null if there is no such prediction @param state other values that the prediction depends on
   const Prediction* find(const std::string& state, std::span<const double> values) const;
-  /// Adds a line and gives it to the system. @throws Error(io)
+  /// Adds a line and passes it to the system. @throws Error(io)
   const Prediction& add(const std::string& state, std::span<const double> values, Prediction prediction);
   std::size_t size() const { return known_.size(); }
-  /// Of all evaluations, whenever they were made, s.
+  /// Processor time of all evaluations, including earlier ones, s.
   double processor_time() const;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kRoot = "calibrate";
-constexpr std::size_t kListed = 4;  // values of a target that are named one by one
+constexpr std::size_t kListed = 4;  // values of a target that are listed one by one
 
 std::string row(std::string_view name, std::string_view text) { return fmt::format("{:<24} {}\n", name, text); }
 

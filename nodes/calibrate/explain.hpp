@@ -9,15 +9,15 @@
 
 namespace furrow::calibrate {
 
-/// Whether `key` is "calibrate", or begins with "calibrate.".
+/// Checks whether `key` is "calibrate", or begins with "calibrate.".
 bool explains_calibrations(const std::string& key);
 
-/// Of "calibrate", all keys and kinds; of "calibrate.targets", that key; of "calibrate.ring", the parameters of that
-/// kind; of "calibrate.ring.bending", that parameter.
-/// @throws Error(bad_input) for what is not known, with what looks like it
+/// Explains all keys and kinds for "calibrate", that key for "calibrate.targets", the parameters of that kind for
+/// "calibrate.ring", and that parameter for "calibrate.ring.bending".
+/// @throws Error(bad_input) for an unknown key, with similar ones
 std::string explain_calibration(const std::string& key);
 
-/// What the study fits to which data.
+/// Describes what the study fits, and to which data.
 std::string calibration_check_text(const Calibration& calibration);
 nlohmann::ordered_json calibration_check_json(const Calibration& calibration);
 

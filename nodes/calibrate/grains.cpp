@@ -1,5 +1,5 @@
-// Kind of calibration that fits grains to the strength of a soil: what the virtual soil tests (terrain/soil) measure on
-// them against what was measured on the soil.
+// The kind of calibration that fits grains to the strength of a soil: it compares the results of the virtual soil tests
+// (terrain/soil) with measurements on the soil.
 //
 //   "start": "drawbar_pull_small.json", "set": {"terrain.material": "loose_sand.json"},   a scenario with grains
 //   "tests": {"seeds": 2, "stresses": [5e3, 15e3, 40e3], "speed": 0.1},
@@ -7,10 +7,10 @@
 //               {"quantity": "bulk_density_kg_m3", "value": 1500, "sigma": 30},
 //               {"data": "plate_60mm.csv", "disc": 0.06, "depth": 0.15, "relative_sigma": 0.1}]    p(z) of a plate
 //
-// Parameters are keys of the section `terrain`, quantities are figures of soil.json. A prediction is what `furrow soil`
-// gives for the start with the parameters as settings, to the last bit, with its standard errors between beds. Only
-// those tests run that the targets need. What a test gives for held-out targets is kept with the fitted ones of the
-// same parameters.
+// Parameters are keys of the section `terrain`, quantities are figures of soil.json. A prediction is the result of
+// `furrow soil` for the start with the parameters as settings, to the last bit, with its standard errors between beds.
+// Only the tests that the targets need are run. Results for held-out targets are kept with the fitted ones of the same
+// parameters.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,7 +41,8 @@ using terrain::dem::DemOptions;
 using terrain::soil::Measured, terrain::soil::SoilOptions, terrain::soil::SoilParameters, terrain::soil::SoilResults;
 
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
-/// K of the shear cell, in diameters of a grain, is above this for all soils of terrain/README.md (0.5 to 1.2 there).
+/// Lower limit of the shear cell's K, in diameters of a grain; all soils of terrain/README.md are above it (0.5 to
+/// 1.2).
 constexpr double kLeastK = 0.45;
 constexpr int kMostSeeds = 100;
 constexpr double kMostSpeed = 10.0;  // m/s, as of `furrow soil`
@@ -52,8 +53,8 @@ constexpr int kUsualPoints = 5;
 constexpr double kUsualRelativeSigma = 0.1;
 constexpr double kMostSize = 10.0;   // m, as of `furrow soil`
 constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that counts
-constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are one
-constexpr double kWindow = 0.25;     // diameters of a grain to either side of a point that is read off a curve
+constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are equal
+constexpr double kWindow = 0.25;     // diameters of a grain on either side of a point at which a curve is read
 
 const auto kRules = std::to_array<ParameterRule>({
     {"friction", "-", 0.0, 10.0, 0.2, 1.0, false},
@@ -71,12 +72,12 @@ const auto kRules = std::to_array<ParameterRule>({
 
 // ---- curves of plates
 
-/// Where a curve is read.
+/// Range in which a curve is read.
 struct Window {
   double from = 0.0, to = 0.0;  // m
 };
 
-/// Mean of p(z) over the window, as far as the curve goes. @pre rising z, two points or more
+/// Mean of p(z) over the window, up to the curve's end. @pre rising z, two points or more
 double pressure_in(Window window, std::span<const double> sinkage, std::span<const double> pressure) {
   const double from = std::max(window.from, sinkage.front()), to = std::min(window.to, sinkage.back());
   double area = 0.0;
@@ -89,20 +90,20 @@ double pressure_in(Window window, std::span<const double> sinkage, std::span<con
   return area / (to - from);
 }
 
-/// A plate on a bed, and where its curve is compared.
+/// A plate on a bed, and the points at which its curve is compared.
 struct PlateTarget {
   bool disc = false;
   double size = 0.0, depth = 0.0;  // m
   std::vector<double> sinkage;     // rising, m
-  std::vector<Window> windows;     // about them, as far as the measured curve goes
+  std::vector<Window> windows;     // about the sinkages, up to the measured curve's end
 };
 
-// ---- what the tests measure
+// ---- results of the tests
 
-/// A figure of soil.json, and the key of soil files that says it to the engine scm.
+/// A figure of soil.json, and the key of soil files that gives it to the engine scm.
 struct Quantity {
   std::string_view name, of_file;
-  bool SoilOptions::*test;             // that measures it; null: any
+  bool SoilOptions::*test;             // the test that measures it; null: any
   Measured SoilParameters::*measured;  // null: the bulk density of the beds
   double unit;                         // of the name, in SI units
   double least, most;                  // of a target, in the unit of its name
@@ -121,12 +122,12 @@ constexpr auto kQuantities = std::to_array<Quantity>({
     {"bulk_density_kg_m3", "", nullptr, nullptr, 1.0, 50.0, 2e4},
 });
 
-/// Of the beds of the first test that was made, in the order of their cost.
+/// Bulk density of the beds of the first test that was made, in the order of their cost.
 Measured bulk_density(const SoilResults& results) {
   std::vector<double> beds;
   const auto take = [&](const auto& tests) {
     if (!beds.empty()) return;
-    for (std::size_t k = 0; k < tests.size(); ++k)  // several tests stand on one bed
+    for (std::size_t k = 0; k < tests.size(); ++k)  // several tests share one bed
       if (k == 0 || tests[k].specimen.seed != tests[k - 1].specimen.seed)
         beds.push_back(tests[k].specimen.bulk_density);
   };
@@ -210,7 +211,7 @@ class GrainModel final : public CalibrationModel {
     if (known == known_.end()) known = known_.emplace(key, tested(values, progress)).first;
     const Prediction& found = known->second;
     if (!found.problem.empty()) return found;
-    // All figures are kept; those of the set are asked for.
+    // All figures are kept; the prediction has those of the set.
     Prediction part;
     part.processor_time = set == TargetSet::fitted ? found.processor_time : 0.0;
     for (const Measures& target : measures_[set])
@@ -239,13 +240,13 @@ class GrainModel final : public CalibrationModel {
         .grains("only grains can be tested");
   }
 
-  /// What a target is compared with: a quantity, or the points of a curve.
+  /// Object of a target's comparison: a quantity, or the points of a curve.
   struct Measures {
     const Quantity* quantity = nullptr;  // null: a curve
     std::size_t first = 0, count = 1;    // among all figures
   };
 
-  /// The beds that the curves need: one of each depth, with one plate of each size.
+  /// The beds for the curves: one of each depth, with one plate of each size.
   std::vector<terrain::soil::PlateBed> beds_of_curves(const SoilOptions& options) const {
     std::map<double, std::map<std::pair<bool, double>, double>> deepest;  // by depth and plate: sinkage, m
     for (const PlateTarget& curve : curves_) {
@@ -265,7 +266,7 @@ class GrainModel final : public CalibrationModel {
   }
   double window() const { return kWindow * 2.0 * grains_.radius; }  // m
 
-  /// The pressures of all curves, after the quantities. @param beds of the plan, before those of the curves
+  /// Adds the pressures of all curves after the quantities. @param beds of the plan, before those of the curves
   void add_curves(const terrain::soil::SoilPlan& plan, const SoilResults& results, std::size_t beds, double radius,
                   Prediction& found) const {
     for (const PlateTarget& curve : curves_) {
@@ -285,7 +286,7 @@ class GrainModel final : public CalibrationModel {
     }
   }
 
-  /// All figures of the tests that some target needs; NaN for those of others.
+  /// All figures of the tests that targets need; NaN for the figures of other tests.
   Prediction tested(std::span<const double> values, const ProgressCall& progress) const {
     Prediction found;
     const double begin = processor_time(CLOCK_PROCESS_CPUTIME_ID);
@@ -299,7 +300,7 @@ class GrainModel final : public CalibrationModel {
         if (quantity.test && needed(quantity)) options.*quantity.test = true;
       const bool strips = options.plate;
       options.plate |= !curves_.empty();
-      if (!options.repose && !options.plate && !options.cone) options.shear = true;  // of the density alone
+      if (!options.repose && !options.plate && !options.cone) options.shear = true;  // for the density alone
       terrain::soil::SoilPlan plan = terrain::soil::soil_plan(options);
       if (!strips) plan.plate_beds.clear();
       const std::size_t beds = plan.plate_beds.size();
@@ -333,7 +334,7 @@ class GrainModel final : public CalibrationModel {
     });
   }
 
-  /// The value, of the study or of a soil file; sets the target's `data` and what it says.
+  /// Returns the value, from the study or a soil file; sets the target's `data` and `what`.
   static double target_value(OrderedJsonReader& reader, const Quantity& quantity, const std::filesystem::path& study,
                              Target& target) {
     const bool of_file = takes(reader, "data");
@@ -382,7 +383,7 @@ class GrainModel final : public CalibrationModel {
     measures_[set].push_back({&quantity, static_cast<std::size_t>(&quantity - kQuantities.data())});
   }
 
-  /// A curve p(z) of a plate, in CSV.
+  /// Reads a curve p(z) of a plate, in CSV.
   void read_curve(OrderedJsonReader& reader, const std::filesystem::path& study, TargetSet set) {
     TargetKeys keys = read_target_keys(reader, study);
     Target& target = keys.target;
@@ -457,7 +458,7 @@ class GrainModel final : public CalibrationModel {
     }
   }
 
-  /// A K that such grains cannot have is compared, and not fitted: it would spoil what can be.
+  /// Moves a target K that such grains cannot have to the held-out ones: fitting it would spoil the others.
   void leave_out_small_K(const CalibrationInput& input) {
     auto& [of_fitted, of_held_out] = measures_;
     const auto at = std::find_if(of_fitted.begin(), of_fitted.end(), [](const Measures& of) {

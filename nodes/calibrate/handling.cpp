@@ -2,10 +2,10 @@
 // hard ground (tire/handling/sweep_table.hpp): longitudinal slip, slip angle, camber and load against forces and
 // moments.
 //
-// A target names a table and what of it is compared: "of": "fx", "fy", "mx", "my", "mz" (ISO-W axes), "loaded_radius",
-// or "rolling_radius" of the rows that roll freely. Parameters are coefficients by their names in the file. In addition
-// to the tire file, which names them, the calibration leaves a fitted .tir and the tables in the layout of TYDEX
-// (.tdx); both state the ranges of slips and load that were fitted, and the residuals.
+// A target names a table and the compared quantity: "of": "fx", "fy", "mx", "my", "mz" (ISO-W axes), "loaded_radius",
+// or "rolling_radius" of freely rolling rows. Parameters are coefficients by their names in the file. In addition to
+// the tire file, which names them, the calibration writes a fitted .tir and the tables in the layout of TYDEX (.tdx).
+// Both state the fitted ranges of slips and load, and the residuals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,15 +33,14 @@ namespace {
 using tire::handling::HandlingForces, tire::handling::MagicFormula;
 using tire::handling::SweepPoint;
 
-constexpr double kMost = 1e9;          // of any coefficient's size
+constexpr double kMost = 1e9;          // largest magnitude of a coefficient
 constexpr std::size_t kColumns = 110;  // of comments
 
-/// What of a table is compared.
 struct Quantity {
   std::string_view name;
   const char* column;  // of fit.csv
   const char* unit;
-  bool free_rolling;  // of such rows alone
+  bool free_rolling;  // for such rows alone
   double (*measured)(const SweepPoint& point);
   double (*said)(const MagicFormula& tire, const SweepPoint& point);
 };
@@ -77,7 +76,7 @@ constexpr auto kQuantities = std::to_array<Quantity>({
      rolling_radius},
 });
 
-/// Bounds where a study gives none: those of usual tires for what has usual values.
+/// Bounds if a study gives none: those of usual tires if the coefficient has usual values.
 ParameterRule rule_of(const std::string& name, const std::string& unit) {
   static const std::map<std::string, std::pair<double, double>> kUsual{{"PCX1", {1.0, 2.0}},
                                                                        {"PCY1", {1.0, 2.0}},
@@ -107,7 +106,7 @@ double* coefficient(MagicFormula& tire, const std::string& name) {
   return found;
 }
 
-/// Which quantity of which rows a target compares.
+/// The quantity and the rows that a target compares.
 struct Rows {
   const Quantity* quantity = nullptr;
   std::vector<SweepPoint> points;
@@ -177,7 +176,7 @@ class HandlingModel final : public CalibrationModel {
     return tire;
   }
 
-  /// The ranges of the fitted tables, in place of the start's.
+  /// Sets the ranges to those of the fitted tables, instead of the start's.
   MagicFormula ranged(MagicFormula tire) const {
     bool first = true;
     const auto take = [&](tire::handling::Range& range, double value) {
@@ -190,7 +189,7 @@ class HandlingModel final : public CalibrationModel {
         take(tire.camber, p.state.camber), take(tire.load, p.state.load);
         first = false;
       }
-    // A table may have one side alone: a tire has both.
+    // A table may cover only one side, but a tire has both.
     for (tire::handling::Range* range : {&tire.slip, &tire.slip_angle, &tire.camber}) {
       const double most = std::max({1e-3, -range->least, range->most});
       *range = {-most, most};
@@ -198,7 +197,7 @@ class HandlingModel final : public CalibrationModel {
     return tire;
   }
 
-  /// Words of a text in lines that fit a page.
+  /// Breaks a text into lines that fit a page.
   static std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines(1);
     std::istringstream words(text);
@@ -240,7 +239,7 @@ class HandlingModel final : public CalibrationModel {
     rows_[set].push_back(std::move(rows));
   }
 
-  std::string stem_;  // of the files that it leaves
+  std::string stem_;  // of the files that it writes
   MagicFormula formula_;
   PerSet<std::vector<Rows>> rows_;
 };

@@ -1,7 +1,7 @@
-// What a calibration fits: a kind of model, its parameters, and the data that it is compared with.
+// A kind of calibration: a model, its parameters, and the data with which it is compared.
 //
-// A kind is one entry of the table in kinds.cpp. The driver (calibrate.hpp), the optimizers and the results know a
-// model by this interface alone.
+// A kind is one entry of the table in kinds.cpp. The driver (calibrate.hpp), the optimizers and the results use a model
+// only through this interface.
 #pragma once
 
 #include <filesystem>
@@ -24,16 +24,15 @@ class Objective;
 struct OptimizerOptions;
 struct Optimum;
 
-/// A parameter that a kind knows.
 struct ParameterRule {
   std::string name;
   std::string unit;    // "-": none
-  double least = 0.0;  // what bounds may be
+  double least = 0.0;  // allowed range of bounds
   double most = 0.0;
-  double lower = 0.0;  // bounds where the study gives none
+  double lower = 0.0;  // bounds if the study gives none
   double upper = 0.0;
-  bool logarithmic = true;  // scale where the study gives none; a bound of 0 needs a linear one
-  std::string place = {};   // JSON pointer of its value in the start file, for kinds that need one
+  bool logarithmic = true;  // scale if the study gives none; a bound of 0 needs a linear one
+  std::string place = {};   // JSON pointer of its value in the start file, if the kind needs one
 };
 
 /// A parameter of a study. Optimizers see it on a scale from 0 (lower) to 1 (upper).
@@ -49,25 +48,24 @@ struct Parameter {
   double slope(double share) const;
 };
 
-/// Data that a model is compared with: a curve y(x), or figures with names.
+/// Data with which a model is compared: a curve y(x), or figures with names.
 struct Target {
-  std::string name;            // of the study; those of one study differ
+  std::string name;            // from the study; unique within it
   std::filesystem::path data;  // resolved
-  std::string what;            // for people: "plate, 200 kPa"
+  std::string what;            // for users: "plate, 200 kPa"
   std::string x_name, y_name;  // with units, as columns of fit.csv: "deflection_m", "force_N"
   std::vector<double> x, y;
-  std::vector<double> sigma;        // standard error of each y that its residual is divided by
+  std::vector<double> sigma;        // standard error of each y, by which its residual is divided
   std::vector<std::string> labels;  // of figures; empty: a curve
-  std::string state;                // what else a prediction depends on, as text: for the digest of the evaluations
+  std::string state;                // other inputs of a prediction, as text: for the digest of the evaluations
 };
-/// Of all targets together.
+/// Number of points of all targets together.
 std::size_t points_of(const std::vector<Target>& targets);
 
-/// Which targets a prediction is for.
 enum class TargetSet { fitted, held_out };
 inline constexpr TargetSet kBothSets[] = {TargetSet::fitted, TargetSet::held_out};
 
-/// One of something for each set of targets.
+/// A pair of values, one for each set of targets.
 template <class T>
 struct PerSet {
   T fitted, held_out;
@@ -76,29 +74,28 @@ struct PerSet {
 };
 inline constexpr PerSet<std::string_view> kSetNames{"fitted", "held_out"};
 
-/// What a model says of all points of a set of targets, one target after another.
+/// Predictions of a model for all points of a set of targets, one target after another.
 struct Prediction {
   std::vector<double> values;   // in the units of the data
   std::vector<double> errors;   // their standard errors; empty: none
   std::string problem;          // why there are no values; empty: there are
-  double processor_time = 0.0;  // that it took, s; 0: not told, as of quick models
+  double processor_time = 0.0;  // computing time, s; 0: not measured, as for quick models
 };
 
-/// What a kind makes its model from.
 struct CalibrationInput {
-  std::filesystem::path study;                     // its file, for messages and as the first place to look in
+  std::filesystem::path study;                     // its file, for messages and as the first place to search
   std::filesystem::path start;                     // resolved
-  std::vector<std::string> parameters;             // those to fit, all known to the kind, in the order of their values
-  PerSet<std::vector<OrderedJsonReader>> targets;  // one object each; the kind takes its keys and calls finish()
+  std::vector<std::string> parameters;             // those to fit, all of the kind, in the order of their values
+  PerSet<std::vector<OrderedJsonReader>> targets;  // one object each; the kind reads its keys and calls finish()
   OrderedJsonReader whole;                         // the study, for the keys that are the kind's own
 };
 
-/// A file that a calibration leaves in addition to the fitted one.
+/// A file that a calibration writes in addition to the fitted one.
 struct ResultFile {
   std::string name, text;
 };
 
-/// A kind's model with its data, as a study asks for it.
+/// A kind's model with the data of a study.
 class CalibrationModel {
  public:
   CalibrationModel() = default;
@@ -106,17 +103,17 @@ class CalibrationModel {
   virtual ~CalibrationModel() = default;
 
   const std::vector<Target>& targets(TargetSet set) const { return targets_[set]; }
-  /// What a user must know before anything is computed, such as targets that cannot be reached.
+  /// Notes for the user before anything is computed, such as targets that cannot be reached.
   const std::vector<std::string>& notes() const { return notes_; }
-  /// What the start file has for each parameter of the input, NaN where it says nothing.
+  /// Values of the start file for each parameter of the input; NaN if it has none.
   virtual std::vector<double> start_values() const = 0;
-  /// A model that has no answer to these parameters says so in Prediction::problem.
+  /// If the model has no answer to these parameters, Prediction::problem gives the reason.
   /// @param values of the parameters of the input, in their units
-  /// @throws Error(stopped) from `progress`; Error(io, limit) where nothing can be computed at all
+  /// @throws Error(stopped) from `progress`; Error(io, limit) if nothing can be computed at all
   virtual Prediction predict(std::span<const double> values, TargetSet set, const ProgressCall& progress) = 0;
-  /// The file of the fitted model. @param source one paragraph that says where it comes from
+  /// The file of the fitted model. @param source one paragraph about its origin
   virtual nlohmann::ordered_json fitted_file(std::span<const double> values, const std::string& source) const = 0;
-  /// Alike in number and names for all values.
+  /// Further files; their number and names are the same for all values.
   virtual std::vector<ResultFile> further_files(std::span<const double>, const std::string&) const { return {}; }
 
  protected:
@@ -133,7 +130,7 @@ std::unique_ptr<CalibrationModel> read_model(CalibrationInput& input) {
   return std::make_unique<Model>(input);
 }
 
-/// A figure that targets of a kind may ask for by name, with the range of its values in the unit of the name.
+/// A figure for which targets of a kind may ask, with the range of its values in the unit of the name.
 struct TargetQuantity {
   std::string_view name;
   double least, most;
@@ -141,25 +138,25 @@ struct TargetQuantity {
 
 struct CalibrationKind {
   std::string_view name;
-  std::string_view start;  // what the start file is, for messages: "a tire file"
+  std::string_view start;  // description of the start file, for messages: "a tire file"
   std::span<const ParameterRule> parameters;
   /// @throws Error(bad_input) naming file and key
   std::unique_ptr<CalibrationModel> (*read)(CalibrationInput& input);
-  /// The least of the objective: optimize_smooth() for models that answer within milliseconds and without noise.
+  /// Minimises the objective: optimize_smooth() for models that answer within milliseconds and without noise.
   Optimum (*optimize)(Objective& objective, const OptimizerOptions& options);
-  /// Costly and noisy: the study may have the key `evaluations`, and as many parameters as points.
+  /// Costly and noisy: the study may have the key `evaluations`, and may have no more points than parameters.
   bool noisy = false;
   std::vector<std::string_view> keys = {};      // of the study, that the kind reads from CalibrationInput::whole
-  std::vector<TargetQuantity> quantities = {};  // of its targets; none: they are curves of a test
+  std::vector<TargetQuantity> quantities = {};  // of its targets; empty: they are curves of a test
 };
 
-/// What a study of so many parameters of a noisy model needs at least: surrogates with a slope, and a few in addition
-/// to the design.
+/// Least number of evaluations for a noisy model with so many parameters: the surrogates need a slope, and a few are
+/// added to the design.
 constexpr int least_evaluations(std::size_t parameters) { return 2 * static_cast<int>(parameters) + 4; }
-/// What it takes where the study says nothing.
+/// Number of evaluations if the study gives none.
 constexpr int usual_evaluations(std::size_t parameters) { return 6 * static_cast<int>(parameters) + 4; }
 
-/// The entry of a table that has this name.
+/// Finds the entry of a table by its name.
 /// @param wrong makes the error from "is unknown, expected …"
 template <class Table, class Wrong>
 const auto& entry_named(const Table& table, std::string_view name, const Wrong& wrong) {
@@ -171,7 +168,7 @@ const auto& entry_named(const Table& table, std::string_view name, const Wrong& 
   throw wrong(unknown_text(nearest_words(std::string(name), known), known));
 }
 
-/// The number of this name in a list of fields; null: there is none.
+/// Finds the number with this name in a list of fields; null: there is none.
 template <class Options>
 auto* number_named(Options& options, std::string_view name) {
   std::conditional_t<std::is_const_v<Options>, const double, double>* found = nullptr;
@@ -182,11 +179,11 @@ auto* number_named(Options& options, std::string_view name) {
   return found;
 }
 
-/// Whether an optional key is given. It may be null.
+/// Checks whether an optional key is given. It may be null.
 bool takes(OrderedJsonReader& reader, const std::string& key);
 
-/// The keys that targets of every kind have: `data`, `name`, `sigma` and `weight`. The points are the kind's to read;
-/// then set_sigma().
+/// The keys that targets of every kind have: `data`, `name`, `sigma` and `weight`. The kind itself reads the points and
+/// then calls set_sigma().
 struct TargetKeys {
   Target target;        // name and data
   double sigma = 0.0;   // of every point, in the unit of y; 0: not given
@@ -195,8 +192,8 @@ struct TargetKeys {
 TargetKeys read_target_keys(OrderedJsonReader& reader, const std::filesystem::path& study);
 std::string target_name(OrderedJsonReader& reader, const std::string& otherwise);
 
-/// Sets target.sigma: that of the data file where it has some, else the key's, else a hundredth of the largest |y|;
-/// divided by √weight. @pre target.y is not empty
+/// Sets target.sigma from the data file if it has errors, otherwise from the key, otherwise to a hundredth of the
+/// largest |y|; divides it by √weight. @pre target.y is not empty
 void set_sigma(TargetKeys& keys, const std::vector<double>& of_data);
 
 }  // namespace furrow::calibrate

@@ -1,5 +1,4 @@
-// The kinds that `furrow calibrate` knows. A new kind is a source with its class, a declaration here and a line in
-// kinds.cpp.
+// The kinds of `furrow calibrate`. A new kind is a source with its class, a declaration here and a line in kinds.cpp.
 #pragma once
 
 #include <vector>

@@ -34,7 +34,7 @@ class Cost final : public ceres::CostFunction {
     }
     Eigen::Map<RowMajor>(jacobians[0], J.rows(), J.cols()) = J;
     return true;
-  } catch (...) {  // not through Ceres
+  } catch (...) {  // must not pass through Ceres
     thrown = std::current_exception();
     return false;
   }

@@ -1,11 +1,11 @@
-// The optimizer for models that cost much and answer with noise: a space-filling design, a surrogate of every figure
-// (surrogate.hpp), and evaluations at the least of the surrogates' misfit until that least stays where it is
-// and the surrogates err less there than the targets.
+// The optimizer for costly and noisy models: a space-filling design, a surrogate of every figure (surrogate.hpp), and
+// evaluations at the minimum of the surrogates' misfit. It ends when that minimum stays in place and the surrogates'
+// errors there are smaller than the targets'.
 //
-// The design is the start and three times as many places as parameters of a sequence of low discrepancy, from a place
-// that the seed draws [Roberts 2018]. Each figure has a surrogate of its own. The misfit is Σ (ŷ − data)²/(σ² + σ̂²), σ
-// the target's standard error and σ̂ the surrogate's; its least is found from several starts. Both errors are known, so
-// none is taken from the residuals: cov s = (JᵀJ)⁻¹.
+// The design is the start and a sequence of low discrepancy with three times as many places as parameters, from a
+// random place that depends on the seed [Roberts 2018]. Each figure has its own surrogate. The misfit is Σ (ŷ −
+// data)²/(σ² + σ̂²) with the standard errors σ of the target and σ̂ of the surrogate; it is minimised from several
+// starts. Both errors are known, so the residuals give none: cov s = (JᵀJ)⁻¹.
 //
 // [Roberts 2018] The unreasonable effectiveness of quasirandom sequences,
 // https://extremelearning.com.au/unreasonable-effectiveness-of-quasirandom-sequences.
@@ -26,15 +26,15 @@ namespace furrow::calibrate {
 namespace {
 
 constexpr int kRounds = 3;      // of the weights, which depend on the place
-constexpr int kLooks = 400;     // places among which the least certain one is looked for
-constexpr double kSame = 0.01;  // of a scale: two places that tell the same
-constexpr double kStays = 0.3;  // of a parameter's standard error: the least stays where it is
-constexpr double kNear = 0.15;  // of a scale: around the least
+constexpr int kLooks = 400;     // random places among which the least certain one is chosen
+constexpr double kSame = 0.01;  // of a scale: two places with the same information
+constexpr double kStays = 0.3;  // of a parameter's standard error: the minimum stays in place
+constexpr double kNear = 0.15;  // of a scale: around the minimum
 
 using Places = std::vector<Eigen::VectorXd>;
 
-/// Place n of a sequence that fills the scales evenly, from a place that is drawn: sᵢ = sᵢ₀ + n g⁻ⁱ modulo 1, with
-/// gᵖ⁺¹ = g + 1 for p parameters [Roberts 2018].
+/// Place n of a sequence that fills the scales evenly from a random first place: sᵢ = sᵢ₀ + n g⁻ⁱ modulo 1, with gᵖ⁺¹ =
+/// g + 1 for p parameters [Roberts 2018].
 Eigen::VectorXd even_place(const Eigen::VectorXd& first, int n) {
   double g = 2.0;
   for (int k = 0; k < 60; ++k) g = std::pow(1.0 + g, 1.0 / (static_cast<double>(first.size()) + 1.0));
@@ -46,7 +46,6 @@ Eigen::VectorXd even_place(const Eigen::VectorXd& first, int n) {
   return place;
 }
 
-/// The surrogates of all figures beside the data.
 class Misfit {
  public:
   Misfit(const Objective& objective, const Places& places, const std::vector<Prediction>& found)
@@ -66,7 +65,7 @@ class Misfit {
   }
 
   const std::vector<Surrogate>& surrogates() const { return surrogates_; }
-  /// √(σ² + σ̂²) of each figure, where the weights were last taken.
+  /// √(σ² + σ̂²) of each figure at the place where the weights were last computed.
   const Eigen::VectorXd& scale() const { return scale_; }
 
   void weigh(const Eigen::VectorXd& place) { scale_ = sigma_.array() * (1.0 + doubts(place).array()).sqrt(); }
@@ -85,7 +84,7 @@ class Misfit {
     residuals(place, r, nullptr);
     return r.squaredNorm();
   }
-  /// How little is known of each figure at a place: the surrogate's variance over that of the target.
+  /// Uncertainty of each figure at a place: the surrogate's variance over that of the target.
   Eigen::VectorXd doubts(const Eigen::VectorXd& place) const {
     Eigen::VectorXd doubts(data_.size());
     for (Eigen::Index q = 0; q < doubts.size(); ++q)
@@ -110,14 +109,14 @@ class Noisy {
     evaluate(objective_.start());
     for (int n = 0; n < count; ++n) evaluate(even_place(first, n));
     require_answers();
-    Eigen::VectorXd before;  // the least before this one
+    Eigen::VectorXd before;  // the previous minimum
     for (;;) {
       Misfit misfit(objective_, places_, found_);
       const Eigen::VectorXd least = minimise(misfit, before);
       if (before.size() > 0 && stays(misfit, before, least) && misfit.doubts(least).maxCoeff() <= 1.0)
         return result(misfit, "converged");
       if (asked() >= options_.evaluations) return result(misfit, "all evaluations are used");
-      // Where the least is known already, what is around it tells more.
+      // If the minimum was already evaluated, a place near it adds more information.
       const bool known = distance(least) < kSame;
       const bool answered = evaluate(known ? least_certain(misfit, least) : least);
       before = known || answered ? least : Eigen::VectorXd();
@@ -152,14 +151,14 @@ class Noisy {
           objective_.calibration().file.string(), places_.size(), all_.size(), least, problem_);
   }
 
-  /// Of all that was asked for.
+  /// Distance to the nearest evaluated place.
   double distance(const Eigen::VectorXd& place) const {
     double least = std::numeric_limits<double>::infinity();
     for (const Eigen::VectorXd& other : all_) least = std::min(least, (place - other).cwiseAbs().maxCoeff());
     return least;
   }
 
-  /// The evaluation where the surrogates' misfit is least.
+  /// Returns the evaluated place with the smallest misfit of the surrogates.
   const Eigen::VectorXd& best_of(const Misfit& misfit) const {
     return *std::min_element(places_.begin(), places_.end(), [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
       return misfit.squares(a) < misfit.squares(b);
@@ -185,18 +184,18 @@ class Noisy {
     return least;
   }
 
-  /// Whether the least moved by less than a part of its standard errors.
+  /// Checks whether the minimum moved by less than a fraction of its standard errors.
   static bool stays(const Misfit& misfit, const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
     Eigen::VectorXd r;
     Eigen::MatrixXd J;
     misfit.residuals(now, r, &J);
-    // Directions that nothing determines end at the scale's own length.
+    // The identity limits the errors of undetermined directions to the scale's own length.
     const Eigen::MatrixXd JtJ = J.transpose() * J + Eigen::MatrixXd::Identity(now.size(), now.size());
     const Eigen::ArrayXd errors = JtJ.inverse().diagonal().array().sqrt();
     return ((now - before).array().abs() <= (kStays * errors).max(kSame)).all();
   }
 
-  /// Near the least, where the surrogates know least.
+  /// Returns a place near the minimum where the surrogates are least certain.
   Eigen::VectorXd least_certain(const Misfit& misfit, const Eigen::VectorXd& around) {
     Eigen::VectorXd best = draw_.place(objective_.parameters());
     double most = -1.0;
@@ -233,7 +232,7 @@ class Noisy {
   Objective& objective_;
   const OptimizerOptions& options_;
   Draw draw_;
-  Places all_, places_;            // asked for; with an answer
+  Places all_, places_;            // evaluated; evaluated with an answer
   std::vector<Prediction> found_;  // at places_
   std::string problem_;
   std::vector<StartResult> starts_;

@@ -8,7 +8,7 @@
 namespace furrow::calibrate {
 namespace {
 
-/// Held-out targets may change while evaluations of the fitted ones stay: theirs are kept apart by what they depend on.
+/// Held-out targets may change without the fitted ones, so their evaluations have a state of their own.
 std::string state_of(const std::vector<Target>& held_out) {
   Hash hash;
   for (const Target& target : held_out) {

@@ -1,4 +1,4 @@
-// What a calibration leaves behind.
+// Files that a calibration writes.
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -44,7 +44,7 @@ Json parameters_json(const Calibration& calibration, const Confidence& confidenc
   return all;
 }
 
-/// Of the figures of a target. @param first of them among all points of the set
+/// Figures of a target. @param first of them among all points of the set
 Json figures_json(const Target& target, const Prediction& prediction, std::size_t first,
                   const std::vector<Reach>& reach) {
   Json all = Json::array();
@@ -101,7 +101,6 @@ double largest_of_peak(const Json& targets) {
   return largest;
 }
 
-/// Of one set of targets together.
 Json total_json(const std::vector<Target>& targets, const Prediction& prediction, const Json& each) {
   if (targets.empty() || !prediction.problem.empty()) return {};
   return {{"r_squared", json_number(joint_r_squared(targets, prediction.values))},
@@ -151,7 +150,7 @@ std::string fit_table(const Calibration& calibration, const CalibrationResults& 
   return text;
 }
 
-/// "friction_angle_deg 31 ± 0.4 (target 31.1 ± 1)", one after another.
+/// Lists "friction_angle_deg 31 ± 0.4 (target 31.1 ± 1)" for every figure.
 std::string reach_text(const std::vector<Target>& targets, const std::vector<Reach>& reach) {
   std::string text;
   each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
@@ -162,7 +161,7 @@ std::string reach_text(const std::vector<Target>& targets, const std::vector<Rea
   return text;
 }
 
-/// What soil files have under `measured`: mean and standard error of every figure, as evaluated.
+/// Content of `measured` in soil files: mean and standard error of every figure, as evaluated.
 Json measured_json(const std::vector<Target>& targets, const Prediction& prediction) {
   Json json = Json::object();
   each_figure(targets, [&](const Target& target, std::size_t k, std::size_t at) {
@@ -174,7 +173,7 @@ Json measured_json(const std::vector<Target>& targets, const Prediction& predict
   return json;
 }
 
-/// Where the values of the fitted file come from.
+/// Describes the origin of the values in the fitted file.
 std::string source_text(const Calibration& calibration, const CalibrationResults& results, const Json& summary) {
   const std::vector<Target>& targets = calibration.model->targets(TargetSet::fitted);
   std::vector<std::string> names, fitted;

@@ -1,11 +1,11 @@
-// Kinds of calibration that press a tire: its file's values from load–deflection curves on plates and cleats.
+// Kinds of calibration that press a tire: they fit its file's values to load–deflection curves on plates and cleats.
 //
-// A target names a CSV file with the columns deflection_m and force_N, as press.csv of `furrow press` has them, and
-// maybe sigma_N, the force's standard error. Lines of unloading are left out, and those without deflection. A
-// prediction is what `furrow press` gives for the fitted file, to the tolerance of its solver: both go through the
-// tire's reader and its static test.
+// A target names a CSV file with the columns deflection_m and force_N, as in press.csv of `furrow press`, and
+// optionally sigma_N, the force's standard error. Lines of unloading, and lines without deflection, are left out. A
+// prediction is the result of `furrow press` for the fitted file, to the tolerance of its solver: both use the tire's
+// reader and its static test.
 //
-// The parameter `softening` of a ring is k₂/√(3 k₁k₃), from 0 to 1, where the sidewall's force would begin to fall.
+// The parameter `softening` of a ring is k₂/√(3 k₁k₃), from 0 to 1; at 1 the sidewall's force would begin to fall.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,14 +33,14 @@ constexpr double kMostDeflection = 0.2;  // m, as of `furrow press`
 constexpr double kMostPressure = 1e8;    // Pa
 constexpr const char* kSoftening = "softening";
 
-/// What a model whose tire is pressed needs to be told.
+/// Properties of a model whose tire is pressed.
 struct PressKind {
   const char* model;  // of the tire's file
-  bool has_pressure;  // another inflation pressure is the same tire
+  bool has_pressure;  // the inflation pressure can change without changing the tire
   std::span<const ParameterRule> rules;
   std::unique_ptr<tire::TireSpec> (*read)(const json& file, const tire::TireOptions& options);
-  double (*most_deflection)(const json& file);  // that the tire can be pressed by, m
-  const char* most_text;                        // what that is
+  double (*most_deflection)(const json& file);  // by which the tire can be pressed, m
+  const char* most_text;                        // description of this limit
 };
 
 const auto kRingRules = std::to_array<ParameterRule>({
@@ -80,7 +80,7 @@ const PressKind kPlanar{"planar",
                         "0.6 of the tire's height over its rim"};
 static_assert(tire::kMostRingDeflection == 0.25 && tire::kMostPlanarDeflection == 0.6, "as most_text says");
 
-/// A target with what the tire is pressed on.
+/// A target and the surface on which the tire is pressed.
 struct PressTarget {
   tire::PressOptions options;
   std::optional<double> pressure;  // Pa; none: the file's
@@ -111,8 +111,8 @@ tire::PressObstacle obstacle_of(OrderedJsonReader& reader, std::string& what) {
   return obstacle;
 }
 
-/// Deflections and forces of the loading, by rising deflection, with their errors where the file has them.
-/// @param most deflection that the tire can be pressed by, m @param most_text what that is
+/// Deflections and forces of the loading, by rising deflection, with their errors if the file has them.
+/// @param most deflection by which the tire can be pressed, m @param most_text describes this limit
 std::vector<double> read_curve(Target& target, double most, const char* most_text) {
   const CsvFile table(target.data, "a load–deflection curve in CSV",
                       {"deflection_m", "force_N", "sigma_N", "residual", "unloading", "moment_x_Nm", "moment_y_Nm"});
@@ -168,7 +168,7 @@ class PressModel final : public CalibrationModel {
 
   std::vector<double> start_values() const override {
     std::vector<double> values;
-    for (const std::string& name : names_)  // a file may leave out a share that is 0
+    for (const std::string& name : names_)  // a file may omit a share that is 0
       values.push_back(name == kSoftening ? softening() : file_.value(place_of(name), 0.0));
     return values;
   }
@@ -260,7 +260,7 @@ class PressModel final : public CalibrationModel {
     for (std::size_t k = 0; k < names_.size(); ++k) {
       if (names_[k] != kSoftening) continue;
       json& wall = file["sidewall"];
-      // A hair below 1: the reader's own product may round the other way.
+      // Slightly below 1, because the reader's own product may round the other way.
       const double s = std::min(values[k], 1.0 - 1e-12);
       wall[1] = s * std::sqrt(3.0 * wall[0].get<double>() * wall[2].get<double>());
     }

@@ -1,9 +1,9 @@
-// Kind `scm` of calibrations: empirical soil (terrain/scm) from the curves of plate and shear tests.
+// The kind `scm` of calibrations: fits empirical soil (terrain/scm) to the curves of plate and shear tests.
 //
-// A target names plate.csv or shear.csv of `furrow soil`, or a measured table of the same columns. Each width of a
-// plate and each normal stress of a shear test is a target of its own, named after both. Starts that neither the study
-// nor the soil file gives are the fits of `furrow soil` to the same curves (terrain/soil/fits.hpp). Parameters are keys
-// of the section `terrain`.
+// A target names plate.csv or shear.csv of `furrow soil`, or a measured table with the same columns. Each width of a
+// plate and each normal stress of a shear test is a target of its own, named after both. Without a start in the study
+// or the soil file, parameters start from the fits of `furrow soil` to the same curves (terrain/soil/fits.hpp).
+// Parameters are keys of the section `terrain`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ using nlohmann::json;
 using terrain::scm::ScmOptions;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kNoSlip = 1e9;  // friction of the shear box against the soil: it never slips
+constexpr double kNoSlip = 1e9;  // friction of the shear box on the soil: it never slips
 
 const auto kRules = std::to_array<ParameterRule>({
     {"bekker_k_c", "N/m^(n+1)", -1e12, 1e12, -1e6, 1e6, false},
@@ -49,7 +49,7 @@ const auto kRules = std::to_array<ParameterRule>({
 struct Curve {
   bool plate = false;
   double width = 0.0;          // of the plate's smaller side, m
-  std::vector<double> normal;  // under which is sheared, Pa
+  std::vector<double> normal;  // stresses during shearing, Pa
 };
 
 struct Point {
@@ -109,7 +109,7 @@ class ScmModel final : public CalibrationModel {
   nlohmann::ordered_json fitted_file(std::span<const double> values, const std::string& source) const override {
     nlohmann::ordered_json file = load_json<nlohmann::ordered_json>(start_, "a soil in JSON");
     file["description"] = source;
-    // What the start says to other engines, and what was measured of them, is not of the fitted soil.
+    // The start's keys for other engines, and its measured figures, do not describe the fitted soil.
     file.erase("measured");
     nlohmann::ordered_json own = nlohmann::ordered_json::object();
     for (const auto& [key, value] : file["terrain"].items()) {
@@ -155,9 +155,9 @@ class ScmModel final : public CalibrationModel {
     }
   }
 
-  /// The points of a file by the plate's width or by the nominal normal stress, by rising x. As in `furrow soil` what
-  /// has no sinkage or no pressure is left out.
-  /// @param key of the target that says it where the file has no such column
+  /// The points of a file by the plate's width or by the nominal normal stress, by rising x. As in `furrow soil`,
+  /// points without sinkage or pressure are left out.
+  /// @param key of the target that gives the width or stress if the file has no such column
   static std::map<double, std::vector<Point>> tests_of(const std::filesystem::path& file, bool plate,
                                                        OrderedJsonReader& reader, const char* key) {
     const CsvFile table(file, plate ? "a plate-sinkage test in CSV" : "a shear test in CSV",
@@ -196,7 +196,7 @@ class ScmModel final : public CalibrationModel {
     return tests;
   }
 
-  /// What `furrow soil` makes of the same curves, as far as there are enough of them.
+  /// Fits of `furrow soil` to the same curves, if there are enough of them.
   std::map<std::string, double> fits_of_curves() const {
     std::map<std::string, double> fits;
     std::vector<terrain::soil::PlateCurve> plates;

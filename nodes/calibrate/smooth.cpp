@@ -10,7 +10,7 @@
 namespace furrow::calibrate {
 namespace {
 
-constexpr int kMostDraws = 100;  // for a random start where the model answers
+constexpr int kMostDraws = 100;  // for a random start at which the model answers
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Optimum optimize_smooth(Objective& objective, const OptimizerOptions& options) {
   for (int k = 0; k < options.starts; ++k) {
     double iterations = 0.0;
     const auto residuals = [&](const Eigen::VectorXd& place, Eigen::VectorXd& r, Eigen::MatrixXd* J) {
-      // Few starts need many iterations: half of a start is done after 20 of them.
+      // Few starts need many iterations: half of a start counts as done after 20 iterations.
       if (J && options.progress)
         options.progress((k + iterations / (iterations + 20.0)) / options.starts), ++iterations;
       const auto found = objective.residuals(place);

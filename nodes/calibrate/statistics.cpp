@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kAtBound = 1e-6;     // of the scale
 constexpr double kWide = 0.5;         // of the scale
-constexpr double kDegenerate = 1e-6;  // of the largest singular value: differences say no more
+constexpr double kDegenerate = 1e-6;  // of the largest singular value: below it, differences are too inaccurate
 constexpr double kNormal = 1.959964;  // 97.5 % point of the normal distribution
-constexpr double kNoValue = 1.0;      // of the scale: an interval as wide says nothing
-constexpr double kNamed = 0.02;       // of a direction
+constexpr double kNoValue = 1.0;      // of the scale: an interval as wide gives no value
+constexpr double kNamed = 0.02;       // of a direction: smaller parts are not listed
 
 }  // namespace
 
@@ -43,7 +43,7 @@ Confidence confidence(std::span<const Parameter> parameters, const Eigen::Vector
   const double t = known_errors ? kNormal : student_t(c.freedom);
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(free.size()));
   for (Eigen::Index i = 0; i < w.size(); ++i) {
-    // A fit without residuals has no σ̂: singular values are then those of J.
+    // A fit without residuals has no σ̂: the singular values are then those of J.
     c.singular_values.push_back(c.deviation > 0.0 ? w[i] / c.deviation : w[i]);
     const Eigen::VectorXd v = svd.matrixV().col(i);
     const bool degenerate = w[i] <= kDegenerate * w[0];
@@ -55,7 +55,7 @@ Confidence confidence(std::span<const Parameter> parameters, const Eigen::Vector
       direction(free) = std::copysign(1.0, v[lead]) * v;
       c.undetermined.push_back({{direction.begin(), direction.end()}, half});
     }
-    // Parameters that have no part in a degenerate direction but round-off keep their error.
+    // Parameters with no part but round-off in a degenerate direction keep their error.
     if (degenerate)
       variance += (v.array().abs() > kDegenerate).select(std::numeric_limits<double>::infinity(), 0.0 * v.array());
     else

@@ -24,7 +24,7 @@ using Reader = OrderedJsonReader;
 
 constexpr int kFormatVersion = 1;
 constexpr int kMostEvaluations = 1000, kMostStarts = 1000, kMostTargets = 1000, kLargestSeed = 2147483647;
-/// Names that results of a calibration have.
+/// Names of a calibration's result files.
 constexpr const char* kTaken[] = {"calibration.json", "sweep.json", "summary.json", "scenario.json"};
 
 constexpr auto kKeys = std::to_array<CalibrationKey>({
@@ -52,7 +52,7 @@ bool is_logarithmic(Reader& reader, const ParameterRule& rule) {
   return scale == "log";
 }
 
-/// Name, bounds and scale; `start` is NaN where the study gives none.
+/// Name, bounds and scale; `start` is NaN if the study gives none.
 Parameter parameter_of(Reader reader, const ParameterRule& rule) {
   Parameter p{rule.name, rule.unit, rule.lower, rule.upper, NAN, is_logarithmic(reader, rule)};
   const auto read = [&](const char* key, double& value, double least, double most, const char* expected) {
@@ -134,7 +134,7 @@ std::string result_name(Reader& reader, const Calibration& c) {
   return name;
 }
 
-/// Bounds, starts and held-out targets are left out: they may change while evaluations stay.
+/// Bounds, starts and held-out targets are left out: they may change while evaluations remain valid.
 std::string digest_of(const Calibration& c) {
   Hash hash;
   const auto add = [&hash](const std::string& text) { hash.add(text), hash.add("\n"); };
@@ -203,7 +203,7 @@ Calibration load_calibration(const std::filesystem::path& name) {
   take_starts(c.parameters, *c.model, reader);
   const std::size_t points = points_of(c.model->targets(TargetSet::fitted));
   if (points < c.parameters.size() + (kind.noisy ? 0 : 1)) {
-    const std::vector<std::string>& notes = c.model->notes();  // why a target was left out, where one was
+    const std::vector<std::string>& notes = c.model->notes();  // reasons why targets were left out, if any
     reader.fail("targets", "has {} points, expected {} there are parameters, {}{}{}", points,
                 kind.noisy ? "as many as" : "more than", c.parameters.size(), notes.empty() ? "" : "; ",
                 fmt::join(notes, "; "));

@@ -1,4 +1,4 @@
-// A calibration study: which parameters of which model are fitted to which data.
+// A calibration study: the fitted parameters, their model and the data.
 //
 //   {"calibrate": "ring",                              kind (kinds.cpp)
 //    "start": "hmmwv_ring.json",                       relative to the study, then to the data folders
@@ -34,21 +34,21 @@ struct Calibration {
   std::uint64_t seed = 1;
   int evaluations = 0;  // of a noisy model at most
   std::string result;   // name of the fitted file
-  /// Of all that a prediction depends on: start file, parameters, targets and the program's version.
+  /// Hash of all that a prediction depends on: start file, parameters, targets and the program's version.
   std::string digest;
 };
 
 struct CalibrationKey {
   std::string_view name, meaning;
-  bool of_every_kind = true;  // else of the kinds that ask for it
+  bool of_every_kind = true;  // otherwise only of the kinds that have it
 };
-/// Keys of the file, in the order in which people write them.
+/// Keys of the file, in the usual order.
 std::span<const CalibrationKey> calibration_keys();
 
-/// Whether a file, or a calibration that comes with the program, says of itself that it is one.
+/// Checks whether a file, or a calibration that comes with the program, declares itself to be one.
 bool is_calibration(const std::filesystem::path& name);
 
-/// @param name of a file, or of a calibration that comes with the program, as "calibrate_ring.json"
+/// @param name of a file, or of a calibration that comes with the program, such as "calibrate_ring.json"
 /// @throws Error(bad_input) naming file and key
 Calibration load_calibration(const std::filesystem::path& name);
 

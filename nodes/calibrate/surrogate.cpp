@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kLengths[] = {0.3, 0.5, 0.8, 1.3, 2.0, 3.5};
 constexpr double kSignals[] = {0.0, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0, 10.0};  // of the values' variance
-constexpr double kBeyond[] = {1.0, 1.5, 2.5, 4.0};                                // of the noise that is told
+constexpr double kBeyond[] = {1.0, 1.5, 2.5, 4.0};                                // of the noise that the model reports
 constexpr double kUnknown[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0};
 constexpr double kLeast = 1e-8;     // of the values' variance: rounding
-constexpr double kOwn = 1.0 / 3.0;  // part that an evaluation's own error has in its variance
+constexpr double kOwn = 1.0 / 3.0;  // weight of an evaluation's own error in its variance
 
-/// Of the known squares; 0: none is.
+/// Median of the known squares; 0: none is known.
 double median_square(const std::vector<double>& errors) {
   std::vector<double> squares;
   for (const double error : errors)
@@ -39,7 +39,7 @@ Surrogate::Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& value
   spread_ = std::sqrt((values.array() - mean_).square().mean());
   if (!(spread_ > 0.0)) spread_ = 1.0;
   values_ = (values.array() - mean_) / spread_;
-  const bool sloped = n >= p + 2;  // fewer evaluations say nothing of a slope
+  const bool sloped = n >= p + 2;  // fewer evaluations do not determine a slope
   trend_ = Eigen::MatrixXd::Ones(n, sloped ? p + 1 : 1);
   if (sloped) trend_.rightCols(p) = places.transpose();
 
@@ -60,7 +60,7 @@ Surrogate::Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& value
         State state;
         state.signal = signal, state.length = length, state.noise = part;
         if (solve(state) && (!found || state.likelihood > state_.likelihood)) state_ = std::move(state), found = true;
-        if (signal == 0.0) break;  // then no length matters
+        if (signal == 0.0) break;  // then the length has no effect
       }
   FURROW_ASSERT(found, n, p);
   noise_ = state_.noise * spread_ * spread_;

@@ -1,13 +1,14 @@
-// A smooth stand-in for one figure of a model that is costly and noisy, from few evaluations: a Gaussian process with a
-// linear trend [Rasmussen & Williams 2006, §2.2 and §2.7]. On scales from 0 to 1,
+// A smooth surrogate for one figure of a costly and noisy model, from few evaluations: a Gaussian process with a linear
+// trend [Rasmussen & Williams 2006, §2.2 and §2.7]. On scales from 0 to 1,
 //   y(s) = β₀ + βᵀs + g(s) + ε,   cov g(s, s′) = τ² exp(−|s − s′|²/2ℓ²),   var ε = ν wᵢ
-// with β by generalised least squares. τ, ℓ and what ν has beyond the errors that the model tells of itself are those
-// of the greatest restricted likelihood [Patterson & Thompson 1971] on a fixed grid: the same evaluations give the same
-// bits. Errors are those for the chosen τ, ℓ, ν.
+// with β by generalised least squares. τ, ℓ and the part of ν beyond the model's own errors maximise the restricted
+// likelihood [Patterson & Thompson 1971] on a fixed grid: the same evaluations give the same bits. Errors hold for the
+// chosen τ, ℓ, ν.
 //
 // Errors from few beds are themselves uncertain. The variance of an evaluation is therefore the mean of its own and of
-// the median of all, which counts twice [Smyth 2004, eq. 5, with 4 and 2 degrees of freedom]: an evaluation that went
-// wrong, with an error of many times the others', hardly counts, and none counts much for a small error by chance.
+// the median of all, which counts twice [Smyth 2004, eq. 5, with 4 and 2 degrees of freedom]. An evaluation that went
+// wrong, with an error many times as large as the others', thus hardly counts, and a small error by chance adds little
+// weight.
 //
 // [Rasmussen & Williams 2006] Gaussian Processes for Machine Learning, MIT Press.
 // [Patterson & Thompson 1971] Recovery of inter-block information when block sizes are unequal, Biometrika 58.
@@ -25,7 +26,7 @@ namespace furrow::calibrate {
 class Surrogate {
  public:
   /// @param places one column for each evaluation, on the scales @param values there, in the figure's unit
-  /// @param errors of each value that the model tells, in the figure's unit; none, 0 or NaN: not known
+  /// @param errors of each value by the model, in the figure's unit; none, 0 or NaN: not known
   /// @pre two evaluations or more
   Surrogate(const Eigen::MatrixXd& places, const Eigen::VectorXd& values, const std::vector<double>& errors = {});
 
@@ -38,7 +39,7 @@ class Surrogate {
   double noise() const { return noise_; }  // ν, variance of an evaluation whose own error is the median
 
  private:
-  /// What is left of the data once τ, ℓ and ν are chosen; all in units of the values' own spread.
+  /// Solution for the data with chosen τ, ℓ and ν; all in units of the values' own spread.
   struct State {
     double signal = 0.0, length = 1.0, noise = 0.0;  // τ², ℓ, ν
     double likelihood = 0.0;

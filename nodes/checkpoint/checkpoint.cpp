@@ -37,7 +37,7 @@ inline constexpr bool kIsListOfStructs = false;
 template <HasFields T>
 inline constexpr bool kIsListOfStructs<std::vector<T>> = true;
 
-/// Every field by its name, structs as objects.
+/// Writes every field by its name, structs as objects.
 template <class T>
 Json as_json(const T& value) {
   Json json;
@@ -80,7 +80,7 @@ CheckpointManifest manifest_in(const Json& json) {
   return m;
 }
 
-/// @throws Error(io) for what is there but may not be read: it is neither missing nor damaged
+/// @throws Error(io) for a file that exists but may not be read: it is neither missing nor damaged
 void require_readable(const fs::path& path) {
   if (access(path.c_str(), R_OK) != 0 && errno != ENOENT && errno != ENOTDIR)
     throw io_error(path.string(), std::string("cannot be read: ") + std::strerror(errno));
@@ -110,7 +110,7 @@ CheckpointManifest read_manifest(const fs::path& file) {
   }
 }
 
-/// The step that a complete checkpoint's folder is named after; negative for anything else.
+/// The step in the name of a complete checkpoint's folder; negative for any other folder.
 std::int64_t step_of(const fs::path& folder) {
   std::int64_t step = -1;
   return launch::is_of_form(folder.filename().string(), "%012d", &step) ? step : -1;
@@ -119,7 +119,7 @@ std::int64_t step_of(const fs::path& folder) {
 constexpr const char* kFolderForms[] = {"%012d", ".%012d.part"};
 constexpr const char* kFileForms[] = {kManifest, "rig.h5", "tire%1d.h5", "terrain.h5", "terrain%1d.h5"};
 
-/// Removes what is a checkpoint's in its folder, and the folder unless somebody else's files stand there.
+/// Removes the checkpoint's files in its folder, and the folder unless it contains other files.
 void remove_checkpoint(const fs::path& run, const fs::path& folder) {
   launch::remove_listed(run, launch::RunList(checkpoint_forms()), "checkpoints/" + folder.filename().string() + "/");
   std::error_code error;
@@ -191,7 +191,7 @@ CheckpointManifest read_checkpoint(const fs::path& folder) {
 std::string part_checksum(const fs::path& path) {
   std::error_code error;
   require_readable(path);
-  if (!fs::is_regular_file(path, error))  // a pipe would be waited for
+  if (!fs::is_regular_file(path, error))  // reading a pipe would block
     throw io_error(path.string(), "does not exist or is no file: the checkpoint is not complete");
   return file_hash(path);
 }
@@ -215,7 +215,7 @@ void remove_checkpoints_after(const fs::path& run, std::int64_t step) noexcept {
         doomed.push_back(entry.path());
     for (const fs::path& folder : doomed) remove_checkpoint(run, folder);
   } catch (...) {
-    // What stays does no harm: it is replaced when its step comes.
+    // A remainder is harmless: it is replaced when its step comes again.
   }
 }
 

@@ -1,10 +1,11 @@
-// Checkpoints on disk: <run>/checkpoints/<step>/ with one saved state per rank and a manifest that makes them one.
+// Checkpoints on disk: <run>/checkpoints/<step>/ with one saved state per rank and a manifest that joins them.
 //
-//   manifest.json  format_version, scenario and its digest, step, checksum of every part, where each series stood,
+//   manifest.json  format_version, scenario and its digest, step, checksum of every part, mark of each series,
 //                  frames, segments, and a checksum of itself
 //   rig.h5, tire<k>.h5, terrain.h5, terrain<k>.h5 of its further ranks   archive_file.hpp
 //
-// All is written into .<step>.part/, flushed to the disk, and that folder renamed: a checkpoint is whole or not there.
+// All is written into .<step>.part/ and flushed to the disk; then that folder is renamed. A checkpoint is thus complete
+// or absent.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +35,9 @@ struct CheckpointManifest {
   FrameClock frames;
   std::vector<Segment> segments;  // the last one ends here
   std::int64_t bytes = 0;         // of the parts on disk
-  double write_s = 0.0;           // wall time that the run stood still for it, until this was written
+  double write_s = 0.0;           // wall time that the run stopped for it, until this was written
 };
-/// All but scenario and segments, which have forms of their own in the manifest.
+/// All but scenario and segments, which have their own forms in the manifest.
 void visit_fields(FieldsOf<CheckpointManifest> auto& s, auto&& visit) {
   visit(s.version, Field{"version", ""});
   visit(s.build, Field{"build", ""});
@@ -54,44 +55,43 @@ void visit_fields(FieldsOf<CheckpointManifest> auto& s, auto&& visit) {
   visit(s.frames, Field{"frames", ""});
 }
 
-/// Where a run continues.
 struct ResumePoint {
   std::filesystem::path folder;  // of the checkpoint
   CheckpointManifest manifest;
-  std::string changed;     // JSON object: keys that are changed from here on
+  std::string changed;     // JSON object: keys that change from here on
   std::string finer_than;  // Segment::finer_than
 };
 
 /// The segments before this one, and this one until `step`.
 std::vector<Segment> segments_until(std::int64_t step, double wall_s, int threads, const ResumePoint* resume);
 
-/// "rig.h5", "tire0.h5", "terrain.h5", of the further ranks of a terrain "terrain1.h5" ….
+/// "rig.h5", "tire0.h5", "terrain.h5", for further ranks of a terrain "terrain1.h5" ….
 std::string part_name(const Address& node);
 
-/// Their folders and files, for the run's list (launch/run_list.hpp).
+/// Folders and files of checkpoints, for the run's list (launch/run_list.hpp).
 std::vector<std::string> checkpoint_forms();
 
 std::filesystem::path checkpoints_folder(const std::filesystem::path& run);
-/// Where the parts of a checkpoint are written before it is complete.
+/// Folder for the parts of a checkpoint before it is complete.
 std::filesystem::path unfinished_checkpoint(const std::filesystem::path& run, std::int64_t step);
 
-/// Writes the manifest beside the parts, gives the folder its name and removes all but the newest `keep` checkpoints.
+/// Writes the manifest next to the parts, renames the folder and removes all but the newest `keep` checkpoints.
 /// @throws Error(io)
 void complete_checkpoint(const std::filesystem::path& run, const CheckpointManifest& manifest, int keep);
 
 /// Removes the parts of a checkpoint that could not be completed. Errors are ignored.
 void drop_unfinished_checkpoint(const std::filesystem::path& run, std::int64_t step);
 
-/// @throws Error(io) when the checkpoint is damaged, incomplete or of another format; every part is read
+/// @throws Error(io) if the checkpoint is damaged, incomplete or of another format; every part is read
 CheckpointManifest read_checkpoint(const std::filesystem::path& folder);
 
-/// Of all bytes of a part: damage is found before anything interprets the file. @throws Error(io)
+/// Checksum of all bytes of a part, so that damage is found before the file is interpreted. @throws Error(io)
 std::string part_checksum(const std::filesystem::path& file);
 
 /// Folders of the complete checkpoints, newest first.
 std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& run);
 
-/// Removes checkpoints beyond `step`, and those never completed; no other file. Errors are ignored.
+/// Removes checkpoints beyond `step` and incomplete ones; no other file. Errors are ignored.
 void remove_checkpoints_after(const std::filesystem::path& run, std::int64_t step) noexcept;
 
 }  // namespace furrow::checkpoint

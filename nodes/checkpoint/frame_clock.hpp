@@ -1,5 +1,5 @@
-// Which steps get a frame, and its number. Numbers of a continued run follow those before it, also when the interval
-// is another one from there on.
+// Decides which steps get a frame, and its number. Numbers of a continued run follow the earlier ones, even if the
+// interval changes.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct FrameClock {
   std::int64_t index(std::int64_t step) const {
     return every > 0 ? first_index + before(step) - before(first_step) : first_index;
   }
-  /// Of the segment that begins at `step`. @param written  whether there is a frame of that step: it stays where the
-  /// segment will not make it again
+  /// Returns the clock of the segment that begins at `step`. @param written  whether a frame of that step exists: it
+  /// stays if the segment will not make it again
   FrameClock continued(std::int64_t step, std::int64_t new_every, bool written = false) const {
     FURROW_ASSERT(new_every >= 0, step, new_every);
     const bool stays = written && due(step) && !(new_every > 0 && step % new_every == 0);

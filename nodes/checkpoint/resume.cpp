@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using scenario::Settings;
 
-/// "/rig/slip" as "rig.slip".
+/// Converts "/rig/slip" to "rig.slip".
 std::string dotted(const std::string& pointer) {
   std::string key = pointer.substr(pointer.empty() ? 0 : 1);
   for (char& c : key)
@@ -35,15 +35,15 @@ std::string reason_for(const std::string& key) {
   return key == "output.series_interval" ? ", and means count all lines of a series equally" : "";
 }
 
-/// Keys whose values differ, with the new ones. @throws Error(bad_input) at the first that may not.
-/// @param failed the run has, and may be stepped more finely
+/// Keys whose values differ, with the new ones. @throws Error(bad_input) at the first that may not differ
+/// @param failed whether the run has failed, and may therefore be stepped more finely
 json changes(const fs::path& run, const json& before, const json& now, bool failed) {
   json changed = json::object(), keys = before.flatten();
   keys.update(now.flatten());
   const json old_values = before.flatten(), new_values = now.flatten();
   std::vector<std::string> pointers;
   for (const auto& [pointer, unused] : keys.items()) pointers.push_back(pointer);
-  // Another model brings other keys with it: what chose it is what is wrong.
+  // Another model brings other keys with it: the key that chose it is reported first.
   std::stable_partition(pointers.begin(), pointers.end(),
                         [](const std::string& pointer) { return scenario::chooses_model(dotted(pointer)); });
   for (const std::string& pointer : pointers) {
@@ -90,8 +90,8 @@ ResumePoint newest_whole(const fs::path& run, std::vector<std::string>& problems
   throw Error(ExitCode::io, text + run.string() + ": no checkpoint is whole, nothing can be continued");
 }
 
-/// Counts the checkpoint's steps in those of the run that continues, which are an equal part of them.
-/// @throws Error(bad_input) when they are not
+/// Converts the checkpoint's steps to those of the continuing run, which are an equal part of them.
+/// @throws Error(bad_input) if they are not
 void count_in_steps_of(double step, double before, const fs::path& run, CheckpointManifest& manifest) {
   const auto ratio = static_cast<std::int64_t>(std::llround(before / step));
   if (ratio < 1 || std::abs(before - static_cast<double>(ratio) * step) > 1e-9 * before)
@@ -108,7 +108,7 @@ void count_in_steps_of(double step, double before, const fs::path& run, Checkpoi
   for (Segment& segment : manifest.segments) count(segment.from_step), count(segment.to_step);
 }
 
-/// Every substeps key may only grow. @throws Error(bad_input)
+/// Checks that substeps keys only grow. @throws Error(bad_input)
 void check_finer(const fs::path& run, const json& before, const json& changed) {
   for (const auto& [key, value] : changed.items()) {
     if (!key.ends_with(".substeps")) continue;
@@ -129,7 +129,7 @@ bool only_finer(const json& changed) {
   return any;
 }
 
-/// What to expect of a run that failed and continues with nothing changed. @param failed summary_failed.json
+/// Warning for a failed run that continues without changes. @param failed summary_failed.json
 std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& failed) {
   const auto text = value_at(failed, "failed.error"), time = value_at(failed, "failed.time_s");
   return fmt::format("{}: failed at t = {} s and will fail again, as nothing is changed: {}", run.string(),
@@ -137,7 +137,7 @@ std::string failure_ahead(const fs::path& run, const nlohmann::ordered_json& fai
                      text.is_string() ? text.get<std::string>() : "");
 }
 
-/// Files count by what they hold, wherever they stand: check_files() compares that.
+/// Files count by their content, at any place: check_files() compares that.
 json with_places_of(json document, const json& other, const scenario::Scenario& scenario) {
   for (const scenario::InputFile& file : scenario.input_files()) {
     std::string pointer = "/" + file.key;
@@ -148,7 +148,7 @@ json with_places_of(json document, const json& other, const scenario::Scenario& 
   return document;
 }
 
-/// The bed between two passes lies in the study's folder, and where that was moved, its name leads nowhere.
+/// The bed between two passes is in the study's folder; if that was moved, the bed's old name is wrong.
 Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
   const json document = read_json_if_whole(file);
   const json named = document.is_object() ? document.value(json::json_pointer("/terrain/bed"), json()) : json();
@@ -160,7 +160,7 @@ Settings bed_of_moved_study(const fs::path& run, const fs::path& file) {
   return {{"terrain.bed", bed.string()}};
 }
 
-/// Compares the scenario of the plan's checkpoint to that which continues, and takes what is changed into the plan.
+/// Compares the scenario of the plan's checkpoint with the one that continues, and puts changes into the plan.
 /// @param failed summary_failed.json @throws Error(bad_input), Error(io) for a scenario that is damaged
 void take_changes(const fs::path& run, const nlohmann::ordered_json& failed, ResumePlan& plan) try {
   ResumePoint& point = plan.point;
@@ -219,7 +219,7 @@ ResumePlan plan_resume(const fs::path& run, const Settings& changed) {
   const bool done = ended == steps || ended_early(run);
   const std::vector<std::string> lost =
       done ? lost_results(run, plan.scenario.output.frame_interval > 0.0) : std::vector<std::string>();
-  // It is made of what the checkpoint at the end and the series hold.
+  // It can be made again from the final checkpoint and the series.
   const bool again = lost.size() == 1 && lost.front() == "results.h5" && !list_checkpoints(run).empty();
   for (const std::string& file : lost)
     plan.warnings.push_back((run / file).string() + (again

@@ -1,4 +1,4 @@
-// A run's segments, and their form in JSON, alike in checkpoints and in summary.json.
+// A run's segments, and their form in JSON, the same in checkpoints and in summary.json.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace furrow::checkpoint {
 
-/// Steps, bytes and lines that a run may come to: two such numbers can be added.
+/// Largest number of steps, bytes and lines of a run: two such numbers can be added.
 inline constexpr std::int64_t kMostSteps = std::int64_t{1} << 62;
 
-/// A stretch of a run that was computed without interruption. Steps are those of the last stretch's run.step.
+/// A part of a run that was computed without interruption. Steps are those of the last part's run.step.
 struct Segment {
   std::int64_t from_step = 0, to_step = 0;
   double wall_s = 0.0;
   int threads = 1;      // of the terrain
-  std::string changed;  // JSON object: keys that were changed when it began, with their new values
-  // Digest of the scenario until then, where this is the same run after a failure, stepped more finely.
+  std::string changed;  // JSON object: keys changed at its beginning, with their new values
+  // Digest of the scenario until then, if this run continues after a failure with finer steps.
   std::string finer_than;
 };
 

@@ -1,4 +1,4 @@
-// Where the file of a table of results stood when a checkpoint was made.
+// Size of a table's file when a checkpoint was made.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace furrow::checkpoint {
 struct SeriesMark {
   std::int64_t bytes = 0, lines = 0;  // lines of values
   std::string checksum;               // of those bytes
-  std::string subject;                // whose table it is: "wheel0", "vehicle"
+  std::string subject;                // of the table: "wheel0", "vehicle"
 };
 void visit_fields(FieldsOf<SeriesMark> auto& s, auto&& visit) {
   visit(s.subject, Field{"subject", ""});

@@ -1,4 +1,4 @@
-// `furrow bed`: prepares the bed of a scenario, keeps it in the cache and says what it is like.
+// `furrow bed`: prepares the bed of a scenario, keeps it in the cache and prints its properties.
 #include <iostream>
 #include <optional>
 #include <vector>
@@ -38,14 +38,14 @@ json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, co
   j["sides"] = o.sides;
   j["size_distribution"] = o.size_spread > 0.0 ? json(o.size_distribution) : json(nullptr);
   j["size_spread"] = o.size_spread;
-  // As found, where a packing was asked for.
+  // The found values, if a packing was asked for.
   std::vector<double> laid{o.settling_friction, o.settling_cohesion, o.settling_drag};
   if (prepared.bed.has("bed/packing")) laid = prepared.bed.get<double>("bed/packing", 3);
   j["settling_friction"] = number_or_null(laid[0]);
   j["settling_cohesion_Pa"] = number_or_null(laid[1]);
   j["settling_drag"] = number_or_null(laid[2]);
   j["compaction_pressure_Pa"] = o.compaction_pressure;
-  j["terrain"] = fields_json(o, role::bed);  // all keys that make the bed
+  j["terrain"] = fields_json(o, role::bed);  // all keys that affect the bed
   j["grains"] = bed.grains;
   j["radius_m"] = o.radius;  // the median by number
   j["radius_median_by_mass_m"] = bed.median_by_mass;

@@ -1,4 +1,4 @@
-// `furrow bench`: how fast this machine steps grains and tires.
+// `furrow bench`: the speed of this machine for grains and tires.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace furrow::commands {
 
-/// Runs a benchmark that returns one JSON object, shows how far it is, and prints what it found. Warns where there are
-/// more threads than cores. @param bench  ends when its progress call throws
+/// Runs a benchmark that returns one JSON object, shows its progress, and prints the result. Warns if there are more
+/// threads than cores. @param bench  ends when its progress call throws
 ExitCode run_bench(int threads, const std::function<std::string(const ProgressCall&)>& bench);
 
 }  // namespace furrow::commands

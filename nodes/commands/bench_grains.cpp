@@ -1,4 +1,4 @@
-// `furrow bench grains`: what the command line says, and the result as JSON.
+// `furrow bench grains`: its command line, and the result as JSON.
 #include <memory>
 #include <string>
 
@@ -22,8 +22,8 @@ struct GrainBench {
   double step = 4e-5;               // s
   int threads = 1;
   int steps = 1000;
-  int warm = 100;       // steps before, not timed
-  double settle = 0.0;  // first settled for that long at most, s
+  int warm = 100;       // steps before the timed ones
+  double settle = 0.0;  // longest settling before that, s
   std::string save;     // CSV that receives the positions before the timed steps; empty: none
 };
 
@@ -60,7 +60,7 @@ terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   return options;
 }
 
-/// Every grain is integrated and every contact evaluated in every step. @param progress may throw
+/// Integrates every grain and evaluates every contact in every step. @param progress may throw
 std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) {
   check(bench);
   const terrain::dem::GrainBenchResult r = terrain::dem::run_grain_bench(

@@ -1,7 +1,7 @@
 // `furrow bench tire`: the tire's own time on hard ground, under the coupling rule of a run.
 //
-// The ground answers one step late; a carriage holds the driven wheel (rigs/rolling_tire.hpp), which turns at constant
-// speed and rolls without pull.
+// The ground's forces act one step late. A carriage holds the driven wheel (rigs/rolling_tire.hpp), which turns at
+// constant speed and rolls without pull.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -39,7 +39,7 @@ struct TireBench {
 constexpr double kTouchdown = 20e3;      // N s/m, vertical damper of the carriage during the touch-down
 constexpr double kTouchdownShare = 0.8;  // of the time before the timed steps
 
-/// The cost of a step, whatever else runs on the machine.
+/// Processor time of a step, which does not depend on other programs.
 double own_time() { return processor_time(CLOCK_THREAD_CPUTIME_ID); }
 
 struct Spent {
@@ -65,7 +65,7 @@ void check(const TireBench& bench) {
   require(bench.renewal >= 0.0 && bench.renewal <= 10.0, "--renewal", "0 to 10");
 }
 
-/// One step; what the tire took of it.
+/// Takes one step. @returns the tire's time in it
 Spent step(rigs::RollingTire& rolling, double damper) {
   rolling.push();
   const double begin = wall_clock(), begin_processor = own_time();
@@ -98,7 +98,7 @@ nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& be
   return json;
 }
 
-/// Value below which the share `p` of the sorted values lies.
+/// Value below which the share `p` of the sorted values is.
 double quantile(const std::vector<double>& sorted, double p) {
   FURROW_ASSERT(!sorted.empty() && std::is_sorted(sorted.begin(), sorted.end()), sorted.size());
   FURROW_ASSERT(p >= 0.0 && p <= 1.0, p);

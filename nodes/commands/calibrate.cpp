@@ -1,4 +1,4 @@
-// `furrow calibrate`: a model fitted to data.
+// `furrow calibrate`: fits a model to data.
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 std::string percent(const Json& share) { return share.is_number() ? digits(100.0 * share.get<double>()) + " %" : "-"; }
 
-/// A single figure, as of a noisy model: what was reached beside what was wanted.
+/// Lines for a single figure, as of a noisy model: the reached and the wanted value.
 std::string figure_lines(const Json& target, const char* how) {
   std::string text;
   for (const Json& f : target["figures"]) {
@@ -40,7 +40,7 @@ std::string figure_lines(const Json& target, const char* how) {
   return text;
 }
 
-/// Of a column such as force_N.
+/// Unit of a column such as force_N.
 std::string unit_of(const std::string& column) { return column.substr(column.rfind('_') + 1); }
 
 std::string target_line(const Json& target, const char* how) {
@@ -55,7 +55,6 @@ std::string target_line(const Json& target, const char* how) {
                      percent(target["largest_error_of_peak"]));
 }
 
-/// The result for people.
 std::string result_text(const Json& summary) {
   std::string text;
   for (const auto& [name, p] : summary["parameters"].items()) {

@@ -1,4 +1,4 @@
-// `furrow list` and `furrow new`: what comes with the program, and a scenario to begin with.
+// `furrow list` and `furrow new`: the files that come with the program, and a first scenario.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -27,7 +27,7 @@ struct Kind {
   const char* name;
   const char* folder;
   const char* use;
-  FileKind holds;  // files of the folder that are of another kind are listed elsewhere
+  FileKind holds;  // files of other kinds in the folder are listed elsewhere
 };
 
 struct ListArguments {
@@ -51,7 +51,7 @@ constexpr Kind kKinds[] = {
     {"vehicles", "vehicle/data", "rig.vehicle of a scenario", FileKind::vehicle},
 };
 
-/// The first sentence of a text, without its full stop. An initial, as in "J. Y. Wong", ends none.
+/// The first sentence of a text, without its full stop. An initial, as in "J. Y. Wong", does not end a sentence.
 std::string first_sentence(const std::string& text) {
   const auto is_initial = [&text](std::size_t letter) {
     return text[letter] >= 'A' && text[letter] <= 'Z' && (letter == 0 || text[letter - 1] == ' ');
@@ -62,7 +62,7 @@ std::string first_sentence(const std::string& text) {
   return first.ends_with('.') ? first.substr(0, first.size() - 1) : first;
 }
 
-/// What a file says of itself in one sentence.
+/// Describes a file in one sentence, from its own text.
 std::string line_of(const Json& file) {
   for (const char* key : {"description", "name"}) {
     if (!file.contains(key) || !file[key].is_string()) continue;

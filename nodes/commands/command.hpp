@@ -1,4 +1,4 @@
-// One command of `furrow`: its line in the help, its options, what it does, and examples.
+// One command of `furrow`: its line in the help, its options, its action, and examples.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace furrow::commands {
 
-/// What a command does once its options are parsed. @throws Error
+/// Action of a command after its options are parsed. @throws Error
 using Action = std::function<ExitCode()>;
 
-/// A command line without the name of the program, and what it is good for.
+/// A command line without the name of the program, and its purpose.
 struct Example {
   std::string_view line, purpose;
 };
@@ -32,12 +32,12 @@ inline constexpr char measure[] = "Measure this machine";
 
 struct Command {
   const char* name;  // "run"; "bench tire": a command below the command `bench`
-  const char* task;  // the heading that it stands under; null below another command
+  const char* task;  // its heading in the help; null for a command below another one
   const char* purpose;
   /// Adds the options. @returns none for a command that only has commands below it
   Action (*options)(CLI::App& command, Typed& typed);
   std::vector<Example> examples;
-  bool quiet = true;  // it prints more than its result, so that it takes --quiet
+  bool quiet = true;  // it prints more than its result, so it has --quiet
 };
 
 }  // namespace furrow::commands

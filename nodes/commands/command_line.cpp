@@ -23,7 +23,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr std::size_t kMaxShown = 400;  // bytes of what the command line has wrong
+constexpr std::size_t kMaxShown = 400;  // bytes of the wrong part of a command line
 
 Error usage_error(const std::string& what) { return input_error("command line", "", what); }
 
@@ -33,7 +33,7 @@ constexpr Example kExamples[] = {
     {"run mine.json --set rig.slip=0.2 --seeds 5", "Get pull and sinkage with intervals."},
 };
 
-/// What a help ends with: the examples, if there are any, and the exit codes.
+/// The end of a help text: the examples, if there are any, and the exit codes.
 std::string closing_words(std::span<const Example> examples) {
   std::size_t width = 0;
   for (const Example& example : examples) width = std::max(width, example.line.size());
@@ -45,13 +45,13 @@ std::string closing_words(std::span<const Example> examples) {
          "another limit ran out, 70 a fault of the program itself, 75 stopped by a signal.";
 }
 
-/// The command whose help says more, with a blank after it.
+/// The command whose help gives details, with a blank after it.
 std::string asked_command(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) return command->get_name() + " " + asked_command(*command);
   return {};
 }
 
-/// CLI11's words, with a guess at what was meant.
+/// CLI11's message, with a guess at the intended word.
 std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -69,8 +69,8 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error, int
   return fmt::format("{}, see furrow {}--help", excerpt(error.what(), kMaxShown), asked_command(app));
 }
 
-/// Names with control characters would make two messages of one. Values of keys may be of several lines. CLI11 takes
-/// the argument that follows for the value of "--out=".
+/// Refuses names with control characters, which would split a message in two. Values of keys may have several lines.
+/// CLI11 reads the argument after "--out=" as its value.
 void check_arguments(int argc, char** argv) {
   bool options = true;  // until "--"
   for (int k = 1; k < argc; ++k) {
@@ -111,7 +111,7 @@ void CommandLine::add(const Command& command) {
   const std::size_t blank = name.rfind(' ');
   CLI::App& parent = blank == std::string::npos ? app_ : *app_.get_subcommand(name.substr(0, blank));
   CLI::App& app = *parent.add_subcommand(name.substr(blank + 1), command.purpose);
-  app.group(command.task ? command.task : "Subcommands");  // not that of the command above it
+  app.group(command.task ? command.task : "Subcommands");  // instead of the parent's group
   app.footer(closing_words(command.examples));
   const Action action = command.options(app, typed_);
   if (!action) {

@@ -1,4 +1,4 @@
-// The command line of `furrow`: what it understands, and what the user chose.
+// The command line of `furrow`: its commands, and the user's choice.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace furrow::commands {
 
 class CommandLine {
  public:
-  /// @param commands  one after those that they are below
+  /// @param commands  each after the command to which it belongs
   CommandLine(int argc, char** argv, std::span<const Command> commands);
   /// @throws Error
   ExitCode execute();

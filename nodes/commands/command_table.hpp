@@ -1,4 +1,4 @@
-// The commands of `furrow`. The source of a command holds its entry.
+// The commands of `furrow`. The source of each command contains its entry.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,6 @@ Command bench_entry();
 Command bench_grains_entry();
 Command bench_tire_entry();
 
-/// In the order of the help.
 std::vector<Command> all_commands();
 
 }  // namespace furrow::commands

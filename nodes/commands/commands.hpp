@@ -1,5 +1,4 @@
-// The command line of `furrow`. Results for machines go to standard output, everything else to standard
-// error.
+// The command line of `furrow`. Results for programs go to standard output, everything else to standard error.
 #pragma once
 
 #include <filesystem>
@@ -20,37 +19,38 @@ using scenario::Settings;
 struct RunArguments {
   std::filesystem::path scenario;
   Settings settings;
-  std::filesystem::path out;  // empty: a fresh folder under results/
+  std::filesystem::path out;  // empty: a new folder under results/
   bool overwrite = false;
   bool profile = false;
   bool plots = true;         // at the end
   bool resume = false;       // continues the run in `out`; `scenario` is not used
-  std::optional<int> seeds;  // beds; none: the scenario's own alone
+  std::optional<int> seeds;  // number of beds; none: only the scenario's own
   std::optional<int> jobs;   // beds at once; none: 1
 };
 
-/// Everything that `furrow` does. @throws Error
+/// @throws Error
 ExitCode run_command_line(int argc, char** argv);
 
 /// `furrow run` or `furrow resume` as one rank of MPI (rank.cpp).
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
-/// @throws Error with what can be said against starting the ranks of a run on this machine
+/// Checks whether this machine can start the ranks of a run. @throws Error with the obstacle
 void require_launch(const scenario::Scenario& scenario);
 /// `furrow run --seeds N` (seeds.cpp). @throws Error
 ExitCode run_on_beds(const RunArguments& arguments);
 
-/// A finished run leaves nothing to do. @param ended s
+/// Reports that a run has already finished. @param ended s
 void tell_finished(const std::filesystem::path& run, double ended);
 
-/// Whether this command line runs as a rank of MPI: run and resume do where a launcher's variables are set. All other
-/// commands ignore them.
+/// Checks whether this command line runs as a rank of MPI: run and resume do so if a launcher's variables are set. All
+/// other commands ignore them.
 bool runs_as_rank(int argc, char** argv);
 
-/// mpirun ends all ranks as soon as one has failed, even the one that is about to say why: the others wait here.
-/// @returns false when nobody ended this rank meanwhile: then it should say it, too
+/// Waits before a rank reports a failure. mpirun ends all ranks as soon as one has failed, even the rank that is about
+/// to report the reason.
+/// @returns false if nobody ended this rank meanwhile: then it should report too
 bool first_rank_speaks();
 
-/// Makes the plots and the page of a run (report.cpp). Its results stand without them: what goes wrong is a warning.
+/// Makes the plots and the page of a run (report.cpp). The results do not need them, so an error is only a warning.
 /// @returns the files, none if something went wrong
 std::vector<std::filesystem::path> make_report_or_warn(const std::filesystem::path& run);
 /// `furrow validate` of a vehicle's file (vehicle.cpp). @throws Error
@@ -61,8 +61,8 @@ ExitCode validate_calibration(const std::string& name, bool json);
 /// The text that ends a run, from summary.json (result.cpp).
 std::string result_text(const std::filesystem::path& run, const scenario::Scenario& scenario);
 
-/// Whether a result is what the scenario is known to give; empty where it says nothing. Means over `beds` are expected
-/// closer to it than those of one bed, by √beds.
+/// Compares a result with the scenario's expected one; empty if it expects nothing. The tolerance for means over `beds`
+/// is smaller than that for one bed, by √beds.
 std::string expected_text(const scenario::ExpectedResult& expected, int beds, double pull, double sinkage,
                           double rut_depth);
 
@@ -78,7 +78,7 @@ template <class First, class... More>
 void print_warning(fmt::format_string<First, More...> text, First&& first, More&&... more) {
   print_warning(fmt::format(text, std::forward<First>(first), std::forward<More>(more)...));
 }
-/// Before it, what looks odd about the scenario that is refused with it.
+/// Prints the warnings of a refused scenario before the error.
 void print_error(const Error& error);
 
 }  // namespace furrow::commands

@@ -32,7 +32,7 @@ ExitCode list_events(const EventsArguments& arguments) {
   std::cout << finished.output;
   const int code = WIFEXITED(finished.status) ? WEXITSTATUS(finished.status) : -1;
   if (code == static_cast<int>(ExitCode::done)) return ExitCode::done;
-  // These it has explained itself.
+  // The script has reported these itself.
   for (const ExitCode told : {ExitCode::bad_input, ExitCode::io})
     if (code == static_cast<int>(told)) return told;
   throw io_error(arguments.directory.string(), launch::stop_signalled()

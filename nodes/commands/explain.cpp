@@ -1,4 +1,4 @@
-// `furrow explain`: what a key of a scenario or of a calibration study means.
+// `furrow explain`: the meaning of a key of a scenario or of a calibration study.
 #include <memory>
 #include <string>
 

@@ -26,10 +26,10 @@ constexpr double kMostPressure = 1e8;  // Pa
 
 struct ModesArguments {
   std::string tire;           // file, as given or in tire/data/
-  std::filesystem::path out;  // empty: a fresh folder under results/
+  std::filesystem::path out;  // empty: a new folder under results/
   bool overwrite = false;
   bool plots = true;
-  bool csv = false, json = false;     // printed, in place of a folder
+  bool csv = false, json = false;     // print instead of making a folder
   std::optional<int> orders;          // highest circumferential order; none: 8, or half of the elements around
   std::optional<int> count;           // frequencies of each order; none: 3, or the unknowns of a section
   std::optional<double> pressure;     // gauge, Pa; none: the file's
@@ -83,7 +83,7 @@ tire::ModesResults compute(const tire::ModalTest& test, const tire::ModesOptions
   return results;
 }
 
-/// The lowest frequency of all in a line, or what is not stable.
+/// The lowest frequency of all in one line, or the instability.
 std::string result_line(const tire::ModesResults& results) {
   const auto lowest = std::ranges::min_element(results.modes, {}, &tire::Mode::frequency);
   return fmt::format("furrow: lowest frequency {} Hz, of order {}\n", digits(lowest->frequency), lowest->order);

@@ -22,11 +22,11 @@ namespace furrow::commands {
 namespace {
 
 constexpr int kFormatVersion = 1;
-constexpr double kMostCamber = 0.7;  // rad, as of the rig
+constexpr double kMostCamber = 0.7;  // rad, same as the rig's limit
 
-/// What is not given is as the section `press` of the scenario says.
+/// Options that are not given have the values of the scenario's section `press`.
 struct PressArguments {
-  std::filesystem::path out;  // empty: a fresh folder under results/
+  std::filesystem::path out;  // empty: a new folder under results/
   bool overwrite = false;
   std::optional<std::string> on;                    // plate | cleat | profile
   std::filesystem::path profile;                    // CSV; empty: none
@@ -38,7 +38,7 @@ struct PressArguments {
   std::optional<double> cleat_position;             // of its middle, forward of the axle, m
 };
 
-/// An option overrides the scenario's key; the schema has checked the latter.
+/// An option overrides the scenario's key; the schema has checked the key.
 tire::PressOptions press_options(const scenario::Scenario& scenario, const PressArguments& arguments) {
   const scenario::PressKeys& keys = scenario.press;
   const std::string on = arguments.on.value_or(keys.on);
@@ -90,7 +90,7 @@ std::unique_ptr<tire::StaticTest> static_test(const scenario::Scenario& scenario
                     tire.describe().name);
 }
 
-/// The answer in a line, from the summary; empty where the load was not reached.
+/// The result in one line, from the summary; empty if the load was not reached.
 std::string result_line(const nlohmann::ordered_json& summary) {
   if (summary["deflection_m"].is_null()) return "";
   const auto in = [](const nlohmann::ordered_json& value, double unit) { return digits(value.get<double>() / unit); };
@@ -103,7 +103,6 @@ std::string result_line(const nlohmann::ordered_json& summary) {
                      in(summary["secant_stiffness_N_per_m"], 1e3), patch);
 }
 
-/// What a user may do where the load was not reached.
 std::string not_reached(const tire::PressOptions& options, const tire::PressResults& results) {
   if (results.at_load.force == 0.0)
     return fmt::format(

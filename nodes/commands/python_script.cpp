@@ -26,15 +26,14 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kPython = "/usr/bin/python3";
 
-constexpr std::string_view kShare = "progress ";  // begins a line of standard output that says how far it is
+constexpr std::string_view kShare = "progress ";  // begins a line of standard output with the share done
 
-/// A stream of the script, read line by line.
 class Lines {
  public:
   using Call = std::function<void(const std::string& line)>;
   explicit Lines(Call call) : call_(std::move(call)) {}
 
-  /// Reads what there is. @returns false at the end of the stream
+  /// Reads the available text. @returns false at the end of the stream
   bool read_from(int stream) {
     std::array<char, 4096> bytes;
     const ssize_t count = read(stream, bytes.data(), bytes.size());
@@ -51,7 +50,7 @@ class Lines {
 
  private:
   Call call_;
-  std::string rest_;  // of a line whose end has not come yet
+  std::string rest_;  // a line without its end so far
 };
 
 Finished run_program(std::vector<std::string> command, const PythonScript& script) {
@@ -79,7 +78,7 @@ Finished run_program(std::vector<std::string> command, const PythonScript& scrip
   });
   std::array<pollfd, 2> streams{pollfd{.fd = out.read, .events = POLLIN, .revents = 0},
                                 pollfd{.fd = err.read, .events = POLLIN, .revents = 0}};
-  while (streams[0].fd >= 0 || streams[1].fd >= 0) {  // poll() passes over what is below 0
+  while (streams[0].fd >= 0 || streams[1].fd >= 0) {  // poll() ignores negative descriptors
     const int ready = poll(streams.data(), streams.size(), script.deadline ? 500 : -1);  // ms
     if (launch::stop_signalled()) kill(child, SIGTERM);
     if (script.deadline && !finished.too_late && Clock::now() > *script.deadline) {

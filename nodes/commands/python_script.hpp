@@ -1,5 +1,5 @@
-// Scripts of scripts/, run by Debian's own Python, whatever python stands first on PATH, and isolated (-I) from what
-// the user's environment and folders have for Python.
+// Runs scripts of scripts/ with Debian's own Python, whatever python is first on PATH. It is isolated (-I) from Python
+// settings in the user's environment and folders.
 #pragma once
 
 #include <chrono>
@@ -14,13 +14,13 @@ namespace furrow::commands {
 struct PythonScript {
   std::string name;                            // in scripts/
   std::vector<std::string> arguments = {};     // options; the folders follow them
-  std::vector<std::filesystem::path> folders;  // that it reads; messages name the first
-  std::string what;                            // it makes, for errors: "plots"
-  /// Bytes that it must have: a plot takes 300 MB, and numpy's BLAS waits for ever for less.
+  std::vector<std::filesystem::path> folders;  // to read; messages name the first
+  std::string what;                            // its product, for errors: "plots"
+  /// Bytes that it needs: a plot takes 300 MB, and numpy's BLAS waits forever with less.
   double address_space = 512e6;
-  bool quiet = false;                                                  // nothing on standard error
+  bool quiet = false;                                                  // it prints nothing on standard error
   std::optional<std::chrono::steady_clock::time_point> deadline = {};  // when it is ended
-  /// Given both, the script is asked to say how far it is, and its standard error comes line by line.
+  /// If both are given, the script reports its progress, and its standard error is passed on line by line.
   std::function<void(double share)> progress = {};
   std::function<void(const std::string& line)> message = {};
 };
@@ -28,7 +28,7 @@ struct PythonScript {
 struct Finished {
   int status = 0;         // of waitpid
   std::string output;     // standard output, without the lines of progress
-  bool too_late = false;  // it was ended at the deadline
+  bool too_late = false;  // it exceeded the deadline and was ended
 };
 
 /// Runs a script to its end; a stop signal or the deadline ends it.

@@ -35,7 +35,7 @@ namespace {
 constexpr auto kTimeForNews = std::chrono::milliseconds(300);
 constexpr std::chrono::milliseconds kTimeToSpeak(1500), kTick(50);
 
-/// Reports to the supervisor, or to the user where there is none.
+/// Reports to the supervisor, or to the user if there is none.
 class RankReporter {
  public:
   RankReporter() : supervised_(std::getenv(launch::kSupervisedVariable) != nullptr), rank_(launched_rank()) {}
@@ -43,11 +43,11 @@ class RankReporter {
   bool supervised() const { return supervised_; }
   int rank() const { return rank_; }
 
-  /// How far it has come: begun, read, started, ended.
+  /// Reports a stage: begun, read, started, ended.
   void stage(launch::RankLine::Kind kind, ExitCode code = ExitCode::done) const {
     if (supervised_) send({kind, rank_, {}, code, {}});
   }
-  /// Memory or threads may run out where nothing can be said any more.
+  /// Prepares messages for when memory or threads run out and nothing else can be printed.
   void prepare_last_words(void (&end_where)(const std::string&, int), const Error& words) const {
     if (supervised_)
       end_where(launch::encode({launch::RankLine::Kind::error, rank_, words.what(), words.code(), {}}), STDOUT_FILENO);
@@ -63,7 +63,7 @@ class RankReporter {
   void error(const Error& error) {
     if (supervised_) {
       send({launch::RankLine::Kind::error, rank_, error.what(), error.code(), {}});
-      std::this_thread::sleep_for(kTimeForNews);  // mpirun may drop the last words of a rank that ends at once
+      std::this_thread::sleep_for(kTimeForNews);  // mpirun may drop the last output of a rank that ends at once
       return;
     }
     display_.clear();
@@ -81,24 +81,24 @@ class RankReporter {
   void clear() { display_.clear(); }
 
  private:
-  /// One write, so that lines of several ranks do not mix.
+  /// Uses one write, so that lines of several ranks do not mix.
   static void send(const launch::RankLine& line) {
     const std::string text = launch::encode(line);
-    if (write(STDOUT_FILENO, text.data(), text.size()) < 0) return;  // nobody listens: nobody needs it
+    if (write(STDOUT_FILENO, text.data(), text.size()) < 0) return;  // nobody listens
   }
   bool supervised_;
   int rank_;
   launch::ProgressDisplay display_;
 };
 
-/// Every rank finds a mistake in the scenario; the first on each machine reports it.
+/// Every rank finds a mistake in the scenario; only the first on each machine reports it.
 bool first_on_machine() {
   for (const char* variable : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"})
     if (const char* value = std::getenv(variable)) return std::atoi(value) == 0;
   return launched_rank() == 0;
 }
 
-/// True when a node before this one has the same failure and reports it. A supervisor gets all and reports one.
+/// True if a node before this one has the same failure and reports it. A supervisor gets all reports and prints one.
 bool told_by_another(Transport& transport, const Error& error, bool supervised) {
   const Address self = transport.self();
   if (supervised || self == Address{Role::rig, 0}) return false;
@@ -113,7 +113,7 @@ bool told_by_another(Transport& transport, const Error& error, bool supervised) 
   return false;
 }
 
-/// Another run may have had the folder until now, and continued from where this one meant to.
+/// Refuses if another run has held the folder until now and continued from the same checkpoint.
 void require_same_start(const std::filesystem::path& run, const checkpoint::ResumePoint& resume) {
   if (checkpoint::last_checkpoint(run).manifest.step != resume.manifest.step)
     throw input_error(run.string(), "", "was continued by another run until now, expected furrow resume once more");
@@ -138,7 +138,7 @@ std::filesystem::path agree_on_directory(Transport& transport, const scenario::S
   return made->path();
 }
 
-/// @param held by ranks with a supervisor, from their beginning
+/// @param held by ranks with a supervisor, from their start
 ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario, const checkpoint::ResumePoint* resume,
                        const RunArguments& arguments, RankReporter& reporter, std::optional<launch::HeldFolder>& held) {
   std::optional<launch::RunDirectory> made;
@@ -172,7 +172,7 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     return code;
   } catch (const PeerFailure& failure) {
     if (made && failure.code() == ExitCode::bad_input) made->discard();
-    return failure.code();  // the rank that failed has informed the user
+    return failure.code();  // the failed rank has informed the user
   } catch (const Error& error) {
     if (made && error.code() == ExitCode::bad_input) made->discard();
     if (!told_by_another(transport, error, reporter.supervised())) reporter.error(error);
@@ -188,13 +188,12 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
   }
 }
 
-/// What a rank computes, and from where.
 struct Task {
   std::optional<scenario::Scenario> scenario;
   checkpoint::ResumePlan plan;
 };
 
-/// The terrain's machine must have room for it.
+/// Reads the task; the terrain's machine must have the memory for it.
 void read_task(const RunArguments& arguments, Task& task) try {
   if (arguments.resume) task.plan = checkpoint::plan_resume(arguments.out, arguments.settings);
   if (task.plan.finished) return;
@@ -221,9 +220,9 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
   launch::catch_stop_signals();
   RankReporter reporter;
   if (reporter.supervised()) launch::end_on_loss_of_supervisor();
-  if (!launch::supervisor_lives()) return ExitCode::stopped;  // killed while mpirun could not hand the signal on yet
+  if (!launch::supervisor_lives()) return ExitCode::stopped;  // killed before mpirun could pass the signal on
   reporter.stage(launch::RankLine::Kind::begun);
-  hdf5::prepare();  // it opens itself on first use, and crashes where memory has run out by then
+  hdf5::prepare();  // HDF5 opens itself on first use, and would crash if memory has run out by then
   Task task;
   std::optional<launch::HeldFolder> held;
   try {
@@ -252,7 +251,8 @@ ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv) {
     return error.code();
   }
   launch::catch_stop_signals();  // from now on state can be saved
-  // After the session of MPI has begun: its end is not waited for then, and its failures are not taken for these.
+  // Set after the session of MPI has begun: then its end is not waited for, and its failures are not mistaken for
+  // these.
   reporter.prepare_last_words(launch::end_where_no_thread_starts, limit_error(launch::kNoThread));
   reporter.stage(launch::RankLine::Kind::started);
   const ExitCode code =

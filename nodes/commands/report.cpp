@@ -1,4 +1,4 @@
-// The plots of a run and its page, or the page that compares several, made by scripts/report.py.
+// Makes the plots of a run and its page, or a page that compares several runs, with scripts/report.py.
 #include <sys/wait.h>
 
 #include <chrono>
@@ -25,10 +25,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kPatience{60};  // for plots that nobody asked for
-constexpr std::chrono::seconds kShort{5};      // what takes no longer needs no progress, unless it was asked for
+constexpr std::chrono::seconds kPatience{60};  // for plots that were not asked for
+constexpr std::chrono::seconds kShort{5};      // progress is shown if it takes longer, or if asked for
 
-/// Shows how far the script is. `display` outlives it.
+/// Shows the progress of the script. `display` outlives it.
 void show_progress(PythonScript& script, launch::ProgressDisplay& display, const std::string& phase, bool unasked) {
   const Clock::time_point shown_from = Clock::now() + (unasked ? kShort : std::chrono::seconds{0});
   script.progress = [&display, phase, shown_from](double share) {
@@ -38,21 +38,19 @@ void show_progress(PythonScript& script, launch::ProgressDisplay& display, const
 }
 
 struct ReportArguments {
-  std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a page that compares them
-  std::filesystem::path out = {};           // folder of what is made; empty: that of the run
-  bool unasked = false;                     // by another command: no messages, and no longer than a minute
+  std::vector<std::filesystem::path> runs;  // one: its plots and page; several: a comparing page
+  std::filesystem::path out = {};           // folder for the files; empty: the run's folder
+  bool unasked = false;                     // made by another command: no messages, at most a minute
 };
 
-/// As typed.
 struct ReportRequest {
   std::string run;                  // folder
   std::vector<std::string> others;  // folders of runs, on one page with it
   std::filesystem::path out;        // empty: the run's folder
-  std::string soil, vtk;            // soil.json to add the theory of; folder for VTP files; empty: none
+  std::string soil, vtk;            // soil.json for the theory; folder for VTP files; empty: none
 };
 
-/// Plots and page of a run, or the page of several. @returns none if the
-/// script said why. @throws Error
+/// Makes plots and page of a run, or the page of several. @returns none if the script reported an error. @throws Error
 std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   for (const auto& run : report.runs) {
     launch::require_run_directory(run);
@@ -94,7 +92,7 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
 }
 
 /// Writes the frames of a run as VTP files into a new folder, and prints the names of the lists of these files.
-/// @returns how it ended; the script has said what was wrong. @throws Error
+/// @returns its exit code; the script has reported any error. @throws Error
 ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder) {
   PythonScript script{
       .name = "frames_vtk.py", .arguments = {"--out", folder.string()}, .folders = {run}, .what = "VTP files"};
@@ -133,7 +131,7 @@ ExitCode report(const ReportRequest& asked) {
     const std::string theory = terrain::soil::write_soil_estimate(asked.run, asked.soil);
     launch::say("furrow: " + theory + "\n");
   }
-  if (!asked.vtk.empty()) {  // first: a folder that is refused must not wait for the plots
+  if (!asked.vtk.empty()) {  // done first: a refused folder must not wait for the plots
     launch::say("furrow: writing the frames to " + asked.vtk + "\n");
     if (const ExitCode code = write_vtk(asked.run, asked.vtk); code != ExitCode::done) return code;
   }

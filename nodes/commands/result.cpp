@@ -1,4 +1,4 @@
-// The last lines of a run: what it found, from its summary.
+// The last lines of a run: its results, from its summary.
 #include <cmath>
 #include <map>
 
@@ -20,7 +20,7 @@ namespace {
 using json = nlohmann::ordered_json;
 using checkpoint::number_at;
 
-constexpr double kDeep = 0.5, kHigh = 0.05;  // sinkage, radii, beyond which a wheel is warned of
+constexpr double kDeep = 0.5, kHigh = 0.05;  // sinkage, radii, beyond which a warning is printed
 
 json summary_of(const std::filesystem::path& run) {
   json summary = checkpoint::read_summary(run);
@@ -28,7 +28,7 @@ json summary_of(const std::filesystem::path& run) {
   return summary;
 }
 
-/// The verdict on the communication step; nothing where it is good.
+/// The verdict on the communication step; empty if it is good.
 std::string step_line(const json& summary, const scenario::Scenario& scenario) {
   const json judged = summary.value("interface", json::object());
   if (judged.value("ok", json()) != json(false)) return "";
@@ -75,7 +75,7 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
          expected_text(scenario.expected, 1, mean, number_at(summary, "sinkage_m"), number_at(summary, "rut_depth_m"));
 }
 
-/// What published regressions expect of the pull, those that do not hold here apart; nothing without a cone index.
+/// The pull by published regressions, with those that do not hold here apart; empty without a cone index.
 std::string regressions_line(const json& wheel) {
   const json found = wheel.value("regressions", json());
   if (!found.is_object()) return "";
@@ -91,7 +91,7 @@ std::string regressions_line(const json& wheel) {
   return text + "\n";
 }
 
-/// What each rank did; a table where there are more than rig, one tire and terrain.
+/// Time of each rank; a table if there are more than rig, one tire and terrain.
 std::string ranks_text(const json& summary) {
   std::vector<std::string> parts;
   const json ranks = summary.value("ranks", json::array());
@@ -112,7 +112,7 @@ std::string ranks_text(const json& summary) {
   return parts.empty() ? "\n" : fmt::format(": {}\n", fmt::join(parts, ", "));
 }
 
-/// Whether the run's accounts close, and what fails if they do not.
+/// Whether the run's accounts close; if not, what does not.
 std::string accounts_line(const json& summary) {
   const json accounts = summary.value("accounts", json::object());
   const json energy = accounts.value("energy", json::object()), momentum = accounts.value("momentum", json::object());
@@ -138,7 +138,7 @@ std::string accounts_line(const json& summary) {
   return text;
 }
 
-/// Lines on tables that are not a wheel's: of a vehicle its distance and its power.
+/// Lines on tables other than a wheel's: distance and power of a vehicle.
 std::string subject_lines(const json& summary, double average_from) {
   std::string text;
   const json subjects = summary.value("subjects", json::object());
@@ -154,9 +154,9 @@ std::string subject_lines(const json& summary, double average_from) {
   return text;
 }
 
-/// Of a wheel that stands where no wheel drives. @param yields  the ground does, so that no wheel can climb it
+/// Warning for a wheel in a place where no wheel drives. @param yields  the ground gives way, so no wheel can climb it
 std::string place_warning(const json& wheel, bool yields) {
-  if (number_at(wheel, "interface_work_J") == 0.0) return "";  // it has not come down yet
+  if (number_at(wheel, "interface_work_J") == 0.0) return "";  // it has not touched the ground yet
   const double share = number_at(wheel, "sinkage_m") / number_at(wheel, "tire_radius_m");
   if (share > kDeep)
     return fmt::format(
@@ -171,7 +171,6 @@ std::string place_warning(const json& wheel, bool yields) {
   return "";
 }
 
-/// Of a run that ended before its planned end.
 std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
   const std::string reason = summary.value("end_reason", std::string("run_end"));
   if (reason == "run_end") return "";
@@ -186,7 +185,7 @@ std::string end_lines(const json& summary, const scenario::Scenario& scenario) {
   return text;
 }
 
-/// Of each kind of event how often it came, where first, and how long in all.
+/// For each kind of event its number, its first time, and its total duration.
 std::string event_lines(const json& summary) {
   struct Kind {
     int count = 0;

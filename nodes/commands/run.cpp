@@ -1,5 +1,4 @@
-// `furrow run` and `furrow resume` outside MPI: check first, then have the ranks started and watched, then show the
-// result.
+// `furrow run` and `furrow resume` outside MPI: checks first, then starts and watches the ranks, then shows the result.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -29,7 +28,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr const char* kDone = "summary.json";  // is in the folder if and only if the run is done
+constexpr const char* kDone = "summary.json";  // is in the folder if and only if the run is complete
 
 std::vector<std::string> rank_arguments(const RunArguments& arguments, const std::filesystem::path& directory) {
   std::vector<std::string> list{arguments.resume ? "resume" : "run"};
@@ -55,7 +54,7 @@ void tell_result(const scenario::Scenario& scenario, const std::filesystem::path
     launch::say("furrow: plots: {} and {} more\n", made.front().string(), made.size() - 1);
 }
 
-/// What can be done with a run that did not finish. Physics that failed fails again where nothing is changed.
+/// Prints how to continue a run that did not finish. A failure of physics repeats itself if nothing is changed.
 void tell_how_to_continue(const std::filesystem::path& directory, const launch::LaunchResult& result,
                           const scenario::Scenario& scenario) {
   const std::string folder = scenario::shell_quoted(directory.string());
@@ -74,14 +73,14 @@ void tell_how_to_continue(const std::filesystem::path& directory, const launch::
     std::fprintf(stderr, "furrow: to continue from the last checkpoint: furrow resume %s\n", folder.c_str());
 }
 
-/// When the file was written; the beginning of time if it is not there.
+/// Time when the file was written; the earliest time if it does not exist.
 std::filesystem::file_time_type written(const std::filesystem::path& file) {
   std::error_code error;
   const auto at = std::filesystem::last_write_time(file, error);
   return error ? std::filesystem::file_time_type::min() : at;
 }
 
-/// Why a run ended that leaves nothing of its own. @param what  became of the folder
+/// Prints why a run ended that leaves no files. @param what  happened to the folder
 void tell_end(const launch::LaunchResult& result, const std::string& what) {
   if (result.code == ExitCode::stopped)
     std::fprintf(stderr, "furrow: %s\n", result.error.c_str());
@@ -90,7 +89,7 @@ void tell_end(const launch::LaunchResult& result, const std::string& what) {
   std::fprintf(stderr, "furrow: %s\n", what.c_str());
 }
 
-/// summary_failed.json of a run whose rig could not write it: why, without means.
+/// Writes summary_failed.json of a run whose rig could not write it: the reason, without means.
 void write_failure(const std::filesystem::path& file, const scenario::Scenario& scenario,
                    const launch::LaunchResult& result) {
   const nlohmann::ordered_json json{
@@ -102,7 +101,7 @@ void write_failure(const std::filesystem::path& file, const scenario::Scenario& 
   try {
     write_whole_file(file, json.dump(2) + "\n");
   } catch (const Error&) {
-    // The failure itself is reported. A full disk is named in its text or by the next command.
+    // The failure itself is reported. Its text or the next command reports a full disk.
   }
 }
 
@@ -124,13 +123,13 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
     directory.discard();
     throw;
   }
-  if (!directory.lock().stands()) {  // what there is of the run is not where its path says
+  if (!directory.lock().stands()) {  // the run's files are not at its path
     print_error(result.error.empty() ? directory.path().string() + ": was moved or removed as the run ended"
                                      : result.error);
     return result.code == ExitCode::done ? ExitCode::io : result.code;
   }
   const bool finished = result.code != ExitCode::done && written(directory.path() / kDone) > done_before;
-  if (finished && result.code == ExitCode::io) {  // the checkpoint of the end is missing
+  if (finished && result.code == ExitCode::io) {  // the final checkpoint is missing
     tell_result(scenario, directory.path(), arguments.plots);
     print_error(result.error);
     std::cout << directory.path().string() << "\n";
@@ -176,7 +175,7 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   return result.code;
 }
 
-/// srun without MPI starts as many supervisors as ranks were wanted: they would fight for the folder.
+/// srun without MPI starts as many supervisors as ranks, which would compete for the folder.
 void refuse_tasks_without_mpi() {
   const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
   if (!tasks || std::atoi(tasks) < 2) return;

@@ -1,4 +1,4 @@
-// `furrow schema`: the JSON schemas of the files that people write, for editors and scripts.
+// `furrow schema`: the JSON schemas of the users' files, for editors and scripts.
 #include <array>
 #include <iostream>
 #include <memory>

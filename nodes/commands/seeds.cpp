@@ -33,7 +33,7 @@ void require_options(const RunArguments& arguments) {
   require_option(!arguments.profile, "--profile", "is given with --seeds, expected it for a run on one bed");
 }
 
-/// "sinkage 21.0 ± 0.6 mm", empty where it was not measured.
+/// "sinkage 21.0 ± 0.6 mm", empty if it was not measured.
 std::string figure_text(const Json& wheel, const char* words, const char* figure, double scale, const char* unit) {
   const double mean = number_at(wheel, std::string(figure) + ".mean");
   if (!std::isfinite(mean)) return "";

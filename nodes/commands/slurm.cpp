@@ -1,6 +1,6 @@
-// `furrow ranks --slurm`: the batch script that runs a scenario under Slurm, as long as it takes. Slurm signals the job
-// some minutes before its time is over; the run saves its state and ends with 75; the job is queued again and continues
-// (scripts/cluster/README.md).
+// `furrow ranks --slurm`: a batch script that runs a scenario under Slurm, however long it takes. Slurm signals
+// the job some minutes before its time is over. The run then saves its state and ends with 75, and the job is queued
+// again and continues (scripts/cluster/README.md).
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -19,11 +19,11 @@
 namespace furrow::commands {
 namespace {
 
-constexpr int kWarning = 360;     // s before its end that Slurm signals the job: a checkpoint and Slurm's own delays
-constexpr int kLeastWork = 120;   // s that a start has before that
-constexpr int kMostRestarts = 3;  // of a job that never came to its first checkpoint
+constexpr int kWarning = 360;            // s before a job's end when Slurm signals it: a checkpoint and Slurm's delays
+constexpr int kLeastWork = 120;          // s of work before that signal, at least
+constexpr int kMostRestarts = 3;         // of a job that never reached its first checkpoint
 constexpr double kMemoryMargin = 1.3;    // of the estimate
-constexpr double kMemoryOfRank = 256e6;  // bytes beside it, of libraries and files
+constexpr double kMemoryOfRank = 256e6;  // bytes in addition, for libraries and files
 constexpr double kMebibyte = 1048576.0;
 
 Error wrong(const std::string& option, const std::string& what) { return input_error("command line", option, what); }
@@ -34,8 +34,8 @@ void check_word(const std::string& option, const std::string& value) {
     throw wrong(option, "is '" + value + "', expected a name as Slurm has them");
 }
 
-/// Of a time as Slurm reads it, s: minutes[:seconds], hours:minutes:seconds or
-/// days-hours[:minutes[:seconds]]; none: it is no time.
+/// Converts a time as Slurm reads it to s: minutes[:seconds], hours:minutes:seconds or days-hours[:minutes[:seconds]];
+/// none: it is not a time.
 std::optional<double> seconds_of(const std::string& time) {
   static const std::regex kShort("([0-9]{1,7})(?::([0-5]?[0-9]))?");
   static const std::regex kHours("([0-9]{1,5}):([0-5]?[0-9]):([0-5]?[0-9])");
@@ -57,12 +57,12 @@ void check_time(const std::string& time) {
                                       time, (kWarning + kLeastWork) / 60, kWarning / 60));
 }
 
-/// How the ranks fall on the nodes: `each` on every one, in their order, fewer on the last.
+/// Distribution of the ranks on the nodes: `each` on every node, in their order, fewer on the last.
 struct Layout {
   int ranks = 0, nodes = 1, each = 0;
 };
 
-/// As Slurm counts them: on one node furrow starts its ranks itself.
+/// Tasks as Slurm counts them: on one node, furrow starts its ranks itself.
 int tasks_of_node(const Layout& layout) { return layout.nodes == 1 ? 1 : layout.each; }
 
 Layout layout_of(const scenario::Scenario& scenario, const SlurmArguments& job) {
@@ -84,7 +84,7 @@ Layout layout_of(const scenario::Scenario& scenario, const SlurmArguments& job) 
   return layout;
 }
 
-/// The ranks of one node, as they will find it.
+/// The ranks of one node, as they will see it.
 launch::HostView host_view(const Layout& layout, int node, int tires, int cores) {
   launch::HostView host;
   host.machine_cores = cores;
@@ -141,7 +141,7 @@ std::string directives(const scenario::Scenario& scenario, const SlurmArguments&
   return text;
 }
 
-/// This program; of an installed tree the command that takes the build for the processor where the job runs.
+/// Path of this program; in an installed tree, the command that chooses the build for the job's processor.
 std::filesystem::path program_for_all_nodes() {
   std::error_code error;
   const std::filesystem::path own = this_program();
@@ -151,7 +151,7 @@ std::filesystem::path program_for_all_nodes() {
   return installed && std::filesystem::is_regular_file(command, error) ? command : own;
 }
 
-/// What is the same in every script: how a job begins, and how it is queued again.
+/// The common part of every script: how a job begins, and how it is queued again.
 constexpr const char* kBody = R"(
 start=("$program" run "${{settings[@]}}" --out="$run" -- "$scenario")
 if [[ ${{SLURM_RESTART_COUNT:-0}} -gt 0 ]]; then
@@ -228,7 +228,7 @@ std::string slurm_script(const scenario::Scenario& scenario, const SlurmArgument
   text += "program=" + full(program) + "\n";
   text += "scenario=" + full(scenario.file) + "\n";
   text += "settings=(" + list + ")\n";
-  // The folder of the results: the same each time that this job is started.
+  // The results' folder is the same each time this job starts.
   text += "run=" +
           (job.out.empty() ? "results/" + scenario::shell_quoted(scenario.name) + "-job$SLURM_JOB_ID" : full(job.out)) +
           "\n";

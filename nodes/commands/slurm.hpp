@@ -12,12 +12,12 @@ namespace furrow::commands {
 
 struct SlurmArguments {
   int nodes = 1;
-  int cores_per_node = 0;                // 0: whole nodes, whatever they have
-  std::string partition, time, account;  // empty: as the cluster has it
-  std::filesystem::path out;             // empty: results/<scenario>-job<number of the job>
+  int cores_per_node = 0;                // 0: whole nodes of any size
+  std::string partition, time, account;  // empty: the cluster's defaults
+  std::filesystem::path out;             // empty: results/<scenario>-job<job number>
 };
 
-/// --slurm, and the options of the job, which need it. @returns --slurm
+/// Adds --slurm, and the options of the job, which need it. @returns --slurm
 CLI::Option* add_slurm_options(CLI::App& command, SlurmArguments& job);
 
 /// @throws Error(bad_input)

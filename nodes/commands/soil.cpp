@@ -20,26 +20,25 @@ namespace furrow::commands {
 namespace {
 
 struct SoilArguments {
-  std::filesystem::path out;  // empty: a fresh folder under results/
+  std::filesystem::path out;  // empty: a new folder under results/
   bool overwrite = false;
   bool quick = false;
   int seeds = 3;
   double speed = 0.1;                                // of the tools, m/s
-  std::vector<std::string> only;                     // tests; empty: all but that of the interface
-  double friction = -1.0;                            // of the interface test, -; negative: as among the grains
+  std::vector<std::string> only;                     // tests; empty: all but the interface test
+  double friction = -1.0;                            // of the interface test, -; negative: same as between grains
   std::vector<double> stresses;                      // of the shear tests, Pa; empty: the usual ones
   std::vector<double> discs, strips, cones, depths;  // m; empty: sizes in grain radii
-  double sinkage = 0.0, bed_width = 0.0;             // m; 0: as soil_plan() says
+  double sinkage = 0.0, bed_width = 0.0;             // m; 0: by soil_plan()
   bool own_bed = false;
 };
 
 constexpr double kMostGrains = 5e6;    // of a bed
-constexpr double kGrainSteps = 3e6;    // in a second of one core, about
+constexpr double kGrainSteps = 3e6;    // per second of one core, approximately
 constexpr double kManySteps = 1e10;    // about an hour
 constexpr double kLeastPlate = 5.0;    // diameters of a grain across a plate
-constexpr double kLeastSinkage = 1.2;  // diameters of a grain: curves are fitted from one diameter on
+constexpr double kLeastSinkage = 1.2;  // diameters of a grain: fits of curves begin at one diameter
 
-/// What is wrong with plates, cones and beds in metres.
 void check_metres(const terrain::dem::DemOptions& grains, const SoilArguments& a) {
   const auto each = [](const char* option, const std::vector<double>& sizes) {
     for (const double size : sizes)
@@ -78,7 +77,6 @@ void check_metres(const terrain::dem::DemOptions& grains, const SoilArguments& a
                              number_text(most)));
 }
 
-/// What is wrong with tests on the scenario's own bed.
 void check_own_bed(const scenario::Scenario& scenario, const terrain::dem::DemOptions& grains, const SoilArguments& a) {
   if (!a.own_bed) return;
   require_option(!a.quick, "--quick", "has small boxes, expected it without --own-bed");
@@ -142,9 +140,9 @@ terrain::soil::SoilOptions soil_options(const terrain::dem::DemOptions& grains, 
   const bool plates = !o.discs.empty() || !o.strips.empty();
   require_option(only.empty() || !o.plate || plates, "--own-bed", "expected --disc, the size of the plate, m");
   o.plate &= plates;
-  o.cone &= !only.empty() || !o.cones.empty();  // those in grain radii may be too large for the bed
+  o.cone &= !only.empty() || !o.cones.empty();  // cones in grain radii may be too large for the bed
   require_option(o.plate || o.cone, "--own-bed", "expected --disc or --cone, the size of what is pushed in, m");
-  o.seeds = grains.bed.empty() ? o.seeds : 1;  // of a file there is one
+  o.seeds = grains.bed.empty() ? o.seeds : 1;  // a file has only one bed
   return o;
 }
 
@@ -159,7 +157,7 @@ void check_work(const terrain::soil::SoilWork& work, int threads) {
                               work.grains, work.grain_steps / kGrainSteps / 3600.0, threads));
 }
 
-/// Shows share and time left; ends the tests when a signal asks for it.
+/// Shows share and time left; ends the tests if a signal asks for a stop.
 ProgressCall shown_on(launch::ProgressDisplay& display) {
   return [&display, begin = wall_clock()](const std::string& what, double share) {
     if (launch::stop_signalled()) throw Error(ExitCode::stopped, "stopped by a signal during the soil tests");
@@ -190,7 +188,7 @@ ExitCode test_soil(const scenario::Scenario& scenario, const SoilArguments& argu
     display.clear();
     const terrain::soil::SoilRun run{scenario.name, scenario.digest, options, plan, results, wall_clock() - begin};
     const nlohmann::ordered_json soil = terrain::soil::soil_json(run);
-    launch::say(terrain::soil::soil_text(soil));  // before the files: the disk may be full
+    launch::say(terrain::soil::soil_text(soil));  // before the files, because the disk may be full
     std::cout << soil.dump(2) << std::endl;
     directory.add({"scenario.json", "soil.json", "plate.csv", "shear.csv", "cone.csv", "cones.csv", "repose.csv",
                    "interface.csv"});

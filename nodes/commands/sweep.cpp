@@ -1,4 +1,4 @@
-// `furrow sweep`: the table of runs of a study.
+// `furrow sweep`: runs the table of a study.
 #include <cstdio>
 #include <iostream>
 #include <memory>

@@ -1,4 +1,4 @@
-// What the user typed, and what most commands make of it.
+// The user's options, and conversions that most commands need.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace furrow::commands {
 
-/// The command line, and what it says of a scenario.
+/// The command line, and its settings of a scenario.
 struct Typed {
   int argc = 0;
   char** argv = nullptr;
@@ -21,23 +21,23 @@ struct Typed {
   double memory = 0.0;  // that the scenario needs, bytes; 0: not known yet
 };
 
-/// SCENARIO and what may be set of it.
+/// Adds SCENARIO and its settings.
 void add_scenario(CLI::App& command, Typed& typed);
-/// --set and --threads.
+/// Adds --set and --threads.
 void add_settings(CLI::App& command, Typed& typed);
 
-/// --set, --threads and --until as keys of the scenario. @throws Error(bad_input)
+/// Converts --set, --threads and --until to keys of the scenario. @throws Error(bad_input)
 Settings settings_of(const Typed& typed);
 
-/// The scenario, with its settings; prints its warnings, and notes the memory that it needs. @throws Error
+/// Loads the scenario with its settings, prints its warnings, and notes the memory that it needs. @throws Error
 scenario::Scenario load(Typed& typed, scenario::Purpose purpose = scenario::Purpose::run);
 
-/// --out and --overwrite of a command that makes a folder. @param usual its name without --out: "<scenario>-NNN"
+/// Adds --out and --overwrite to a command that makes a folder. @param usual its name without --out: "<scenario>-NNN"
 /// @returns --out
 CLI::Option* add_folder_options(CLI::App& command, std::filesystem::path& out, bool& overwrite,
                                 const std::string& usual);
 void add_no_plots(CLI::App& command, bool& plots);
-/// A check of an option's value: finite and above 0.
+/// Validator of an option's value: finite and above 0.
 CLI::Validator above_zero();
 
 }  // namespace furrow::commands

@@ -1,4 +1,4 @@
-// `furrow validate` and `furrow ranks`: what a run will need, and which ranks it has.
+// `furrow validate` and `furrow ranks`: the needs of a run, and its ranks.
 #include <algorithm>
 #include <iostream>
 #include <memory>

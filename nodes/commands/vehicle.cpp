@@ -1,4 +1,4 @@
-// `furrow kc` and `furrow validate` of a vehicle: what there is to know of it before it drives.
+// `furrow kc` and `furrow validate` of a vehicle: its properties before it drives.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -25,15 +25,15 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr double kTravelShare = 0.2;  // of the smallest tire's radius
 constexpr double kMostTravel = 1.0;   // m
-constexpr double kQuiet = 2.0;        // in which most vehicles have come to stand: before progress is told, s
+constexpr double kQuiet = 2.0;        // most vehicles come to rest in it; progress is shown later, s
 constexpr int kLeastPoints = 3, kMostPoints = 1001;
 
 struct KinematicsArguments {
   std::string vehicle;
-  std::filesystem::path out;  // empty: a fresh folder under results/
+  std::filesystem::path out;  // empty: a new folder under results/
   bool overwrite = false;
   bool plots = true;
-  bool csv = false, json = false;  // printed, in place of a folder
+  bool csv = false, json = false;  // print instead of making a folder
   double travel = 0.0;             // up and down, m; 0: a fifth of the smallest tire's radius
   int points = 21;                 // of each motion
 };
@@ -46,7 +46,7 @@ void check(const KinematicsArguments& arguments) {
                  fmt::format("is {}, expected {} to {}", arguments.points, kLeastPoints, kMostPoints));
 }
 
-/// The vehicle on its tires; presses them where the cache does not know them.
+/// The vehicle on its tires; presses the tires that are not in the cache.
 vehicle::VehiclePage stand(const vehicle::VehicleSpec& spec) {
   for (const auto& [key, what] : vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec)))
     print_warning(input_error(spec.file, key, what).what());

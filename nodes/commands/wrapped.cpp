@@ -10,17 +10,17 @@
 namespace furrow::commands {
 namespace {
 
-constexpr std::size_t kWidest = 120;       // columns of a text that can be read
-constexpr std::size_t kNarrowest = 60;     // below which the terminal breaks the lines
+constexpr std::size_t kWidest = 120;       // columns of a readable text
+constexpr std::size_t kNarrowest = 60;     // in narrower ones the terminal breaks the lines
 constexpr std::size_t kSecondColumn = 40;  // a second column begins before this one
 
-/// Columns of UTF-8: a character of several bytes is one.
+/// Columns of UTF-8 text: a character of several bytes counts once.
 std::size_t columns(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// Where the rest of a line begins.
+/// Column at which the rest of a line begins.
 std::size_t hanging_indent(std::string_view line) {
   const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
   const std::size_t gap = line.find("  ", first);
@@ -52,7 +52,7 @@ void append_wrapped(std::string& text, std::string_view line, std::size_t width)
   }
 }
 
-/// Of the terminal that standard output is; 0: it is none.
+/// Width of the terminal at standard output; 0: it is not a terminal.
 std::size_t terminal_columns() {
   if (!isatty(STDOUT_FILENO)) return 0;
   winsize size{};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kCannotRun = 127;
 
-/// In the child: becomes the program.
+/// Replaces the child process by the program.
 [[noreturn]] void become(const Child& child, const std::vector<char*>& arguments, pid_t parent) {
   if (child.own_group) setpgid(0, 0);
   die_with_parent(child.death_signal, parent);
@@ -109,7 +109,7 @@ pid_t start_child(Child child) {
     throw limit_error(child.command.front() + ": cannot be started: " + std::strerror(errno) +
                       " (ulimit -u, ulimit -v, or no memory)");
   if (process == 0) become(child, arguments, parent);
-  if (child.own_group) setpgid(process, process);  // the first of the two processes does it
+  if (child.own_group) setpgid(process, process);  // parent and child both call this; the first call takes effect
   return process;
 }
 

@@ -1,5 +1,5 @@
-// No C++ library here: its own static data is not yet constructed when this runs, and templates compiled elsewhere
-// with richer instructions could be the ones that get linked.
+// This file uses no C++ library: the library's static data is not constructed yet when this code runs. The linker could
+// also choose templates that were compiled elsewhere with richer instructions.
 #include "nodes/launch/cpu_check.hpp"
 
 #include <string.h>

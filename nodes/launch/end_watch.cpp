@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
-/// Whether processes of this program are all that the launcher has, and all of them have ended. A launcher that works
-/// takes notice within milliseconds.
+/// Checks whether the launcher has only processes of this program, and all of them have ended. A working launcher
+/// notices such an end within milliseconds.
 bool leaves_ended_ranks(int launcher) {
   const std::vector<pid_t> children = children_of(launcher);
   const std::string own = state_of(getpid()).name;
@@ -46,7 +46,7 @@ ExitCode EndWatch::code() const {
 bool EndWatch::too_late(int launcher) {
   double patience = failed_ ? failure_patience_ : kForEver;
   if (all_ended() || leaves_ended_ranks(launcher)) patience = end_patience_;
-  clock_.expired();  // counts
+  clock_.expired();  // measures the silence
   if (patience != patience_) {
     patience_ = patience;
     clock_.heard();

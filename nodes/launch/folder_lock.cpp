@@ -47,7 +47,7 @@ std::string process_text(pid_t process) {
   return fmt::format("process {} ({})", process, command);
 }
 
-/// The other processes of this machine that have the file open, as far as this one may know.
+/// Returns the other processes of this machine that have the file open, as far as this one may see them.
 std::vector<pid_t> processes_with(const struct stat& file) {
   std::vector<pid_t> found;
   std::error_code error;
@@ -75,7 +75,7 @@ std::string holders_text(const struct stat& file) {
   return fmt::format("{}{}", fmt::join(named, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-/// Ends those that keep the folder for nothing. @returns false when others have it as well, or there are none
+/// Ends left launchers that keep the folder. @returns false if other processes also keep it, or if there are none
 bool end_left_launchers(const struct stat& file) {
   const std::vector<pid_t> holders = processes_with(file);
   if (holders.empty() || !std::ranges::all_of(holders, is_left_launcher)) return false;
@@ -106,7 +106,7 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
     struct stat list {};
     fstat(handle_, &list);
     const bool own = try_to_take(mode == Mode::alone ? LOCK_EX : LOCK_SH);
-    const bool replaced = own && !stands();  // the process that had it removed it when it ended
+    const bool replaced = own && !stands();  // the process that had the folder removed it when it ended
     if (own && !replaced) return;
     close(std::exchange(handle_, -1));
     if (replaced && !fs::exists(folder)) throw io_error(folder.string(), "was removed while it was waited for");
@@ -125,7 +125,7 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& key, Mode mode
   }
 }
 
-/// False when others have it. Where the file system knows no locks nobody has.
+/// Returns false if another process has the lock. Without locks in the file system, nobody has it.
 bool FolderLock::try_to_take(int operation) const {
   while (flock(handle_, operation | LOCK_NB) != 0) {
     if (errno == EINTR) continue;
@@ -171,7 +171,7 @@ void wait_until_free(const fs::path& folder) {
   try {
     const FolderLock lock(folder, "", FolderLock::Mode::alone);
   } catch (const Error&) {
-    // The run that is to begin there will say so.
+    // The run that is about to begin there reports this.
   }
 }
 

@@ -1,9 +1,9 @@
-// Who has a folder of results: a lock on its list of files (run_list.hpp), which the system gives free when the last
-// process that holds it ends, however it ends.
+// Lock on a results folder: a lock on its list of files (run_list.hpp). The system releases it when the last process
+// that holds it ends for any reason.
 //
-// A run takes its folder alone, prepares it, and shares it before its ranks begin: the supervisor, mpirun (which
-// inherits the supervisor's descriptor) and every rank hold it together from then on. Whoever wants the folder alone
-// therefore waits for the last of them, also when the supervisor was killed.
+// A run takes its folder alone, prepares it, and shares it before its ranks begin. From then on the supervisor, mpirun
+// (which inherits the supervisor's descriptor) and every rank hold it together. A process that wants the folder alone
+// therefore waits for the last of them, even if the supervisor was killed.
 #pragma once
 
 #include <filesystem>
@@ -16,24 +16,24 @@ class FolderLock {
   enum class Mode { alone, together };
   static constexpr double kPatience = 10.0;  // s
 
-  FolderLock() = default;  // of nothing
-  /// The list is made where the folder has none. Alone: waits up to `patience` seconds for
-  /// those that have it, and says so; then ends what has it for nothing (left_launcher.hpp).
+  FolderLock() = default;  // locks nothing
+  /// Makes the list if the folder has none. In mode `alone`, it waits up to `patience` seconds for the holders and
+  /// prints that it waits; then it ends left launchers (left_launcher.hpp).
   /// @param key for messages
-  /// @throws Error(bad_input) when others keep it; they are named
-  /// @throws Error(io) when the list cannot be opened
+  /// @throws Error(bad_input) if other processes keep the folder; the message names them
+  /// @throws Error(io) if the list cannot be opened
   FolderLock(const std::filesystem::path& folder, const std::string& key, Mode mode, double patience = kPatience);
   FolderLock(FolderLock&& other) noexcept;
   FolderLock& operator=(FolderLock&& other) noexcept;
   ~FolderLock();
 
-  /// From now on with the ranks. @throws Error(bad_input) when another run took it in between
+  /// Shares the folder with the ranks from now on. @throws Error(bad_input) if another run took it in between
   void share();
 
-  /// Whether the path still leads to the list that is locked: the folder was neither moved, removed nor emptied.
+  /// Checks whether the path still leads to the locked list: the folder was not moved, removed or emptied.
   bool stands() const;
 
-  /// For a child that is to hold it as well; −1: of nothing.
+  /// For a child that also holds the lock; −1: no lock.
   int descriptor() const { return handle_; }
 
  private:
@@ -43,7 +43,7 @@ class FolderLock {
   int handle_ = -1;
 };
 
-/// Waits until nobody has the folder, FolderLock::kPatience at most. A folder without a list is free.
+/// Waits until nobody holds the folder, for at most FolderLock::kPatience. A folder without a list is free.
 void wait_until_free(const std::filesystem::path& folder);
 
 }  // namespace furrow::launch

@@ -1,5 +1,5 @@
-// A rank's hold on the folder of its run: no other run can have it as long as the rank lives, and the rank notices when
-// the folder is no longer where it was.
+// A rank's hold on its run's folder. No other run can take the folder while the rank lives, and the rank notices if the
+// folder was moved or removed.
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,18 @@ namespace furrow::launch {
 
 class HeldFolder {
  public:
-  /// @throws Error(bad_input) when another run has it alone
-  /// @throws Error(io) when it has no list
+  /// @throws Error(bad_input) if another run has it alone
+  /// @throws Error(io) if it does not have a list
   explicit HeldFolder(const std::filesystem::path& folder);
 
-  /// To be called before anything is written by name: what was moved or removed must not be made again.
-  /// @throws Error(io) when the folder was moved, removed or emptied, or one in it that was there before
+  /// Call it before anything is written to a path: a moved or removed folder must not be made again.
+  /// @throws Error(io) if the folder, or an earlier folder in it, was moved, removed or emptied
   void check();
 
  private:
   struct Part {
     std::filesystem::path folder;
-    std::uintmax_t device = 0, number = 0;  // 0: not there so far
+    std::uintmax_t device = 0, number = 0;  // 0: not there yet
   };
   std::filesystem::path folder_;
   FolderLock lock_;

@@ -12,11 +12,11 @@ namespace furrow::launch {
 namespace {
 
 struct Beginning {
-  std::string supervisor;  // "" where it had none
-  bool is_rank = false;    // ranks have the supervisor's name as well
+  std::string supervisor;  // "" if it had none
+  bool is_rank = false;    // ranks have the supervisor's name too
 };
 
-/// From the environment with which a process began.
+/// Reads it from the environment with which a process began.
 Beginning beginning_of(pid_t process) {
   const std::string name = std::string(kSupervisedVariable) + "=";
   std::ifstream file("/proc/" + std::to_string(process) + "/environ", std::ios::binary);

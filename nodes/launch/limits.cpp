@@ -24,13 +24,13 @@ namespace {
 constexpr double kRoom = 16e6;     // bytes in TMPDIR; mpirun and three ranks take 9 MB
 constexpr long kFilesPerRank = 4;  // of mpirun
 
-// Of a limit of processor time. Against it the kernel counts whole ticks, more than the time that it reports afterwards
-// where many want a core.
+// Share of a limit of processor time from which the limit counts as the cause. The kernel counts whole ticks against
+// the limit; on a busy core they exceed the time that it reports afterwards.
 constexpr double kSurely = 0.5;
 
 rlim_t processor_time_given = RLIM_INFINITY;  // s, before end_where_processor_time_runs_out() lowered it
 
-/// "1 s", of a limit that is set; empty where there is none.
+/// "1 s" for a limit that is set; empty if there is none.
 std::string seconds_of_processor_time(rlim_t& seconds) {
   rlimit limit{};
   if (getrlimit(RLIMIT_CPU, &limit) != 0) return {};
@@ -42,9 +42,9 @@ std::string too_little_processor_time(const std::string& limit) {
   return "a process may use " + limit + " of processor time (ulimit -t)";
 }
 
-constexpr useconds_t kTimeForNews = 300'000;  // µs; mpirun may drop the last words of a rank that ends at once
+constexpr useconds_t kTimeForNews = 300'000;  // µs; mpirun may drop the last output of a rank that ends at once
 
-/// A line that is kept ready for where none can be made.
+/// A line that is kept ready for when no memory is left to make one.
 class LastWords {
  public:
   void keep(const std::string& line, int descriptor) {
@@ -77,7 +77,7 @@ std::terminate_handler usual_end = nullptr;
   std::abort();
 }
 
-/// Called by exit(): of all that use it here, OpenMP alone gives this status.
+/// Called by exit(): in this program only OpenMP exits with this status.
 void look_at_end(int status, void* /*unused*/) {
   if (status == EXIT_FAILURE && where_no_thread_starts.kept()) where_no_thread_starts.say_and_end();
 }
@@ -154,7 +154,7 @@ void end_where_processor_time_runs_out() {
                                         ", expected a higher limit\n",
                                     STDERR_FILENO);
   std::signal(SIGXCPU, [](int) { where_processor_time_ran_out.say_and_end(); });
-  // At the upper limit the kernel ends a process without asking, and shells set both to the same.
+  // At the upper limit the kernel kills a process without a signal first, and shells set both limits to the same value.
   if (limit.rlim_cur < limit.rlim_max || limit.rlim_cur < 2) return;
   --limit.rlim_cur;
   setrlimit(RLIMIT_CPU, &limit);
@@ -167,7 +167,7 @@ void end_where_memory_runs_out(const std::string& line, int descriptor) {
 
 void end_where_no_thread_starts(const std::string& line, int descriptor) {
   where_no_thread_starts.keep(line, descriptor);
-  on_exit(look_at_end, nullptr);  // the last that was asked for is called first
+  on_exit(look_at_end, nullptr);  // the last registered function is called first
 }
 
 }  // namespace furrow::launch

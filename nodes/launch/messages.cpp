@@ -14,7 +14,7 @@ std::atomic<bool> silenced = false;  // one standard error, one switch
 }  // namespace
 
 void occupy_closed_streams() {
-  // open() takes the lowest that is free: one of these as long as one of them is.
+  // open() takes the lowest free descriptor, which is one of these while any of them is free.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }

@@ -1,5 +1,5 @@
-// What a command says on standard error besides errors. --quiet silences it: errors, and how to continue after one, are
-// always said.
+// Messages on standard error other than errors. --quiet silences them; errors, and how to continue after one, are
+// always printed.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace furrow::launch {
 
-/// Standard input, output and error that whoever started this process has closed are taken, so that no file of results
-/// gets their place and what is printed. Writing to them fails as before.
+/// Opens standard input, output and error if the calling process closed them, so that no file of results takes their
+/// place and receives printed text. Writing to them fails as before.
 void occupy_closed_streams();
 
-/// --quiet: from here on this process says nothing but errors.
+/// --quiet: from now on this process prints only errors.
 void silence_messages();
 bool messages_are_silenced();
 

@@ -1,4 +1,4 @@
-// What the system says of processes of this machine.
+// Processes of this machine, from the system's tables.
 #pragma once
 
 #include <sys/types.h>
@@ -8,13 +8,13 @@
 
 namespace furrow::launch {
 
-/// Processes that this one has started; ended ones of which it has not taken notice are among them. Empty where the
-/// system does not tell.
+/// Processes that `process` has started, including ended ones whose end it has not noticed. Empty if the system gives
+/// no data.
 std::vector<pid_t> children_of(pid_t process);
 
 struct ProcessState {
   std::string name;  // of its program, cut to 15 bytes
-  char state = '?';  // Z: it has ended, and its parent has not taken notice; ?: there is none
+  char state = '?';  // Z: it has ended, and its parent has not noticed; ?: there is no such process
   pid_t parent = 0;
 };
 ProcessState state_of(pid_t process);

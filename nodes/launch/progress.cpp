@@ -23,9 +23,9 @@ namespace {
 
 constexpr double kTerminalInterval = 0.2;  // s between redrawings
 constexpr double kPlainInterval = 5.0;     // s between lines
-constexpr double kShareForGuess = 0.005;   // of the run, before which the time left is anyone's guess
-constexpr std::size_t kPlainWidth = 80;    // of a terminal that does not say
-constexpr unsigned short kLeastWidth = 8;  // of one that does
+constexpr double kShareForGuess = 0.005;   // of the run, before which the time left cannot be estimated
+constexpr std::size_t kPlainWidth = 80;    // of a terminal that does not report its width
+constexpr unsigned short kLeastWidth = 8;  // least width that a terminal may report
 
 std::string duration_text(double seconds) {
   const long s = std::lround(std::min(seconds, 1e7));
@@ -48,7 +48,7 @@ std::string progress_text(const Progress& p) {
     return fmt::format("{} {:.0f} %{}", p.phase, 100.0 * p.share, left);
   }
   std::string text = fmt::format("t {:.3f} of {:g} s", p.time, p.end);
-  if (p.eta >= 0.0 && p.share >= kShareForGuess)  // first: narrow terminals cut the end
+  if (p.eta >= 0.0 && p.share >= kShareForGuess)  // first, because narrow terminals cut the end
     text += fmt::format("   {} left", duration_text(p.eta));
   if (!std::isnan(p.pull)) text += fmt::format("   pull {} N", digits(p.pull));
   text += fmt::format("   sinkage {} mm   {} m/s", digits(1e3 * p.sinkage), digits(p.speed));

@@ -1,4 +1,4 @@
-// What the user sees while a run is under way.
+// Progress of a run as the user sees it.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ struct Progress {
   double sinkage = 0.0;   // of the wheel that has sunk most, m
   double speed = 0.0;     // m/s
   double eta = -1.0;      // wall seconds left; negative: unknown
-  std::string note = {};  // what else the rig says: "gear 2"
+  std::string note = {};  // an addition from the rig: "gear 2"
 };
 
 using ProgressSink = std::function<void(const Progress&)>;
@@ -26,13 +26,13 @@ using ProgressSink = std::function<void(const Progress&)>;
 /// "t 0.512 of 1.5 s   1:23 left   pull 1432 N   sinkage 31 mm   1.40 m/s".
 std::string progress_text(const Progress& progress);
 
-/// Share of the run in a line of progress_text(); NaN: it is no such line, or not of the phase "running".
+/// Share of the run in a line of progress_text(); NaN for other lines and for other phases than "running".
 double share_in(std::string_view line);
 
-/// Estimates how long a phase still takes that states its share alone: what was done since it began, scaled.
+/// Estimates the time left of a phase that reports only its share, from the progress since it began.
 class PhaseClock {
  public:
-  /// @param now wall time, s @returns s; -1 where nothing has been done since the phase began
+  /// @param now wall time, s @returns s; -1 if there was no progress since the phase began
   double time_left(const std::string& phase, double share, double now);
 
  private:
@@ -41,8 +41,8 @@ class PhaseClock {
   double begin_share_ = 0.0;  // of the phase, at that time
 };
 
-/// Draws on standard error: one live line on a terminal, otherwise a line every few seconds. Where messages are
-/// silenced (messages.hpp) it draws nothing.
+/// Draws on standard error: one live line on a terminal, otherwise a line every few seconds. Draws nothing if messages
+/// are silenced (messages.hpp).
 class ProgressDisplay {
  public:
   ProgressDisplay();
@@ -51,11 +51,10 @@ class ProgressDisplay {
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
   void show(const Progress& progress);
-  /// A line that stays.
+  /// Prints a line that stays.
   void say(const std::string& text);
-  /// A line that stays even where messages are silenced.
+  /// Prints a line that stays, even if messages are silenced.
   void say_error(const std::string& text);
-  /// Removes the live line.
   void clear();
 
  private:
@@ -66,8 +65,8 @@ class ProgressDisplay {
   PhaseClock clock_;
 };
 
-/// Shows on `display` what long work reports of itself, and ends the work when a signal asks for a stop.
-/// @param when of the message: " during {}", in which {} stands for what is done
+/// Shows on `display` the progress of long work, and ends the work when a signal asks for a stop.
+/// @param when end of the message: " during {}", in which {} is replaced by the kind of work
 /// @throws Error(stopped) out of the call
 ProgressCall shown_on(ProgressDisplay& display, const std::string& when);
 

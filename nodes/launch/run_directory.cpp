@@ -28,11 +28,11 @@ Error no_list(const fs::path& folder, const std::string& key, const std::string&
   return input_error(folder.string(), key, "holds no run's list of its files ({}): {}", kRunList, why);
 }
 
-/// What one command makes, and what the list of its folder holds from the start.
+/// Results of one command, by a file in the list of its folder.
 struct Kind {
   const char* mark;
   const char* holds;
-  const char* continued;  // by what
+  const char* continued;  // how they are continued
 };
 constexpr Kind kOthers[] = {
     {kCalibration, "a calibration", "the command that began it, 'furrow calibrate' with the same study, continues it"},
@@ -48,7 +48,7 @@ bool is_run(const fs::path& folder) {
          fs::exists(folder / kModes, error) || fs::exists(folder / kCalibration, error);
 }
 
-/// Without separators at the end. @throws Error(bad_input) for a way through a folder that does not exist
+/// Removes separators at the end. @throws Error(bad_input) for a path through a folder that does not exist
 fs::path way_to(const fs::path& out) {
   fs::path way;
   bool missing = false;
@@ -64,7 +64,7 @@ fs::path way_to(const fs::path& out) {
   return way;
 }
 
-/// Whether the folder has a list, or nothing at all: another process may be about to begin the list.
+/// Checks whether the folder has a list or is empty: another process may be about to begin the list.
 bool may_be_own(const fs::path& folder) {
   std::error_code error;
   const bool bare = std::all_of(fs::directory_iterator(folder, error), fs::directory_iterator(),
@@ -117,11 +117,11 @@ RunDirectory::RunDirectory(const fs::path& existing) : existing_(true), path_(ex
       throw input_error(path_.string(), "", "holds {}, expected a run; {}", kind.holds, kind.continued);
   if (!lock_.stands()) lock_ = FolderLock(path_, "", FolderLock::Mode::alone);
   require_no_links(true);
-  take_back(path_);  // of who had the folder until now
+  take_back(path_);  // from an earlier holder of the folder
 }
 
 struct RunDirectory::Continued {
-  const char* mark;  // a file that its list holds
+  const char* mark;  // a file in its list
   const char* name;
 };
 
@@ -168,7 +168,7 @@ void RunDirectory::require_writable(const std::string& key) const {
     throw input_error(path_.string(), key, "cannot be written, expected a place that can be written");
 }
 
-/// What is written behind a link would be neither listed nor locked.
+/// Files behind a link would be neither listed nor locked.
 void RunDirectory::require_no_links(bool continues) const {
   std::error_code error;
   const RunList list = RunList::read(path_);
@@ -186,7 +186,7 @@ void RunDirectory::require_no_links(bool continues) const {
 
 void make_no_parents() { setenv(kNoParents, "1", 1); }
 
-/// @returns false when it exists by now
+/// @returns false if it exists by now
 bool RunDirectory::make() {
   std::vector<fs::path> missing;
   fs::path at;
@@ -241,7 +241,7 @@ void RunDirectory::take_over(const fs::path& reads) {
   begun_ = true;
 }
 
-/// The same in a folder that is not known to hold a run yet: what it holds may all be set aside.
+/// Takes back what was set aside in a folder that may not be a run's, since all of its files may be set aside.
 void RunDirectory::take_back_of_killed() {
   std::error_code error;
   if (!fs::is_directory(path_, error) || !has_run_list(path_) || !is_set_aside(path_)) return;
@@ -266,7 +266,7 @@ RunDirectory::~RunDirectory() {
     else
       drop_aside(path_);
   } catch (const std::exception&) {
-    // What stays is removed by the next run that takes the folder.
+    // The next run that takes the folder removes the rest.
   }
 }
 
@@ -278,11 +278,11 @@ void RunDirectory::discard() {
       if (std::exchange(set_aside_, false)) put_back(path_);
       if (fresh_) fs::remove(path_ / kRunList, error);
     } catch (const std::exception&) {
-      // What stays is in the list.
+      // The rest is in the list.
     }
   begun_ = false;
   if (made_.empty()) return;
-  // Upwards as long as nothing else stands there.
+  // Removes folders upwards as long as they are empty.
   for (fs::path at = path_; fs::remove(at, error) && at != made_;) at = at.parent_path();
   made_.clear();
 }

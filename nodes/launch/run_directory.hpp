@@ -1,4 +1,4 @@
-// The folder that takes a run's results.
+// The folder for a run's results.
 #pragma once
 
 #include <filesystem>
@@ -10,48 +10,48 @@
 
 namespace furrow::launch {
 
-/// Makes the folder of a run, with the list of what is written into it (run_list.hpp), and takes it away again if the
-/// run never started. Results of an earlier run that are to be overwritten are set aside (set_aside.hpp) until it is
-/// known that the new one runs. One run at a time has the folder.
+/// Makes a run's folder with the list of written files (run_list.hpp), and removes it if the run never started. Results
+/// of an earlier run that will be overwritten are set aside (set_aside.hpp) until the new run is under way. Only one
+/// run at a time has the folder.
 class RunDirectory {
  public:
-  /// @param out  the user's choice; empty: results/<scenario>-NNN, the first number that is free
-  /// @param reads  a file that the run is yet to read: it stays where it is, though a result of the earlier run
-  /// @throws Error(bad_input) when `out` exists and may not be overwritten, is another's, or cannot be made
+  /// @param out  the user's choice; empty: results/<scenario>-NNN, with the first free number
+  /// @param reads  a file that the run will read: it stays in place, although it is a result of the earlier run
+  /// @throws Error(bad_input) if `out` exists and may not be overwritten, is not furrow's, or cannot be made
   RunDirectory(const std::string& scenario, const std::filesystem::path& out, bool overwrite,
                const std::filesystem::path& reads = {});
   /// The folder of a run that continues.
-  /// @throws Error(bad_input) when it holds none, cannot be written, or others have it
+  /// @throws Error(bad_input) if it does not hold a run, cannot be written, or another process has it
   explicit RunDirectory(const std::filesystem::path& existing);
-  /// The folder of a study, which continues where there is one. @throws Error(bad_input)
+  /// Returns the folder of a study, which continues if it exists. @throws Error(bad_input)
   static RunDirectory of_study(const std::filesystem::path& folder);
-  /// The same of a calibration that writes `files`; `overwrite` sets aside what an earlier one wrote.
+  /// Returns the folder of a calibration that writes `files`; `overwrite` sets aside the files of an earlier one.
   /// @throws Error(bad_input)
   static RunDirectory of_calibration(const std::filesystem::path& folder, bool overwrite,
                                      const std::vector<std::string>& files = {});
 
-  /// Gives the folder free, and removes what was set aside unless the run never began to step: then as `discard`.
+  /// Releases the folder and removes what was set aside. If the run never began to step, it acts as `discard`.
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// What is written from now on: files, folders ("frames/") and forms (run_list.hpp).
-  /// @throws Error(bad_input) when a file of that name stands there that furrow did not write
+  /// Lists names that will be written from now on: files, folders ("frames/") and forms (run_list.hpp).
+  /// @throws Error(bad_input) if a file of such a name exists that furrow did not write
   void add(const std::vector<std::string>& names) const { add_to_run_list(path_, names); }
 
-  /// Before the ranks begin: they hold the folder too from then on.
+  /// The lock; share it before the ranks begin, which hold the folder too from then on.
   FolderLock& lock() { return lock_; }
 
-  /// Of a study's folder: sets aside what it holds. @throws Error(bad_input) when it cannot be cleared
+  /// Sets aside the content of a study's folder. @throws Error(bad_input) if it cannot be cleared
   void replace();
 
-  /// Whether results of an earlier run are set aside for one that has not begun to step.
+  /// Checks whether results of an earlier run are set aside for a run that has not begun to step.
   bool replaces() const;
 
-  /// The run never started: unless it was to continue, removes its results and the folders that the constructor made,
-  /// puts back what was set aside.
+  /// For a run that never started: removes its results and the folders that the constructor made, and puts back what
+  /// was set aside. Does nothing to a run that was to continue.
   void discard();
 
  private:
@@ -66,24 +66,24 @@ class RunDirectory {
   void require_writable(const std::string& key) const;
   void require_no_links(bool continues) const;
 
-  bool existing_ = false;   // not this object's to remove
+  bool existing_ = false;   // this object must not remove it
   bool fresh_ = false;      // the folder had no list before
-  bool begun_ = false;      // the list is that of this run
+  bool begun_ = false;      // the list is this run's
   bool set_aside_ = false;  // results of an earlier run
   FolderLock lock_;
   std::filesystem::path path_;
   std::filesystem::path made_;  // the topmost folder that did not exist before; empty: none
 };
 
-/// In a child that will be `furrow run`: it makes no folder but the run's own, whose place stands as long as nobody
-/// removes the study's folder.
+/// Lets a child, which becomes `furrow run`, make only the run's own folder. The parent exists unless somebody removes
+/// the study's folder.
 void make_no_parents();
 
-/// @throws Error(bad_input) unless `folder` holds a run
+/// @throws Error(bad_input) unless `folder` contains a run
 void require_run_directory(const std::filesystem::path& folder);
 
-/// What waits for a writer, as pipes do, would be read for ever. Looks at every file that the folder's list names, but
-/// for parts of checkpoints, which are looked at with their sums. @throws Error(bad_input)
+/// Refuses files such as pipes, which would be read forever. Checks every file in the folder's list except parts of
+/// checkpoints, which are checked with their sums. @throws Error(bad_input)
 void require_plain_files(const std::filesystem::path& folder);
 
 }  // namespace furrow::launch

@@ -30,7 +30,7 @@ std::string head() { return fmt::format("{}{}\n", kKind, kVersion); }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// "%06d" at the beginning of `form`: takes it away. @returns the least number of digits; 0: none stands there
+/// Removes "%06d" from the beginning of `form`. @returns the least number of digits; 0: it does not begin so
 std::size_t take_number(std::string_view& form) {
   std::size_t digits = 0, at = 1;
   while (at < form.size() && at < 4 && is_digit(form[at]))
@@ -40,7 +40,7 @@ std::size_t take_number(std::string_view& form) {
   return std::max<std::size_t>(digits, 1);
 }
 
-/// Whether it is a path below the folder.
+/// Checks whether it is a path below the folder.
 bool is_inside(std::string_view form) {
   if (form.empty() || form.size() > kMaxName || form.front() == '/') return false;
   for (const fs::path& part : fs::path(form))
@@ -68,9 +68,9 @@ void append(const fs::path& folder, const std::string& text) {
   bool good = whole == size || ftruncate(handle, whole) == 0;
   size = whole;
   good = good && write(handle, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && fsync(handle) == 0;
-  const int reason = errno == 0 ? ENOSPC : errno;  // a write that stops halfway has none
+  const int reason = errno == 0 ? ENOSPC : errno;  // a write that stops halfway sets no reason
   if (!good && ftruncate(handle, size) != 0) {
-    // The line that stays is cut short, and taken away when the next one is added.
+    // The cut-short line stays; adding the next line removes it.
   }
   close(handle);
   if (!good) throw failed(reason);

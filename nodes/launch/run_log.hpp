@@ -1,4 +1,4 @@
-// What the log of a run in another process says: the lines that it printed.
+// Reads the log of a run in another process.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,10 @@
 
 namespace furrow::launch {
 
-/// Why it ended: the signal that killed it, or the last error in its log. @param status of waitpid()
+/// The reason why it ended: the signal that killed it, or the last error in its log. @param status of waitpid()
 std::string last_error(const std::filesystem::path& log, int status);
 
-/// Share of a run that is done, 0…1, by the last line of progress near the log's end; 0 where there is none.
+/// Share of a run that is done, 0…1, by the last line of progress near the log's end; 0 if there is none.
 double share_in_log(const std::filesystem::path& log);
 
 }  // namespace furrow::launch

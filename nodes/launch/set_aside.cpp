@@ -17,7 +17,7 @@ const std::string kAsideFolder = std::string(kAside) + "/";
 
 constexpr std::ptrdiff_t kHeadLines = 2;  // of evaluations.csv, before the first evaluation
 
-/// What a command may list before its results: `furrow run` before its ranks are placed.
+/// Files that a command may list before its results: `furrow run` lists these before its ranks are placed.
 const std::vector<std::string> kEarly{"run.log", "scenario.json", "summary_failed.json", kAsideFolder};
 
 std::ptrdiff_t lines_in(const fs::path& file) {
@@ -26,7 +26,7 @@ std::ptrdiff_t lines_in(const fs::path& file) {
   return std::count(text.begin(), text.end(), '\n');
 }
 
-/// Folders in the list that hold a run with a list of its own.
+/// Folders in the list that contain a run with a list of its own.
 std::vector<fs::path> runs_in(const fs::path& folder, const RunList& list) {
   std::vector<fs::path> runs;
   for (const std::string& name : list.find(folder).folders)
@@ -34,7 +34,7 @@ std::vector<fs::path> runs_in(const fs::path& folder, const RunList& list) {
   return runs;
 }
 
-/// A list in which nothing is left goes, with its folder.
+/// Removes an empty list and its folder.
 void remove_if_empty(const fs::path& run) {
   std::error_code error;
   const bool alone = std::distance(fs::directory_iterator(run, error), fs::directory_iterator()) == 1;
@@ -60,10 +60,10 @@ void move_listed(const fs::path& from, const fs::path& to, const RunList& list, 
   }
   for (const std::string& file : found.files)
     if (file != but) fs::rename(from / file, to / file);
-  for (const std::string& folder : found.folders) fs::remove(from / folder, error);  // where it is empty
+  for (const std::string& folder : found.folders) fs::remove(from / folder, error);  // if it is empty
 }
 
-/// @returns whether all could be
+/// @returns whether all files could be moved
 bool move_back(const fs::path& from, const fs::path& to) {
   const RunList list = RunList::read(from);
   const RunList::Found found = list.find(from);
@@ -110,7 +110,7 @@ bool set_aside(const fs::path& folder, const fs::path& reads) {
   try {
     const RunList list = RunList::read(folder);
     for (const fs::path& run : runs_in(folder, list)) {
-      wait_until_free(run);  // ranks outlive a supervisor that was killed by a second or two
+      wait_until_free(run);  // ranks outlive a killed supervisor by a second or two
       take_back(run);
     }
     const RunList::Found found = list.find(folder);
@@ -165,7 +165,7 @@ void remove_results(const fs::path& folder) {
 void put_back(const fs::path& folder) {
   const fs::path aside = folder / kAside;
   const RunList before = has_run_list(aside) ? RunList::read(aside) : RunList();
-  if (!before.forms().empty()) {  // else nothing was moved yet
+  if (!before.forms().empty()) {  // otherwise nothing was moved yet
     begin_run_list(folder, {kAsideFolder});
     if (!move_back(aside, folder)) return;
     begin_run_list(folder, before.forms());

@@ -35,10 +35,10 @@ void set_handler(int signal, void (*handler)(int)) {
   struct sigaction action = {};
   action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
-  sigaction(signal, &action, nullptr);  // without SA_RESTART: waiting calls return, and look at the flag
+  sigaction(signal, &action, nullptr);  // without SA_RESTART: waiting calls return and check the flag
 }
 
-/// Who starts a program with nohup, or in the background of a script, wants it to live on.
+/// A user who starts a program with nohup, or in the background of a script, wants it to live on.
 bool ignored(int signal) {
   struct sigaction action = {};
   return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
@@ -75,7 +75,7 @@ bool pause_asked() { return pause_wanted.exchange(false, std::memory_order_relax
 void pause_here(const std::vector<int>& stopped) {
   const pid_t own = getpid(), guard = fork();
   if (guard == 0) {
-    setpgid(0, 0);  // a signal to the job is none to it
+    setpgid(0, 0);  // signals to the job do not reach this process
     while (getppid() == own) usleep(kGuardInterval);
     for (const int process : stopped) {
       for (const pid_t child : children_of(process)) kill(child, SIGCONT);
@@ -93,7 +93,7 @@ void restore_signals() {
   set_handler(SIGTSTP, SIG_DFL);
   for (const int signal : kStopSignals) set_handler(signal, SIG_DFL);
   set_handler(SIGPIPE, SIG_DFL);
-  set_handler(SIGXFSZ, SIG_DFL);  // main.cpp; Open MPI waits for ever where it is ignored
+  set_handler(SIGXFSZ, SIG_DFL);  // main.cpp; Open MPI waits forever if it is ignored
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

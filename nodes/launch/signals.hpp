@@ -1,5 +1,5 @@
-// Signals that ask for a stop: TERM, INT, HUP and USR1 only raise a flag, which loops look at. So does Ctrl-Z where it
-// must reach others too.
+// Signals that ask for a stop: TERM, INT, HUP and USR1 only raise a flag that loops check. Ctrl-Z also raises a flag if
+// it must reach other processes.
 #pragma once
 
 #include <vector>
@@ -7,34 +7,32 @@
 namespace furrow::launch {
 
 /// Ends the program with a message and the exit code of a stop when a stop signal comes, until catch_stop_signals() is
-/// called; but for those that this process was started to ignore.
+/// called. Signals that this process was started to ignore stay ignored.
 void end_on_stop_signals();
 
-/// Counts stop signals from now on instead of dying of them, except those that this process was started to ignore; a
-/// write to a closed pipe becomes an error.
+/// Counts stop signals from now on instead of ending the program, except those that this process was started to ignore.
+/// A write to a closed pipe becomes an error.
 void catch_stop_signals();
-/// Whether this process does.
 bool catches_stop_signals();
-/// Ends this process without a word when USR1 comes, until catch_stop_signals() is called again: a launcher hands it on
-/// to a rank that is being started only when the supervisor was killed. MPI may be stuck, and nothing has begun.
+/// Ends this process silently when USR1 comes, until catch_stop_signals() is called again. A launcher passes USR1 to a
+/// rank that is starting only if the supervisor was killed. MPI may hang then, and nothing has begun.
 void end_on_loss_of_supervisor();
 
-/// How many have come.
 int stop_signals();
 inline bool stop_signalled() { return stop_signals() > 0; }
 
-/// Ctrl-Z raises a flag from now on, unless this process was started to ignore it: who started others stops them first.
+/// Lets Ctrl-Z raise a flag from now on, unless this process was started to ignore it: it must stop its children first.
 void catch_pause();
-/// Whether it came since this was last asked.
+/// Checks whether Ctrl-Z came since the last call.
 bool pause_asked();
-/// Stops this process until it is continued. What it has stopped before, and the children of these, goes on if this
-/// process ends meanwhile: nobody else would let it.
+/// Stops this process until it is continued. If this process ends meanwhile, the processes `stopped` and their children
+/// are continued, because nobody else would do so.
 void pause_here(const std::vector<int>& stopped);
 
-/// As a new program wants them, in a child between fork and exec.
+/// Restores the signals for a new program, in a child between fork and exec.
 void restore_signals();
 
-/// This process ends with `signal` when its parent does; at once if the parent is not `parent` any more.
+/// Ends this process with `signal` when its parent ends; at once if the parent is no longer `parent`.
 void die_with_parent(int signal, int parent);
 
 }  // namespace furrow::launch

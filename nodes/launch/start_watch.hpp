@@ -1,6 +1,6 @@
-// Whether the ranks of a run come. Each says that it has begun, that it has read the scenario, and that MPI connects it
-// with the others. What hangs is the launcher before the first of these, or MPI between the last two; reading may take
-// as long as the files are large.
+// Watches whether the ranks of a run start. Each reports that it has begun, that it has read the scenario, and that MPI
+// connects it with the others. The launcher may hang before the first report, or MPI between the last two; reading may
+// take as long as the files are large.
 #pragma once
 
 #include <cstddef>
@@ -23,8 +23,8 @@ class StartWatch {
   std::size_t count() const { return started_.size(); }
   bool all_started() const { return started_.size() == ranks_; }
 
-  /// True once there has been no news for too long; to be asked at every poll. Time during which this process itself
-  /// was stopped does not count.
+  /// Returns true when there has been no news for too long. Call it at every poll; time during which this process
+  /// itself was stopped does not count.
   bool too_late();
   /// "2 of 3 ranks began".
   std::string standing() const;
@@ -39,8 +39,8 @@ class StartWatch {
   std::set<int> begun_, read_, started_;
 };
 
-/// How long to wait for the ranks: FURROW_START_TIMEOUT, s, else 120.
-/// @throws Error(bad_input) when the variable is no number above zero
+/// Time to wait for the ranks: FURROW_START_TIMEOUT, s, or 120.
+/// @throws Error(bad_input) if the variable is not a number above zero
 double start_patience();
 
 }  // namespace furrow::launch

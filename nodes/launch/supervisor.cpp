@@ -37,10 +37,10 @@ namespace {
 
 constexpr const char* kTooManyProcesses = "system limit exceeded on number of processes";  // Open MPI
 constexpr double kStopPatience = 300.0;  // s from the request to stop until mpirun is terminated: time for a checkpoint
-constexpr double kStartPatience = 20.0;  // s that a wish to stop waits for ranks that are still starting
+constexpr double kStartPatience = 20.0;  // s that a stop waits for ranks that are still starting
 constexpr double kKillPatience = 5.0;    // s from that until it is killed
 constexpr double kEndPatience = 10.0;    // s from the end of all ranks until mpirun is killed
-constexpr double kFailurePatience = 20.0;  // s beside the time-out of peers, from a failure until mpirun is killed
+constexpr double kFailurePatience = 20.0;  // s from a failure until mpirun is killed, plus peer_timeout
 constexpr double kScarce = 0.5e9;          // bytes of address space: MPI may not begin with so little
 constexpr double kDrainPatience = 1.0;     // s to read what is left once mpirun has ended
 constexpr double kLogInterval = 5.0;       // s between lines of progress in the log
@@ -68,7 +68,7 @@ LaunchResult out_of_memory(const std::string& text) {
   return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
 }
 
-/// Whether somebody ended mpirun, or a rank before MPI knew it, whose death mpirun hands on as a shell does.
+/// Checks whether somebody ended mpirun, or a rank before MPI had registered it; mpirun returns its death like a shell.
 bool was_killed(int status) {
   constexpr int kBySignal = 128;
   const int signal = WIFEXITED(status) ? WEXITSTATUS(status) - kBySignal : WTERMSIG(status);
@@ -84,7 +84,7 @@ std::vector<std::string> launcher_command(const Launch& launch) {
   FURROW_ASSERT(!launch.ranks.empty(), launch.ranks.size());
   const std::filesystem::path launcher = find_mpirun();
   std::vector<std::string> command{launcher.string()};
-  if (launcher.filename() == "srun") {  // hands the environment on
+  if (launcher.filename() == "srun") {  // passes the environment on
     command.insert(command.end(), {"--mpi=pmix", "-K1", "--cpu-bind=none", "--overcommit"});
   } else {
     command.insert(command.end(), {"--oversubscribe", "--bind-to", "none"});
@@ -112,9 +112,9 @@ std::optional<std::filesystem::path> on_path(const std::string& program) {
 void set_environment(const std::string& supervisor, bool yield) {
   forget_launcher();
   setenv(kSupervisedVariable, supervisor.c_str(), 1);
-  setenv("OMPI_MCA_orte_forward_job_control", "1", 0);        // mpirun hands stops and continuations on
+  setenv("OMPI_MCA_orte_forward_job_control", "1", 0);        // mpirun passes stops and continuations on
   if (yield) setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // otherwise protocol/mpi_yield.hpp
-  // Open MPI will not begin without a way to other machines, even where it needs none.
+  // Open MPI does not begin without a way to other machines, even if it needs none.
   if (!on_path("ssh") && !on_path("rsh")) setenv("OMPI_MCA_plm_rsh_agent", "/bin/false", 0);
   set_passive_environment();
 }
@@ -148,7 +148,7 @@ class Supervisor {
       end_hung_launcher();
       if (ended_ > 0.0 && wall_clock() - ended_ > kKillPatience) kill(-child_, SIGKILL);
     }
-    kill(-child_, SIGKILL);  // whatever is left of its group
+    kill(-child_, SIGKILL);  // the rest of its group
     display_.clear();
     LaunchResult result = outcome();
     result.started = start_.count();
@@ -179,7 +179,7 @@ class Supervisor {
   std::ofstream log_;
   Pipe out_, err_;
   Lines out_lines_, err_lines_;
-  LauncherText launcher_, other_;  // standard error, and what is no rank's line of standard output
+  LauncherText launcher_, other_;  // standard error, and standard output without the ranks' lines
   StartWatch start_;
   EndWatch end_;
   std::optional<RankLine> error_;  // the first; one with a cause replaces one that reports a loss
@@ -193,8 +193,8 @@ class Supervisor {
 void Supervisor::start() {
   const bool polls_share_cores = launch_.polling > allowed_cores().size();
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  // When this process is killed the ranks save their state and stop: mpirun hands USR1 on at once, and TERM after two
-  // seconds in which they would continue.
+  // When this process is killed, the ranks save their state and stop: mpirun passes USR1 on at once. It passes TERM on
+  // after two seconds, in which the ranks would continue.
   child_ = start_child({.command = launcher_command(launch_),
                         .in = nothing,
                         .out = out_.write,
@@ -271,7 +271,7 @@ void Supervisor::reap() {
   if (reaped_) return;
   const pid_t ended = waitpid(child_, &status_, WNOHANG);
   if (ended == 0 || (ended < 0 && errno == EINTR)) return;
-  if (ended < 0) status_ = SIGKILL;  // there is no such child any more, and nothing tells how it ended
+  if (ended < 0) status_ = SIGKILL;  // the child no longer exists, and nothing shows how it ended
   reaped_ = true;
   reaped_at_ = wall_clock();
 }
@@ -285,7 +285,7 @@ void Supervisor::pass_on_stop() {
     display_.say("furrow: stopping; once more to stop at once");
   }
   const bool all_started = start_.all_started();
-  // A rank that has not caught its signals yet would die of USR1.
+  // A rank that does not catch its signals yet would die of USR1.
   if (asked_ == 0.0 && (all_started || now - stop_seen_ > kStartPatience)) {
     asked_ = now;
     kill(child_, all_started ? SIGUSR1 : SIGTERM);
@@ -298,7 +298,7 @@ void Supervisor::pass_on_stop() {
   }
 }
 
-/// Ctrl-Z reaches this process alone: the ranks have a group of their own.
+/// Only this process receives Ctrl-Z: the ranks have a group of their own.
 void Supervisor::pass_on_pause() {
   if (!pause_asked()) return;
   display_.clear();
@@ -314,7 +314,7 @@ void Supervisor::end_late_start() {
   kill(child_, SIGTERM);
 }
 
-/// What it has to do is done: its ranks have ended.
+/// The launcher's task is done: its ranks have ended.
 void Supervisor::end_hung_launcher() {
   if (launcher_.lost()) end_.failed();
   if (hung_ || reaped_ || !end_.too_late(child_)) return;
@@ -346,7 +346,7 @@ LaunchResult Supervisor::outcome() const {
     return out_of_memory(text);
   }
   if (error_ && error_->code != ExitCode::rank_lost) return {error_->code, error_->text};
-  const bool told_all = hung_ && end_.all_ended();  // what mpirun would have
+  const bool told_all = hung_ && end_.all_ended();  // the ranks gave all that mpirun's status would give
   if (told_all && end_.code() == ExitCode::done) return {};
   const bool stopped = told_all ? end_.code() == ExitCode::stopped : status == static_cast<int>(ExitCode::stopped);
   if (stop_seen_ > 0.0 && (stopped || ended_ > 0.0))

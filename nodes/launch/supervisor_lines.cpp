@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr std::string_view kMark = "@furrow ";
 constexpr std::array<const char*, 7> kKinds{"started", "progress", "note", "error", "begun", "read", "ended"};
-constexpr std::size_t kMaxLine = 4096;  // bytes: PIPE_BUF of Linux, what a write keeps together
+constexpr std::size_t kMaxLine = 4096;  // bytes: PIPE_BUF of Linux, which a write keeps together
 
 }  // namespace
 
@@ -63,7 +63,7 @@ std::optional<RankLine> decode(std::string_view text) {
       const json& v = j.at("values");
       double* const fields[] = {&p.share, &p.time, &p.end, &p.pull, &p.sinkage, &p.speed, &p.eta};
       for (std::size_t i = 0; i < std::size(fields); ++i)
-        *fields[i] = v.at(i).is_number() ? v.at(i).get<double>() : NAN;  // null: was not measured
+        *fields[i] = v.at(i).is_number() ? v.at(i).get<double>() : NAN;  // null: not measured
     }
   } catch (const json::exception&) {
     return std::nullopt;

@@ -1,5 +1,5 @@
-// What ranks report to their supervisor: one line of JSON each on standard output, which mpirun carries, behind a
-// mark that nothing else prints.
+// Reports of ranks to their supervisor: one line of JSON each on standard output, which mpirun passes on, after a mark
+// that nothing else prints.
 #pragma once
 
 #include <optional>
@@ -22,15 +22,15 @@ struct RankLine {
 
 /// With the line's end; at most 4 kB, which pipes take in one piece.
 std::string encode(const RankLine& line);
-/// Nothing for a line that is not ours.
+/// None for a line of another kind.
 std::optional<RankLine> decode(std::string_view line);
 
-/// The environment variable by which a rank knows that a supervisor listens, and which process that is.
+/// The environment variable that names a rank's supervisor; without it there is none.
 inline constexpr const char* kSupervisedVariable = "FURROW_SUPERVISED";
 
-/// This process as supervisor: "host:4711".
+/// The name of this process as supervisor: "host:4711".
 std::string supervisor_name();
-/// False when the variable names a process of this machine that is gone: it was killed before it could report.
+/// False if the variable names a process of this machine that is gone: it was killed before it could report.
 bool supervisor_lives();
 
 }  // namespace furrow::launch

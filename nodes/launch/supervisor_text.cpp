@@ -14,21 +14,21 @@ namespace {
 
 constexpr std::size_t kMaxLines = 40;
 constexpr std::size_t kMaxWords = 600;  // characters
-// Begins Open MPI's paragraph of all reasons for which ranks may fail to start. The cause stands in others.
+// Begins Open MPI's paragraph of all possible reasons why ranks fail to start. Other paragraphs contain the cause.
 constexpr std::string_view kUsual = "It looks like MPI_INIT failed for some reason";
-constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer one would take the stack
+constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer line would exhaust the stack
 
 bool is_rule(std::string_view line) {
   return line.size() > 10 && std::all_of(line.begin(), line.end(), [](char c) { return c == '-' || c == '='; });
 }
 
-/// What the launcher logs of itself, and what ranks say as they abort: it hides the cause, but is better than nothing.
+/// Checks for the launcher's own log and the ranks' text as they abort: it hides the cause, but is better than nothing.
 bool is_internal(std::string_view line) {
   return line.find("ORTE_ERROR_LOG") != std::string_view::npos ||
          (line.starts_with('[') && line.find("] *** ") != std::string_view::npos);
 }
 
-/// The signal that strsignal calls so; 0: none.
+/// The signal with this name by strsignal; 0: none.
 int signal_called(const std::string& name) {
   for (int signal = 1; signal < NSIG; ++signal)
     if (const char* known = strsignal(signal); known && name == known) return signal;

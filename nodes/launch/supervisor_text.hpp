@@ -1,4 +1,4 @@
-// What mpirun writes on standard error, sorted into what matters and what is its own noise.
+// Separates the important lines of mpirun's standard error from its noise.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace furrow::launch {
 
-/// A rank that ended by a signal, as mpirun saw it.
+/// A rank that ended by a signal, as mpirun reported it.
 struct LostRank {
   int rank = 0;
   int signal = 0;
@@ -19,13 +19,13 @@ class LauncherText {
   void add(std::string_view line);
 
   const std::optional<LostRank>& lost() const { return lost_; }
-  /// What else it said, without rules, in one line, its usual sentences last; for failures to start.
+  /// The other text without ruled lines, in one line, its usual sentences last; for failures to start.
   std::string words() const;
 
  private:
   std::optional<LostRank> lost_;
   std::vector<std::string> lines_, usual_;
-  bool is_usual_ = false;  // the paragraph that is being read
+  bool is_usual_ = false;  // for the current paragraph
 };
 
 }  // namespace furrow::launch

@@ -24,7 +24,7 @@
 namespace furrow::launch {
 namespace {
 
-constexpr int kCoresToBind = 4;  // fewer: the system balances better than a binding
+constexpr int kCoresToBind = 4;  // with fewer, the system balances better than a binding
 constexpr int kCoresForOwnRigCore = 8;
 
 struct Demand {
@@ -66,7 +66,8 @@ bool no_core_is_shared(const HostView& host) {
   return true;
 }
 
-/// Of ranks that the launcher pinned. Several on one core were started there on purpose, for example by a sweep.
+/// Advice for ranks that the launcher pinned. Several ranks on one core were put there on purpose, for example by a
+/// sweep.
 std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
   FURROW_ASSERT(in_range(node, host.nodes.size()), node, host.nodes.size());
   const std::vector<int>& cores = host.nodes[node].cores;
@@ -79,7 +80,7 @@ std::string pinning_note(const HostView& host, std::size_t node, int wanted) {
       wanted > 1 ? fmt::format(" while {} threads are wanted", wanted) : std::string());
 }
 
-/// The launcher gave each rank cores of its own, or overlapping ones: every node stays within what it got.
+/// Plan if the launcher gave each rank its own or overlapping cores: every node stays within its cores.
 ThreadPlan plan_within_own_cores(const HostView& host, std::size_t node, int terrain_threads) {
   FURROW_ASSERT(in_range(node, host.nodes.size()), node, host.nodes.size());
   const HostNode& self = host.nodes[node];
@@ -92,7 +93,7 @@ ThreadPlan plan_within_own_cores(const HostView& host, std::size_t node, int ter
   return plan;
 }
 
-/// All nodes may use the same cores: share them out in the order rig, tires, terrain.
+/// Plan if all nodes may use the same cores: shares them out in the order rig, tires, terrain.
 ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terrain_threads) {
   FURROW_ASSERT(!host.nodes[node].cores.empty(), node);
   const HostNode& self = host.nodes[node];
@@ -102,12 +103,12 @@ ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terr
 
   ThreadPlan plan;
   plan.threads = self.node.role == Role::terrain ? d.terrain_threads : 1;
-  // A second run on this machine would choose the same cores: with a limit or a load of others, do not bind.
+  // A second run on this machine would choose the same cores: do not bind with a limit or with load from others.
   const bool free_of_others = host.cpu_limit == 0.0 && host.load + d.total() <= host.machine_cores + 0.5;
   plan.disjoint = cores >= kCoresToBind && d.total() <= cores && free_of_others;
   if (!plan.disjoint) return plan;
 
-  int before = 0;  // cores of the nodes that come before this one
+  int before = 0;  // cores of earlier nodes
   for (std::size_t i = 0; i < node; ++i) {
     const Role role = host.nodes[i].node.role;
     before += role == Role::rig ? d.rig_cores : role == Role::tire ? 1 : d.terrain_threads;
@@ -121,7 +122,7 @@ ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terr
 int machine_cores() {
   cpu_set_t before;
   if (sched_getaffinity(0, sizeof before, &before) != 0) return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
-  // Share of CPUs per core, as seen on the cores we may use, holds for the whole machine.
+  // The number of CPUs per core on the allowed cores holds for the whole machine.
   const double per_core = static_cast<double>(CPU_COUNT(&before)) / static_cast<double>(allowed_cores().size());
   return std::max(1, static_cast<int>(std::lround(sysconf(_SC_NPROCESSORS_ONLN) / per_core)));
 }
@@ -151,7 +152,7 @@ void bind_this_thread(const int* first, std::size_t count) {
   CPU_ZERO(&set);
   for (std::size_t i = 0; i < count; ++i)
     if (first[i] < CPU_SETSIZE) CPU_SET(first[i], &set);
-  sched_setaffinity(0, sizeof set, &set);  // when refused the thread stays where it is: slower, not wrong
+  sched_setaffinity(0, sizeof set, &set);  // if refused the thread stays where it is: slower, not wrong
 }
 
 void flush_denormals_to_zero() {

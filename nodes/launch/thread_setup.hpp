@@ -8,10 +8,10 @@
 //     apply(plan);
 //     run_node(scenario, *transport, {.threads = plan.threads, …});
 //
-// Rules. The terrain gets the cores that the others leave, with many grains those of the others too where they leave
-// few; a tire computes on one thread; the rig, which hardly computes, has a core of its own only where there are many.
-// When the cores suffice each thread is bound to its own; when they do not, or when the machine is busy with something
-// else, nothing is bound and the system balances. Results do not depend on any of this.
+// Rules. The terrain gets the cores that the others leave; with many grains and few such cores it also gets the others'
+// cores. A tire computes on one thread. The rig hardly computes, so it has a core of its own only if there are many. If
+// there are enough cores, each thread is bound to its own. If there are too few, or the machine has other work, nothing
+// is bound and the system balances. Results do not depend on any of this.
 #pragma once
 
 #include <cstddef>
@@ -30,34 +30,35 @@ struct HostView {
   int machine_cores = 1;        // physical cores, allowed or not
   double cpu_limit = 0.0;       // CPUs that the control group grants; 0: no limit
   double load = 0.0;            // runnable tasks of others: load average of the last minute
-  std::int64_t grains = 0;      // that the terrain is expected to have; 0: not known
+  std::int64_t grains = 0;      // expected in the terrain; 0: not known
 };
 
 struct ThreadPlan {
   int threads = 1;
-  std::vector<int> cores;  // to bind to; empty: leave the process where it may run
+  std::vector<int> cores;  // to bind to; empty: do not bind
   bool disjoint = false;   // every computing thread of this machine's nodes has a core of its own
   std::string note;        // advice for the user, or empty
 };
 
-/// @param node             which of host.nodes
-/// @param terrain_threads  what the user wants for the terrain; 0: decide here
+/// @param node             index in host.nodes
+/// @param terrain_threads  the user's choice for the terrain; 0: decide here
 /// @pre node < host.nodes.size(), terrain_threads ≥ 0
 ThreadPlan plan_threads(const HostView& host, std::size_t node, int terrain_threads);
 
-/// Looks at this machine and plans for the transport's own node.
-/// @param grains  that the terrain is expected to have; 0: not known
+/// Examines this machine and plans for the transport's own node.
+/// @param grains  expected in the terrain; 0: not known
 ThreadPlan plan_threads(const Transport& transport, int terrain_threads, std::int64_t grains);
 
-/// Sets the thread count, binding, BLAS threads (one) and, in every thread, denormals to zero. A binding that the
-/// user chose by OMP_PROC_BIND, OMP_PLACES or GOMP_CPU_AFFINITY is left alone.
+/// Sets the thread count, binding, BLAS threads (one) and, in every thread, denormals to zero. Leaves a binding alone
+/// that the user chose by OMP_PROC_BIND, OMP_PLACES or GOMP_CPU_AFFINITY.
 void apply(const ThreadPlan& plan);
 
-/// OpenMP threads that spin while they wait take the cores of other ranks. How they wait is read from the
-/// environment before main begins, so unless OMP_WAIT_POLICY is set already, this sets it and starts the program again.
+/// Makes OpenMP threads wait passively: threads that spin while they wait take the cores of other ranks. OpenMP reads
+/// this setting from the environment before main begins. Therefore, unless OMP_WAIT_POLICY is set, this sets it and
+/// restarts the program.
 void wait_passively(char** argv);
 
-/// Sets the variables that wait_passively sets, but for those that are set already: for the ranks of a supervisor.
+/// Sets the variables of wait_passively that are not set already, for the ranks of a supervisor.
 void set_passive_environment();
 
 }  // namespace furrow::launch

@@ -10,9 +10,9 @@
 namespace furrow::output {
 namespace {
 
-// Of the energy turned over, what the residual may be, beside the error of sampled losses; and the latter in standard
-// errors. Of the largest impulse, what the residual of momentum may be, beside the impulse on sleeping grains, which is
-// an estimate: README.md, Accounts.
+// Bounds: the energy residual as a share of the turnover, plus the error of sampled losses in standard errors; the
+// residual of momentum as a share of the largest impulse, plus the estimated impulse on sleeping grains (README.md,
+// Accounts).
 constexpr double kEnergyShare = 0.03, kSampleErrors = 3.0;
 constexpr double kMomentumShare = 1e-6;
 
@@ -38,7 +38,7 @@ void visit_fields(FieldsOf<AccountsRow> auto& r, auto&& visit) {
   visit(r.momentum_residual.z(), cumulative("momentum_residual_z_Ns", "N s"));
 }
 
-/// Σ entries, Σ|entries|.
+/// Returns Σ entries and Σ|entries|.
 template <HasFields S>
 std::pair<double, double> sums(const S& entries) {
   std::pair<double, double> sum{0.0, 0.0};
@@ -113,7 +113,7 @@ double EnergyAccount::turnover() const { return 0.5 * (sums(work).second + sums(
 double EnergyAccount::bound() const { return kEnergyShare * turnover() + kSampleErrors * sample_error; }
 
 bool EnergyAccount::closes() const {
-  return std::isfinite(residual()) && std::abs(residual()) <= bound();  // false for what is not a number
+  return std::isfinite(residual()) && std::abs(residual()) <= bound();  // false for a residual that is not a number
 }
 
 EnergyAccount energy_account(const Books& start, const Books& now) {
@@ -193,7 +193,7 @@ TireAccount Accounts::account_of(const Reports& r, std::size_t k) const {
   a.added_momentum = added.mass * rim.velocity;
   a.added_gravity_impulse = added.mass * r.time * r.gravity;
   a.rim_velocity = rim.velocity;
-  // The wrench on its way makes the added mass follow the tire's own motion, which continues with the rim's velocity of
+  // The wrench under way makes the added mass follow the tire's own motion, which continues with the rim's velocity of
   // one step before.
   const Vec3 before = first ? rim.velocity : now_.tires[k].rim_velocity;
   a.sent_to_rig = added.mass * (rim.velocity - before);

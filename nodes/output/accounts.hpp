@@ -1,6 +1,6 @@
-// Momentum and energy of a whole run: what every part of it holds, what it was given and what it lost, each from its
-// own state, impulses and mechanisms. No entry is the difference of others, so that what they leave over can show that
-// one of them is wrong. Signs, mechanisms and bounds: nodes/output/README.md, Accounts.
+// Momentum and energy of a whole run: what each part has, received and lost, each from its own state, impulses and
+// mechanisms. No entry is the difference of others, so a residual reveals a wrong entry. Signs, mechanisms and bounds:
+// nodes/output/README.md, Accounts.
 #pragma once
 
 #include <span>
@@ -14,20 +14,20 @@
 
 namespace furrow::output {
 
-inline constexpr char kAccountsTable[] = "accounts";  // subject of the table that these accounts fill
+inline constexpr char kAccountsTable[] = "accounts";  // name of the accounts' table
 
-/// What one tire says at a synchronization, and what the rig's rank knows of its rim. Cumulative unless "now" is said.
+/// Account of one tire at a synchronization and of its rim on the rig's rank. Cumulative unless marked "now".
 struct TireAccount {
   TireDiagnostics model;
   double terrain_work = 0.0, rim_work = 0.0;  // on the tire, J
   Vec3 gravity_impulse = Vec3::Zero();        // N s
   Vec3 terrain_impulse = Vec3::Zero();        // on the tire as it received it, N s
   Vec3 spindle_impulse = Vec3::Zero();        // on the rim by the tire, N s
-  Vec3 sent_by_terrain = Vec3::Zero();        // what the terrain has given and the tire has not felt yet, now, N s
-  Vec3 sent_to_rig = Vec3::Zero();            // what the tire has given and the rig has not felt yet, now, N s
+  Vec3 sent_by_terrain = Vec3::Zero();        // given by the terrain, not yet received by the tire, now, N s
+  Vec3 sent_to_rig = Vec3::Zero();            // given by the tire, not yet received by the rig, now, N s
   double added_energy = 0.0;           // of the tire's rigid-body mass on the rig: kinetic and of gravity, now, J
-  Vec3 added_momentum = Vec3::Zero();  // of the same, now, kg m/s
-  Vec3 added_gravity_impulse = Vec3::Zero();  // of the same, N s
+  Vec3 added_momentum = Vec3::Zero();  // of the added mass, now, kg m/s
+  Vec3 added_gravity_impulse = Vec3::Zero();  // of the added mass, N s
   Vec3 rim_velocity = Vec3::Zero();           // now, m/s
 };
 void visit_fields(FieldsOf<TireAccount> auto& s, auto&& visit) {
@@ -45,7 +45,6 @@ void visit_fields(FieldsOf<TireAccount> auto& s, auto&& visit) {
   visit(s.rim_velocity, Field{"rim_velocity", "m/s"});
 }
 
-/// What all parts say at one synchronization.
 struct Books {
   double time = 0.0;  // s
   TerrainEnergies terrain;
@@ -63,8 +62,8 @@ void visit_fields(FieldsOf<Books> auto& s, auto&& visit) {
 
 /// Work done from outside, J.
 struct WorkAccount {
-  double drive = 0.0;  // by what turns the wheels
-  double tow = 0.0;    // by what moves the rig along: negative while the tires pull
+  double drive = 0.0;  // by the drive of the wheels
+  double tow = 0.0;    // by the drive that moves the rig along; negative while the tires pull
   double guide = 0.0;  // by rails and steering
   double walls = 0.0;  // by walls and floor on the terrain
 };
@@ -76,7 +75,7 @@ void visit_fields(FieldsOf<WorkAccount> auto& s, auto&& visit) {
   visit(s.walls, cumulative("wall_work_J", "J"));
 }
 
-/// What is stored, beyond what was stored at the start, J.
+/// Energy that is stored in addition to that stored at the start, J.
 struct StoredAccount {
   double terrain_kinetic = 0.0, terrain_rotational = 0.0, terrain_potential = 0.0, terrain_elastic_normal = 0.0,
          terrain_elastic_tangential = 0.0, terrain_cohesion = 0.0;
@@ -98,14 +97,14 @@ void visit_fields(FieldsOf<StoredAccount> auto& s, auto&& visit) {
   visit(s.rig_kinetic_and_potential, instant("rig_kinetic_and_potential_J", "J"));
 }
 
-/// What was lost, by mechanism, J.
+/// Energy that was lost, by mechanism, J.
 struct LostAccount {
   double sliding = 0.0, normal_damping = 0.0, tangential_damping = 0.0, rolling = 0.0, opening = 0.0,
          sleep = 0.0;  // in the terrain
   double tire_viscous = 0.0, tire_numerical = 0.0, tire_solver = 0.0;
   double damper = 0.0;       // of the rig
-  double surface_lag = 0.0;  // at the contact surface, where forces come one step late
-  double rim_lag = 0.0;      // at the rim likewise
+  double surface_lag = 0.0;  // at the contact surface, because forces act one step late
+  double rim_lag = 0.0;      // at the rim, because forces act one step late
 };
 void visit_fields(FieldsOf<LostAccount> auto& s, auto&& visit) {
   using column::cumulative;
@@ -123,41 +122,41 @@ void visit_fields(FieldsOf<LostAccount> auto& s, auto&& visit) {
   visit(s.rim_lag, cumulative("rim_lag_loss_J", "J"));
 }
 
-/// Energy since the start of the run; a line of the table of accounts holds it with the residual of momentum.
+/// Energy since the start of the run. A line of the accounts' table contains it and the residual of momentum.
 struct EnergyAccount {
   WorkAccount work;
   StoredAccount stored;
   LostAccount lost;
-  double terrain_residual = 0.0, tire_residual = 0.0, rig_residual = 0.0;  // of each on its own, J
+  double terrain_residual = 0.0, tire_residual = 0.0, rig_residual = 0.0;  // of each part alone, J
   double sample_error = 0.0;                                               // of the terrain's losses, J
 
   double residual() const;  // work − stored − lost, J
-  double turnover() const;  // ½ Σ|entries|: what came in and went somewhere, J
-  double bound() const;     // what |residual| may be, J
+  double turnover() const;  // ½ Σ|entries|: the energy that came in and went somewhere, J
+  double bound() const;     // largest |residual| for which the account closes, J
   bool closes() const;
 };
 
-/// Momentum since the start of the run, N s: changes of what grains, tires and rig hold, and the impulses on them. The
-/// rig is without the tires' added masses.
+/// Momentum since the start of the run, N s: changes of the momentum of grains, tires and rig, and the impulses on
+/// them. The rig is without the tires' added masses.
 struct MomentumAccount {
   Vec3 grains = Vec3::Zero(), tires = Vec3::Zero(), carrier = Vec3::Zero();  // changes
-  Vec3 under_way = Vec3::Zero();  // impulses that one part has given and the other has not felt yet
+  Vec3 under_way = Vec3::Zero();  // impulses that one part has given and another has not yet received
   Vec3 terrain_gravity = Vec3::Zero(), tire_gravity = Vec3::Zero(), carrier_gravity = Vec3::Zero();
   Vec3 walls = Vec3::Zero(), guide = Vec3::Zero(), sleep = Vec3::Zero();
-  // The impulse on the tires through their surfaces, and on the carrier through the spindles, as each side says it.
+  // The impulse on the tires through their surfaces, and on the carrier through the spindles, each from both sides.
   Vec3 surface_of_grains = Vec3::Zero(), surface_of_tires = Vec3::Zero(), surface_under_way = Vec3::Zero();
   Vec3 spindle_of_tires = Vec3::Zero(), spindle_of_carrier = Vec3::Zero(), spindle_under_way = Vec3::Zero();
 
   Vec3 residual() const;
   Vec3 surface_difference() const { return surface_of_grains - surface_of_tires - surface_under_way; }
   Vec3 spindle_difference() const { return spindle_of_tires - spindle_of_carrier - spindle_under_way; }
-  double largest() const;  // impulse or change of these
+  double largest() const;  // largest impulse or change among these
   bool closes() const;
 };
 
 EnergyAccount energy_account(const Books& start, const Books& now);
 MomentumAccount momentum_account(const Books& start, const Books& now);
-/// What one tire's works, changes and losses leave over, J.
+/// J
 double tire_residual(const TireAccount& start, const TireAccount& now);
 
 class Accounts {
@@ -174,7 +173,7 @@ class Accounts {
   /// @param added masses that the rig carries for its tires @param step H, s
   Accounts(std::vector<MassProperties> added, double step) : added_(std::move(added)), step_(step) {}
 
-  /// At every synchronization from the one at the start on. @pre one report and one rim for each tire
+  /// Adds the reports of each synchronization, from the start on. @pre one report and one rim for each tire
   void add(const Reports& reports);
 
   const Books& start() const { return start_; }
@@ -183,7 +182,7 @@ class Accounts {
   MomentumAccount momentum() const { return momentum_account(start_, now_); }
 
   static Table empty_table();
-  /// The line of that table as of the last add(): valid until the next.
+  /// The table's line after the last add(), valid until the next.
   std::span<const double> line();
 
   void save(Archive& archive) const;

@@ -16,7 +16,7 @@ constexpr std::string_view kEnergyUnit = "_J";
 
 Json vector_json(const Vec3& v) { return {json_number(v.x()), json_number(v.y()), json_number(v.z())}; }
 
-/// A column's name without its unit.
+/// Returns a column's name without its unit.
 std::string key_of(const Column& column) {
   std::string_view name = column.name;
   if (name.ends_with(kEnergyUnit)) name.remove_suffix(kEnergyUnit.size());
@@ -30,7 +30,7 @@ Json entries_json(const S& entries) {
   return json;
 }
 
-/// Two sides of one interface, what was under way between them, and what they differ by beyond that.
+/// Two sides of one interface, the impulse under way between them, and their remaining difference.
 Json sides_json(const char* one, const Vec3& a, const char* other, const Vec3& b, const Vec3& under_way,
                 const Vec3& difference) {
   return {{one, vector_json(a)},
@@ -89,7 +89,7 @@ Json tires_json(const Accounts& accounts) {
   return tires;
 }
 
-/// Mean powers between the last line before `from` and the last line.
+/// Returns mean powers between the last line before `from` and the last line.
 Json powers_json(const Table& table, double from) {
   const std::vector<double> times = table.column("time_s");
   std::size_t first = 0;

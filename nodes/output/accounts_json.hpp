@@ -8,7 +8,7 @@
 namespace furrow::output {
 
 /// `accounts` of summary.json: momentum and energy since the start of the run, and the mean powers from `from` on.
-/// @param table of accounts; lines that are at least `from` old make the powers
+/// @param table of accounts; its lines from `from` on give the powers
 nlohmann::ordered_json accounts_json(const Accounts& accounts, const Table& table, double from);
 
 }  // namespace furrow::output

@@ -8,8 +8,8 @@
 namespace furrow::output {
 namespace {
 
-// At the window's beginning lines may be left out for a whole number of facets: those of one facet, of which this
-// many are always allowed, but this share of the window never lost.
+// At the beginning of the window, lines may be left out to reach a whole number of facets. At most this many lines are
+// left out, or the lines of one facet if they are more, but at most a quarter of the window.
 constexpr std::size_t kLinesLeftOut = 50, kPartLeftOut = 4;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The stretch of a run over which its summary averages.
+// The part of a run over which its summary averages.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace furrow::output {
 
-/// What the table of a wheel says from line `first` on, read line by line where it is asked for: a table may be larger
-/// than the memory. The table outlives it.
+/// A wheel's table from line `first` on. It is read line by line on demand, because a table may exceed the memory. The
+/// table outlives it.
 class WheelRows {
  public:
   WheelRows() = default;
@@ -41,8 +41,8 @@ class WheelRows {
   std::vector<double> signs_;
 };
 
-/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Columns
-/// that the rig adds are asked for by name, those of every wheel by their row.
+/// The averaging window: lines from `first` on, whose means describe the time from `before` to the last line. Its
+/// functions take the row's member for a column of every wheel, and the name for a column of the rig.
 struct Window {
   WheelRows rows;
   WheelRow before;
@@ -67,15 +67,15 @@ struct Window {
     for (const WheelRow& row : rows) values.push_back(std::invoke(get, row));
     return values;
   }
-  /// None when the rig has no such column.
+  /// None if the rig does not have this column.
   std::vector<double> samples(std::string_view column) const;
-  /// NaN when the rig has no such column.
+  /// NaN if the rig does not have this column.
   double mean_of(std::string_view column) const;
 };
 
-/// The window from the time `from` to the end of the table, shortened at its beginning to a whole number of facets of
-/// the tire, as far as 50 lines or a quarter of it allow; empty where it holds no line.
-/// The table outlives the window.
+/// Returns the window from the time `from` to the end of the table; empty if it has no line. Its beginning is shortened
+/// to a whole number of the tire's facets, by at most 50 lines, or by up to a quarter for one facet. The table outlives
+/// the window.
 Window averaging_window(const Table& table, double from, int facets);
 
 }  // namespace furrow::output

@@ -1,5 +1,5 @@
-// What results.h5 says of a column beside its numbers, in the words that netCDF's readers know (CF conventions): xarray
-// and ParaView label axes with it.
+// Labels of a column in results.h5 in the terms of the CF conventions for netCDF: xarray and ParaView label axes with
+// them.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace furrow::output {
 
-/// A unit in ASCII as UDUNITS reads it: "m/s2"; "1" where there is none.
+/// Returns a unit in ASCII as UDUNITS reads it: "m/s2"; "1" if there is none.
 std::string units_label(std::string_view unit);
-/// The name in words, without the unit at its end: "spindle force x".
+/// Returns the name in words, without the unit at its end: "spindle force x".
 std::string long_name(const Column& column);
-/// What the value in a line is: "time_s: mean". Empty for what is computed from other columns.
+/// Returns how a line's value was formed: "time_s: mean". Empty for values computed from other columns.
 std::string cell_methods(const Column& column);
 
 }  // namespace furrow::output

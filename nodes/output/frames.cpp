@@ -18,12 +18,12 @@ namespace {
 
 std::filesystem::path new_frame(const std::filesystem::path& run, const FrameName& name) {
   const auto folder = run / "frames";
-  std::error_code ignored;                             // if the folder cannot be made, creating the file says so
-  std::filesystem::create_directory(folder, ignored);  // never the run's: it was moved or removed
+  std::error_code ignored;                             // if this fails, creating the file reports it
+  std::filesystem::create_directory(folder, ignored);  // not the run's folder: it was moved or removed
   return folder / frame_file(name);
 }
 
-constexpr const char* kForms[] = {"tire%1d_%06d.h5", "terrain_%06d.h5"};  // what frame_file makes
+constexpr const char* kForms[] = {"tire%1d_%06d.h5", "terrain_%06d.h5"};  // names from frame_file
 
 std::vector<float> flatten(const std::vector<Vec3>& vectors) {
   std::vector<float> flat;

@@ -15,11 +15,11 @@
 namespace furrow::output {
 namespace {
 
-/// Open for reading and writing, without a name. Negative where it cannot be made.
+/// Opens a file without a name for reading and writing. Negative if this fails.
 int open_nameless(const std::filesystem::path& folder) {
   const int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL)) return file;
-  std::string name = (folder / ".furrow-lines-XXXXXX").string();  // the file system knows no such files
+  std::string name = (folder / ".furrow-lines-XXXXXX").string();  // the file system does not support nameless files
   const int named = mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) unlink(name.c_str());
   return named;
@@ -59,7 +59,6 @@ void KeptLines::add(std::span<const double> line) {
   ++lines_;
 }
 
-/// From the beginning of a column in a whole block.
 void KeptLines::read(std::size_t block, std::size_t column, std::span<double> to) const {
   auto* bytes = reinterpret_cast<char*>(to.data());
   const off_t at = place_of((block * width_ + column) * kBlock);

@@ -1,8 +1,8 @@
-// The lines of a table while a run goes on: the latest in memory, the others in a file without a name, so that a rank
-// needs no more memory for a million lines than for a thousand.
+// The lines of a table during a run: the latest in memory, the others in a file without a name. A rank therefore needs
+// no more memory for a million lines than for a thousand.
 //
-// The file holds blocks of kBlock lines, each column after column: a column is read without the others, and whole lines
-// with one read per block. The system removes it as the process ends, however that is.
+// The file has blocks of kBlock lines, column by column: one column is read without the others, and whole lines with
+// one read per block. The system removes the file when the process ends for any reason.
 #pragma once
 
 #include <cstdio>
@@ -17,15 +17,15 @@ class KeptLines {
  public:
   static constexpr std::size_t kBlock = 256;  // lines
 
-  /// Makes the file in this folder; else it is made among temporary files once it is needed. @throws Error(io)
+  /// Makes the file in this folder. Without this call it is made among temporary files when needed. @throws Error(io)
   void keep_in(const std::filesystem::path& folder);
-  /// @pre as many numbers as every line before @throws Error(io)
+  /// @pre as many numbers as in every line before @throws Error(io)
   void add(std::span<const double> line);
 
   std::size_t size() const { return lines_; }
   /// Valid until the next call. @throws Error(io)
   std::span<const double> line(std::size_t i) const;
-  /// Of all lines. @throws Error(io)
+  /// Returns a column of all lines. @throws Error(io)
   std::vector<double> column(std::size_t k) const;
 
  private:
@@ -39,7 +39,7 @@ class KeptLines {
   std::unique_ptr<std::FILE, Close> file_;
   std::size_t width_ = 0, lines_ = 0;
   std::vector<double> last_;           // the block that is not whole yet
-  mutable std::vector<double> block_;  // the whole one that was read last
+  mutable std::vector<double> block_;  // the whole block that was read last
   mutable std::size_t read_ = 0;       // its number + 1; 0: none
   mutable std::vector<double> line_;
 };

@@ -1,4 +1,4 @@
-// What late forces make or take, in the summary of a run.
+// Energy of late forces, in the summary of a run.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,8 +7,8 @@
 
 namespace furrow::output {
 
-/// `interface` of summary.json: what late forces make or take from `from` on, interface by interface: ground and rim of
-/// each wheel, and what the rig's own rule leaves over of the work that goes through it.
+/// `interface` of summary.json: energy that late forces create or take from `from` on, for the ground and the rim of
+/// each wheel, and the residual of the rig's own time integration.
 nlohmann::ordered_json lag_json(const SummaryInput& input, double from);
 
 }  // namespace furrow::output

@@ -10,15 +10,15 @@
 namespace furrow::output {
 namespace {
 
-constexpr double kFloor = 1e-3;       // of load × radius, that at least passes a wheel
-constexpr double kSettlement = 0.05;  // of the radius, of the bounce that a window lasts
+constexpr double kFloor = 1e-3;       // of load × radius, the least work that passes a wheel
+constexpr double kSettlement = 0.05;  // of the radius, for the bounce period that sets a window's length
 
 }  // namespace
 
 double lag_share(double made, double passed, double load, double radius) {
   const double least = kFloor * std::abs(load) * radius;
   const double share = std::abs(made) / std::max({passed, least, 1e-300});
-  return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();  // the motion has no bounds
+  return std::isfinite(share) ? share : std::numeric_limits<double>::infinity();  // the motion is unbounded
 }
 
 double better_step(double step, double share, double bears) {

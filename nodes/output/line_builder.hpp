@@ -1,4 +1,4 @@
-// Makes the lines of a table from what is measured at every synchronization: each column by its kind.
+// Makes the lines of a table from the measurements at every synchronization: each column by its kind.
 #pragma once
 
 #include <span>
@@ -17,20 +17,20 @@ class LineBuilder {
 
   const std::vector<Column>& columns() const { return columns_; }
 
-  /// Once per interval, a value for each column: means are summed, all others replaced.
+  /// Adds an interval, with a value for each column: means are summed, all others replaced.
   void add(std::span<const double> measured);
-  /// The line for the intervals added since the last take(): valid until the next. Derived columns are left as
+  /// Returns the line for the intervals added since the last take(), valid until the next. Derived columns stay as
   /// measured.
   std::span<const double> take();
 
-  /// As of the last add(); means are sums since the last line.
+  /// Values after the last add(); means are sums since the last line.
   std::span<const double> now() const { return values_; }
-  /// What turns those sums into means.
+  /// Factor that turns these sums into means.
   double share() const { return count_ > 0.0 ? 1.0 / count_ : 0.0; }
 
-  /// Every column under `<folder><its name>`, so that the order of columns may change.
+  /// Saves every column under `<folder><its name>`, so that the order of columns may change.
   void save(Archive& archive, const std::string& folder) const;
-  /// @throws Error(io) when a column is missing
+  /// @throws Error(io) if a column is missing
   void restore(const Archive& archive, const std::string& folder);
 
  private:

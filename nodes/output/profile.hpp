@@ -1,5 +1,5 @@
-// Where the wall time of a run goes, step by step: `furrow run --profile` writes profile.json, a Chrome trace
-// (chrome://tracing, ui.perfetto.dev) with one row per rank.
+// Wall time of a run, step by step: `furrow run --profile` writes profile.json, a Chrome trace (chrome://tracing,
+// ui.perfetto.dev) with one row per rank.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class StepProfile {
   void advanced(std::int64_t step) { start(step, 2); }
   /// Step number and the three times of each recorded step, s of wall_clock().
   const std::vector<double>& times() const { return times_; }
-  /// What all synchronizations took, waiting included, s; recorded or not.
+  /// Duration of all synchronizations, recorded or not, including waiting, s.
   double exchanging() const { return exchanging_; }
 
  private:

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kInch = 0.0254;          // m
 constexpr double kAverageDepth = 3.47;    // cone index over its gradient, in [Mason 2016, Eq. (2)]
 constexpr double kWesSlip = 0.2;          // of the net traction of wes_sand
-constexpr double kLeastWesNumeric = 4.8;  // below it the net traction is below 0
+constexpr double kLeastWesNumeric = 4.8;  // the net traction is negative below it
 
 Traction of_load(double load, double gross, double resistance) {
   return {load * gross, load * resistance, load * (gross - resistance)};
@@ -141,7 +141,7 @@ Traction wes_sand(const SoilWheel& w) {
 /// resistance/W = 0.4 r + 0.6 s − 0.03 powered, 0.21 r − 0.75 s + 0.04 towed [Williams 2019, Eqs. (10), (9)]
 Traction mason_sand(const SoilWheel& w) {
   const double r = pressure_ratio(w), c = 1.56 - 0.022 / r;
-  if (!(c > 0.0)) return {};  // soil so hard that the equation has no meaning
+  if (!(c > 0.0)) return {};  // the soil is so hard that the equation has no meaning
   const double most = 0.42 + 0.009 / r, a = 0.76 + 0.014 / r;
   const double gross = -0.5 + (most + 0.5) / std::pow(1.0 + a * std::exp(-7.0 * w.slip), 1.0 / c);
   return of_load(w.load, gross, w.slip >= 0.0 ? 0.4 * r + 0.6 * w.slip - 0.03 : 0.21 * r - 0.75 * w.slip + 0.04);

@@ -1,7 +1,7 @@
-// What published regressions of traction expect of a wheel on soil whose cone index is known, beside what a run found.
+// Traction of a wheel by published regressions, from the soil's cone index, to compare with a run's results.
 //
 // W load, b overall width, d diameter, h section height, δ deflection, CI cone index, s slip from the regression's own
-// zero. What each regression takes from where, and how well that is known: nodes/output/README.md, "Regressions".
+// zero. Sources of each regression and their reliability: nodes/output/README.md, "Regressions".
 //   [Brixius 1987]   Traction prediction equations for bias ply tires, ASAE Paper 87-1622
 //   [Al-Hamed 1994]  Al-Hamed, Grisso, Zoz, Von Bargen: Tractor performance spreadsheet for radial tires, Computers and
 //                    Electronics in Agriculture 10
@@ -24,7 +24,7 @@
 
 namespace furrow::output {
 
-/// A wheel on soil, as regressions see it. NaN: not known.
+/// NaN: not known.
 struct SoilWheel {
   double cone_index = NAN;      // CI, mean over the uppermost 0.15 m, Pa
   double diameter = NAN;        // d, undeformed, m
@@ -35,7 +35,7 @@ struct SoilWheel {
   double slip = NAN;            // s
 };
 
-/// What a regression gives, N; NaN where it gives none.
+/// Forces by a regression, N; NaN if it gives none.
 struct Traction {
   double gross = NAN, resistance = NAN, net = NAN;
 };
@@ -45,9 +45,9 @@ Traction brixius_bias(const SoilWheel& wheel);
 Traction brixius_radial(const SoilWheel& wheel);
 /// s ≥ 0; needs neither h nor δ
 Traction wismer_luth(const SoilWheel& wheel);
-/// s > 0. The net traction holds at 20 % slip, whatever s. None of a rigid wheel, of which the numeric is 0.
+/// s > 0. The net traction holds at 20 % slip for any s. Gives none for a rigid wheel, whose numeric is 0.
 Traction wes_sand(const SoilWheel& wheel);
-/// Any s, the powered resistance from s = 0 on and that of towed wheels below.
+/// Any s: the resistance is that of powered wheels from s = 0 on and that of towed wheels below.
 Traction mason_sand(const SoilWheel& wheel);
 
 /// Radius at which a wheel rolls without torque, m: R − δ/3, an estimate [Jazar 2008, Sect. 3.3].
@@ -58,14 +58,14 @@ inline double no_pull_radius(double radius, double deflection) {
   return 2.5 * radius * loaded / (1.5 * radius + loaded);
 }
 
-/// The slip of one wheel counted from two other zeros than the undeformed radius.
+/// The slip of one wheel, counted from two zeros other than the undeformed radius.
 struct SlipZeros {
   double free_rolling = NAN, no_pull = NAN;
 };
 
 /// `regressions` of the summary; null without a cone index.
-/// @param wheel whose slip is not used @param cohesive the soil is, so that regressions of sand do not hold for it, nor
-/// those of loam for any other
+/// @param wheel its slip is not used @param cohesive if the soil is cohesive, regressions for sand are left out,
+/// otherwise those for loam
 nlohmann::ordered_json regressions_json(SoilWheel wheel, const SlipZeros& slip, bool cohesive);
 
 }  // namespace furrow::output

@@ -17,7 +17,7 @@
 namespace furrow::output {
 namespace {
 
-/// @throws Error(io) when the checkpoint knows no such table
+/// @throws Error(io) if the checkpoint does not contain this table
 const checkpoint::SeriesMark& mark_of(const checkpoint::ResumePoint& resume, const std::string& subject) {
   for (const checkpoint::SeriesMark& mark : resume.manifest.series)
     if (mark.subject == subject) return mark;
@@ -29,7 +29,6 @@ void label(Hdf5Writer& file, const std::string& dataset, const std::string& unit
   file.attribute_of(dataset, "long_name", long_name);
 }
 
-/// A coordinate of `count` cells.
 void put_cells(Hdf5Writer& file, const std::string& name, double first, double cell, int count,
                const std::string& long_name) {
   std::vector<double> places;
@@ -39,7 +38,7 @@ void put_cells(Hdf5Writer& file, const std::string& name, double first, double c
   file.lay_along(name, {name});
 }
 
-/// terrain/x_m, terrain/y_m and terrain/grid, along which the surfaces before and after lie.
+/// Writes terrain/x_m, terrain/y_m and terrain/grid, the axes of the surfaces before and after.
 void put_height_axes(Hdf5Writer& file, const HeightField& field) {
   if (field.nx == 0) return;
   put_cells(file, "terrain/x_m", field.x0, field.cell, field.nx, "place of the cell's centre, forward");
@@ -47,7 +46,7 @@ void put_height_axes(Hdf5Writer& file, const HeightField& field) {
   file.put_axis("terrain/grid", 3);
 }
 
-/// @pre their axes were put for a field on the same grid
+/// @pre their axes were written for a field on the same grid
 void put_heights(Hdf5Writer& file, const std::string& when, const HeightField& field) {
   const std::string name = "terrain/height_" + when;
   FURROW_ASSERT(field.height.size() == static_cast<std::size_t>(field.nx) * field.ny, name, field.height.size(),
@@ -61,7 +60,7 @@ void put_heights(Hdf5Writer& file, const std::string& when, const HeightField& f
   file.lay_along(name + "_grid", {"terrain/grid"});
 }
 
-/// series/<subject>/<column>, along the column that is the table's time.
+/// Writes series/<subject>/<column>, along the column of the table's time.
 void put_table(Hdf5Writer& file, const Table& table) {
   const std::string group = "series/" + table.subject + "/", time = group + "time_s";
   for (const Column& column : table.columns) {
@@ -75,13 +74,13 @@ void put_table(Hdf5Writer& file, const Table& table) {
   for (const Column& column : table.columns) file.lay_along(group + column.name, {time});
 }
 
-/// The tables of the wheels are the first ones, in the order of the rig's.
+/// Writes the names of wheels. The tables of the wheels are the first ones, in the order of the rig's wheels.
 void put_wheel_names(Hdf5Writer& file, std::span<const Table> tables, const rigs::RigDescription& rig) {
   for (std::size_t k = 0; k < rig.wheels.size(); ++k)
     if (!rig.wheels[k].name.empty()) file.attribute_of("series/" + tables[k].subject, "name", rig.wheels[k].name);
 }
 
-/// They show an end that the run is no longer at.
+/// Removes plots and report, which show an end that is no longer the run's.
 void remove_plots(const std::filesystem::path& run) {
   std::error_code ignored;
   for (const std::string& name : launch::RunList::read(run).find(run).files)
@@ -117,7 +116,7 @@ std::filesystem::path Results::file_of(const Table& table) const {
   return directory_ / table_file(table.subject, cards_.front().wheel_count);
 }
 
-/// Before any rank writes one of them: the others wait for the rig until they are placed.
+/// Lists all files before any rank writes one: the other ranks wait for the rig until they are placed.
 void Results::list_files() const {
   std::vector<std::string> names{"scenario.json", "results.h5", "results.xdmf", "summary.json", "summary_failed.json"};
   for (const Table& table : tables_) names.push_back(file_of(table).filename().string());
@@ -172,9 +171,10 @@ void Results::add(int table, std::span<const double> line) {
 }
 
 void Results::write_hdf5(std::span<const FinalReport> reports) const {
-  // series/<subject>/<column>: as the subject's CSV file, same names; attribute `name` of a wheel's group: what the
-  // vehicle's file calls it. terrain/height_before, height_after: (nx, ny) m, NaN where no grain is, over terrain/x_m
-  // (nx), terrain/y_m (ny); terrain/height_*_grid: x and y of the first cell's centre and the cell's size, m.
+  // series/<subject>/<column>: as in the subject's CSV file, same names; attribute `name` of a wheel's group: its name
+  // in the vehicle's file. terrain/height_before, height_after: (nx, ny) m, NaN where there is no grain, over
+  // terrain/x_m (nx), terrain/y_m (ny); terrain/height_*_grid: x and y of the first cell's centre and the cell's size,
+  // m.
   Hdf5Writer file(directory_ / "results.h5");
   file.attribute("scenario", scenario_.name);
   file.attribute("scenario_digest", scenario_.digest);
@@ -209,10 +209,10 @@ std::string Results::finish(const RunEnd& end, bool stopped) {
   write_hdf5(end.reports);
   std::string lost_frames = write_xdmf_index(directory_);
   if (stopped) return lost_frames;
-  // Of a checkpoint or a frame that could not be written while the folder had another name.
+  // Removes rests of a checkpoint or a frame that could not be written while the folder had another name.
   checkpoint::remove_checkpoints_after(directory_, std::numeric_limits<std::int64_t>::max());
   launch::remove_unfinished(directory_);
-  // Of an earlier failure: until now it said that the run may be stepped more finely.
+  // Until now this file of an earlier failure could suggest a smaller step for the run.
   std::error_code ignored;
   std::filesystem::remove(directory_ / "summary_failed.json", ignored);
   write_whole_file(directory_ / "summary.json", summary_text(summary_input(end)));

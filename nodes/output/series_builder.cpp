@@ -1,9 +1,9 @@
-// Interface energy errors: a force crosses one interval late, so that the works compared are those of the *same*
-// force on either side (the ground frame on both):
+// Interface energy errors. A force crosses one interval late, so the compared works are those of the *same* force on
+// either side (the ground frame on both):
 //   tire–terrain  e = Σ f̄ₙ·Δx_tire(n+1) − Σ_substeps f·Δx̃_terrain(n)
 //                 with contact tangents, whose forces are those expected of the *same* interval, at n for both
 //   rim–tire      e = (Fₙ·Δx + Mₙ·ωH)_rim(n+1) − (F·Δx + M·ωH)_tire(n),  F, M the complete spindle wrench
-// Those of a prompt tire cross within their interval: both works are those of n.
+// The forces of a prompt tire cross within their interval: both works are those of n.
 #include "nodes/output/series_builder.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Clears what each interval measures, so that a column that is forgotten shows.
+/// Clears the values of each interval, so that a forgotten column becomes visible.
 void forget_interval(WheelRow& row) {
   visit_fields(row, [](double& value, const Column& column) {
     if (column.kind == ColumnKind::mean || column.kind == ColumnKind::instant) value = kNotMeasured;
@@ -61,9 +61,9 @@ void SeriesBuilder::measure_means(const StepReports& r) {
   row_.aligning_moment = r.wheel.aligning_moment;
 }
 
-/// The wrench is what acted on the tire in this interval, whenever the terrain computed it, and the contact centre is
-/// that of the interval's middle: so the moments balance what the rim feels. The ground plane is the undisturbed
-/// surface, or where the tire has sunk below it the tire's lowest point: the bottom of the rut.
+/// Uses the wrench that acted on the tire in this interval, whenever the terrain computed it, and the contact centre at
+/// the interval's middle; thus the moments balance those on the rim. The ground plane is the undisturbed surface. If
+/// the tire has sunk below it, the plane is at the tire's lowest point, the bottom of the rut.
 void SeriesBuilder::measure_tire_axes(const StepReports& r) {
   RimState middle = r.rim;
   if (memory_.started > 0.0) middle.position = 0.5 * (memory_.last_rim_position + r.rim.position);
@@ -130,8 +130,8 @@ void SeriesBuilder::measure_instants(const StepReports& r) {
   row.terrain_potential_energy = r.terrain.energies.potential;
   row.terrain_elastic_energy = r.terrain.elastic_energy;
   row.tire_energy = r.tire.diagnostics.kinetic_energy + r.tire.diagnostics.strain_energy();
-  // Vertical motion and height of the carried mass; its imposed horizontal motion exchanges no net energy at
-  // constant speed and is in the raw pull's work while it changes.
+  // Vertical motion and height of the carried mass. Its imposed horizontal motion exchanges no net energy at constant
+  // speed; while the speed changes, the raw pull's work includes this energy.
   const double mass = r.wheel.carried_mass, w = r.wheel.vertical_speed, u = r.wheel.speed;
   row.carried_energy = 0.5 * mass * (w * w + u * u) - (mass * r.wheel.gravity).dot(r.rim.position);
   row.contacts_tire = static_cast<double>(r.contact.contacts);

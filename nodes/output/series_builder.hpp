@@ -1,4 +1,4 @@
-// Turns what rig, tire and terrain report of a wheel at every synchronization into lines of its table.
+// Makes lines of a wheel's table from the reports of rig, tire and terrain at every synchronization.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace furrow::output {
 
-/// What a line of wheel k is made from; all describe the interval that ends now.
+/// Inputs for a line of wheel k; all describe the interval that ends now.
 struct StepReports {
   double time = 0.0;  // t_n, s
   rigs::WheelReport wheel;
@@ -31,24 +31,24 @@ class SeriesBuilder {
   /// @pre radius > 0, step > 0
   SeriesBuilder(double radius, double ground, double step);
 
-  /// Once per synchronization n ≥ 1. @pre time grows; travel is a unit vector
+  /// Call it once per synchronization n ≥ 1. @pre time grows; travel is a unit vector
   void add(const StepReports& reports);
-  /// The line for the intervals added since the last take().
+  /// Returns the line for the intervals added since the last take().
   WheelRow take();
 
-  /// Σ|impulse sent per interval| up to the one before the last: the interval in flight excluded, N s.
+  /// Σ|impulse sent per interval| up to the last but one interval: the interval in flight is excluded, N s.
   double impulse_sent_abs() const { return memory_.sent_abs_arrived; }
-  /// Impulse sent up to the interval before the last, which is what the tire has received by now, N s.
+  /// Impulse sent up to the last but one interval, which the tire has received by now, N s.
   Vec3 impulse_sent_arrived() const { return memory_.sent_arrived; }
-  /// Instants and cumulative values as of the last add(); its means are not yet divided.
+  /// Instants and cumulative values after the last add(); its means are not yet divided.
   WheelRow now() const;
-  /// Of the last interval alone, beside what is cumulative.
+  /// Values of the last interval alone; cumulative columns are since the start.
   const WheelRow& last() const { return row_; }
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);
 
-  /// What is carried from one synchronization to the next beside the lines.
+  /// Values carried from one synchronization to the next besides the lines.
   struct Memory {
     double started = 0.0;                           // 1 once an interval was added
     double rolled = 0.0;                            // Σ speed in the wheel's plane since the last line, m/s
@@ -56,7 +56,7 @@ class SeriesBuilder {
     double last_tire_work = 0.0;                    // cumulative until the interval before, J
     double last_rim_work = 0.0;                     // done on the tire in the interval before, J
     Vec3 sent = Vec3::Zero();                       // cumulative impulse, N s
-    Vec3 sent_arrived = Vec3::Zero();               // the same, without the interval in flight, N s
+    Vec3 sent_arrived = Vec3::Zero();               // cumulative impulse without the interval in flight, N s
     double sent_abs = 0.0, sent_abs_arrived = 0.0;  // N s
     Wrench last_spindle;                            // on the rim by the tire, N, N m
     Vec3 last_rim_position = Vec3::Zero();          // m
@@ -70,7 +70,7 @@ class SeriesBuilder {
   void measure_instants(const StepReports& r);
 
   double radius_, ground_, step_;
-  WheelRow row_;  // of the last interval: what is cumulative or largest continues from it
+  WheelRow row_;  // of the last interval: cumulative and largest values continue from it
   LineBuilder lines_;
   std::vector<double> values_;  // of row_
   Memory memory_;

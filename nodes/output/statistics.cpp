@@ -64,7 +64,7 @@ DriftTest drift_test(std::span<const double> x, double mean) {
   static const double limit = student_t(kDriftCosines, 0.5 * kDriftLevel);
   double squares = 0.0;
   for (int j = 2; j <= kDriftCosines + 1; ++j) squares += std::pow(cosine_sum(x, mean, j), 2);
-  // C(1) has the sign of a first half above the second.
+  // C(1) is positive if the first half is above the second.
   const double first = -cosine_sum(x, mean, 1), others = std::sqrt(squares / kDriftCosines);
   if (first != 0.0) test.t = first / others;
   test.found = std::abs(test.t) > limit;

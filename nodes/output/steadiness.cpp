@@ -11,10 +11,10 @@ namespace furrow::output {
 namespace {
 
 constexpr double kSteadySem = 0.02;     // of the load: largest standard error of a steady pull
-constexpr double kSmallPull = 0.005;    // of the load: such a change of the pull is none
-constexpr double kSmallSinkage = 0.02;  // of the settlement: such a change of the sinkage is none
-constexpr double kBounces = 3.0;        // the window must hold
-constexpr double kSteadyTravel = 2.0;   // undeformed radii the window must hold
+constexpr double kSmallPull = 0.005;    // of the load: a smaller change of the pull is ignored
+constexpr double kSmallSinkage = 0.02;  // of the settlement: a smaller change of the sinkage is ignored
+constexpr double kBounces = 3.0;        // least number in the window
+constexpr double kSteadyTravel = 2.0;   // least travel in the window, in undeformed radii
 constexpr double kHardening = 1.9;      // κ of bounce_period
 
 bool drifts(const SeriesStatistics& series, double small) {

@@ -1,4 +1,4 @@
-// The table of one subject while a run continues: what every wheel has, if it is a wheel, and what the rig adds.
+// The table of one subject during a run: the columns of every wheel, if it is a wheel, and those that the rig adds.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace furrow::output {
 
 class SubjectSeries {
  public:
-  /// @param wheel of a wheel; the tables of other subjects begin with the time
+  /// @param wheel for a wheel; the tables of other subjects begin with the time
   explicit SubjectSeries(const rigs::Subject& subject, std::optional<SeriesBuilder> wheel = std::nullopt);
 
   /// The subject's table without a line.
@@ -24,12 +24,12 @@ class SubjectSeries {
   /// @pre the subject is a wheel
   const SeriesBuilder& wheel() const { return *wheel_; }
 
-  /// Once per synchronization n ≥ 1. @pre the subject is a wheel
+  /// Adds a synchronization n ≥ 1. @pre the subject is a wheel
   void add(const StepReports& reports, const rigs::Rig& rig, int subject);
-  /// Of any other subject. @param time t_n, s
+  /// Adds a synchronization of any other subject. @param time t_n, s
   void add(double time, const rigs::Rig& rig, int subject);
 
-  /// The line for the intervals added since the last take(), as it is written: valid until the next.
+  /// Returns the line for the intervals added since the last take(), as in the file; valid until the next.
   std::span<const double> take(const rigs::Rig& rig, int subject);
 
   void save(Archive& archive) const;

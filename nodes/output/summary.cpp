@@ -33,11 +33,10 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have come to
+constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have reached
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 constexpr char kDistance[] = "distance_m";  // of a whole vehicle, if the rig is one
 
-/// What the summary of one wheel is computed from.
 struct WheelInput {
   const SummaryInput& run;
   int wheel = 0;
@@ -47,7 +46,7 @@ struct WheelInput {
   const NodeCard& card() const { return run.cards[1 + wheel]; }
 };
 
-/// What tire and ground give under the load, m.
+/// Settlement of tire and ground under the load, m.
 double settlement(const WheelInput& in, const Window& w) {
   const auto given = [&](const WheelRow& r) {
     return r.sinkage + in.card().tire_radius - (r.axle_height - r.lowest_point);
@@ -124,7 +123,7 @@ void add_rut(const WheelInput& in, Json& json) {
   json["rut_missing_because"] = rut.missing.empty() ? Json(nullptr) : Json(rut.missing);
 }
 
-/// The slip counted from its other zeros, and what regressions expect of this wheel.
+/// Adds the slip counted from its other zeros, and the results of regressions for this wheel.
 void add_regressions(const WheelInput& in, const Window& w, double deflection, Json& json) {
   const tire::TireDescription tire = in.run.scenario.tires[in.wheel]->describe();
   const terrain::TerrainDescription terrain = in.run.scenario.terrain->describe();
@@ -187,7 +186,7 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   json["iso_w"] = tire_axes_means(w);
 }
 
-/// What the rank of the terrain with most grains has more than the mean of all, of that mean; NaN where unknown.
+/// Excess of the terrain rank with most grains over the mean of all, as a share of that mean; NaN if unknown.
 double imbalance(const SummaryInput& in, std::int64_t FinalReport::*grains) {
   std::vector<std::int64_t> counts;
   for (const FinalReport& r : in.end.reports)
@@ -218,7 +217,7 @@ Json ranks_json(const SummaryInput& in) {
   return ranks;
 }
 
-/// What was sent against what arrived, of the same forces: checks of the transport, not of the physics.
+/// Compares sent and received values of the same forces: this checks the transport, not the physics.
 void add_plumbing(const WheelInput& in, Json& json) {
   const SeriesBuilder& series = in.end.series;
   const SpindleReport& tire = in.end.tire;
@@ -239,8 +238,8 @@ void add_plumbing(const WheelInput& in, Json& json) {
   json["transfer_moment_residual"] = json_number(end.transfer_moment_residual);
 }
 
-/// What a table says from line `first` on, by the names of its columns: the means of the lines, and where a column
-/// counts since the start of the run its last value. So every column reaches the summary, those of rigs too.
+/// Figures of a table from line `first` on, by the names of its columns: the mean of the lines, or the last value of a
+/// column that counts since the start of the run. Thus every column reaches the summary, including those of rigs.
 Json column_figures(const Table& table, std::size_t first) {
   Json json;
   for (const Column& column : table.columns) {
@@ -257,15 +256,14 @@ Json column_figures(const Table& table, std::size_t first) {
   return json;
 }
 
-/// Where a run ended so early that little is left of its averaging window, the window
-/// begins after the same share of it.
+/// Start of the averaging window. If a run ended so early that little of the window is left, the window begins at the
+/// same share of the run.
 double average_from(const SummaryInput& in) {
   const scenario::RunOptions& run = in.scenario.run;
   const bool enough = in.end.time - run.average_from >= kLeastWindow * (run.end - run.average_from);
   return in.failure || enough ? run.average_from : run.average_from * in.end.time / run.end;
 }
 
-/// What a rig found beside its columns.
 void add_findings(const rigs::RigFindings& findings, Json& json) {
   for (const rigs::RigEvent& event : findings.events) {
     json["events"].push_back({{"event", event.what}, {"from_s", event.from}, {"to_s", json_number(event.to)}});
@@ -298,7 +296,7 @@ Json wheel_summary(const WheelInput& in) {
   return json;
 }
 
-/// @param rows of any wheel: what they say of the terrain is the same
+/// @param rows of any wheel: the terrain's columns are the same in all
 void add_cost(const SummaryInput& in, const WheelRows& rows, Json& json) {
   const double time = in.end.time;
   json["simulated_s"] = time;
@@ -325,7 +323,7 @@ void add_cost(const SummaryInput& in, const WheelRows& rows, Json& json) {
   json["cpu"] = cpu_model();
 }
 
-/// What is asked of a vehicle first; all of its columns are in `subjects`. @param gravity  against the ground, m/s²
+/// Adds the main figures of a vehicle; all of its columns are in `subjects`. @param gravity against the ground, m/s²
 void add_vehicle(std::span<const Table> tables, double gravity, Json& json) {
   const auto table =
       std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.find(kDistance).has_value(); });

@@ -79,7 +79,7 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
   if (!text.starts_with(header))
     throw io_error(file_.string(),
                    "has other columns than this program writes: continue with the program that began the run");
-  // Of a copy that shares its files with this one: what it holds must not change.
+  // For a copy that shares its files with this one: the content of the copy must not change.
   if (struct stat own{}; fstat(fileno(stream_.get()), &own) == 0 && own.st_nlink > 1) {
     write_whole_file(file_, text);
     stream_.reset(std::fopen(file_.c_str(), "rb+"));
@@ -99,10 +99,11 @@ TableWriter::TableWriter(const std::filesystem::path& file, const checkpoint::Se
   only_append();
 }
 
-/// Else the system would fill what somebody cut off with zeros, and the file would have its length again.
+/// Appends only: otherwise the system would fill a part that somebody cut off with zeros, and the file would have its
+/// old length.
 void TableWriter::only_append() { check(fcntl(fileno(stream_.get()), F_SETFL, O_APPEND) == 0); }
 
-/// The line at `text`, which ends in a line feed; null when it is none.
+/// Reads the line at `text`, which ends in a line feed; null if it is not a line.
 const char* TableWriter::read_line(const char* text, std::span<double> line) const {
   for (std::size_t i = 0; i < width_; ++i) {
     char* end = nullptr;
@@ -140,7 +141,7 @@ bool TableWriter::stands() const {
 
 void TableWriter::write_again(const Table& table) {
   FURROW_ASSERT(std::cmp_equal(table.lines(), lines_), table.lines(), lines_);
-  // What stands there, if only in part, may be all that a checkpoint goes on from: on a full disk it stays.
+  // The present file, even if partial, may be all from which a checkpoint can continue: it stays if the disk is full.
   NewFile made(file_);
   hash_ = Hash();
   bytes_ = 0;

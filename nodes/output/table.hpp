@@ -1,5 +1,5 @@
 // A table of results: one subject (a wheel, a body, the vehicle), its columns, and the lines written so far. The same
-// columns serve the CSV file, the HDF5 file and the way back from a file that a run continues with.
+// columns serve the CSV file, the HDF5 file and the reading of a file with which a run continues.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@ namespace furrow::output {
 struct Table {
   std::string subject;  // "wheel0", "vehicle"
   std::vector<Column> columns;
-  KeptLines kept;  // as they are written
+  KeptLines kept;  // as in the file
 
   std::size_t lines() const { return kept.size(); }
   /// Valid until the next call.
   std::span<const double> line(std::size_t i) const { return kept.line(i); }
   std::optional<std::size_t> find(std::string_view column) const;
-  /// The values of a column; none when there is no such column.
+  /// The values of a column; none if there is no such column.
   std::vector<double> column(std::string_view name) const;
 };
 
-/// `base` with `added` in the places that Column::after asks for.
+/// Inserts `added` into `base` in the places that Column::after sets.
 std::vector<Column> merged_columns(std::vector<Column> base, std::span<const Column> added);
 
 /// A table as CSV, 17 digits. Every write is checked.
@@ -40,17 +40,17 @@ class TableWriter {
  public:
   /// @throws Error(io)
   TableWriter(const std::filesystem::path& file, const Table& table);
-  /// Goes on with a file that was cut short or written on since `mark`: cuts it there.
+  /// Continues a file that was cut short or written on since `mark`: cuts it there.
   /// @param table receives its lines
-  /// @throws Error(io) when the file does not begin with what the mark stands for, or has other columns
+  /// @throws Error(io) if the file does not begin with the marked content, or has other columns
   TableWriter(const std::filesystem::path& file, const checkpoint::SeriesMark& mark, Table& table);
 
   /// @param line a value for each column of the table
   void add(std::span<const double> line);
   void flush();
-  /// Whether the file is still there and holds what was flushed; who edits it may have put another in its place.
+  /// Checks whether the file still exists with the flushed content; an editor may have replaced it.
   bool stands() const;
-  /// Writes the file again, which takes the place of what stands there only when it is whole.
+  /// Writes the file again; it replaces the present one only when it is whole.
   /// @param table that holds all lines @throws Error(io)
   void write_again(const Table& table);
   /// Flushes to the disk.

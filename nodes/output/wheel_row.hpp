@@ -1,5 +1,5 @@
-// What the table of results says of every wheel, whatever the rig: one list of columns beside the struct. A column is
-// added by a member, its line in the list, and a value for it in SeriesBuilder.
+// Columns of every wheel's table for any rig: a struct and one list of columns. To add a column, add a member, its line
+// in the list, and its value in SeriesBuilder.
 #pragma once
 
 #include "protocol/core/column.hpp"
@@ -28,7 +28,7 @@ struct WheelRow {
   double aligning_moment = 0.0;           // N m
   double vertical_momentum = 0.0;         // carried mass, kg m/s
   double momentum_x_tire = 0.0;           // tire's own momentum along the heading, kg m/s
-  Vec3 impulse_sent = Vec3::Zero();       // terrain's own account of what it gave the tire, N s
+  Vec3 impulse_sent = Vec3::Zero();       // what the terrain gave the tire by the terrain's own account, N s
   Vec3 impulse_received = Vec3::Zero();   // N s
   double energy_error = 0.0;              // Σe at the tire–terrain interface, J
   double energy_error_abs = 0.0;          // Σ|e|, J
@@ -58,10 +58,10 @@ struct WheelRow {
   double loaded_radius = 0.0;      // m
   // Mean forward speed of the wheel centre in the wheel's plane over the mean spin, m
   double effective_rolling_radius = 0.0;
-  double slip_ratio = 0.0;  // (ω R − v)/v after ISO 8855, −1 of a locked wheel, R as of slip, -
+  double slip_ratio = 0.0;  // (ω R − v)/v after ISO 8855, −1 for a locked wheel, R as in slip, -
 };
 
-/// The columns in the order of the files; those that users script against come first and keep their place.
+/// The columns in the order of the files. Columns on which users' scripts rely come first and keep their place.
 void visit_fields(FieldsOf<WheelRow> auto& r, auto&& visit) {
   using namespace column;
   visit(r.time, instant("time_s", "s"));

@@ -1,5 +1,5 @@
-// XDMF 3, https://www.xdmf.org/index.php/XDMF_Model_and_Format: a temporal collection of spatial collections, one grid
-// per tire and one for the grains; every grid points into that frame's HDF5 file.
+// XDMF 3, https://www.xdmf.org/index.php/XDMF_Model_and_Format: a temporal collection of spatial collections, with one
+// grid per tire and one for the grains. Every grid points into that frame's HDF5 file.
 #include "nodes/output/xdmf.hpp"
 
 #include <algorithm>
@@ -25,13 +25,13 @@ struct Frame {
   hsize_t points = 0, triangles = 0;
 };
 
-/// Of a table; 0 where there is none.
+/// Number of rows of a dataset; 0 if there is none.
 hsize_t rows(const Hdf5Reader& file, const std::string& name) {
   const std::vector<hsize_t> shape = file.shape(name);
   return shape.size() == 2 ? shape.front() : 0;
 }
 
-/// None for a file that cannot be read.
+/// None if the file cannot be read.
 std::optional<Frame> read_frame(const std::filesystem::path& run, const FrameName& name) {
   try {
     Frame frame;
@@ -57,7 +57,7 @@ Kinds kinds_in(const std::filesystem::path& run) {
   return kinds;
 }
 
-/// Kinds of which none can be read are left out.
+/// Leaves out kinds of which no frame can be read.
 Kinds readable(const std::filesystem::path& run, Kinds kinds) {
   std::erase_if(kinds, [&](const auto& kind) {
     return std::ranges::none_of(kind.second, [&](std::int64_t index) {
@@ -67,10 +67,10 @@ Kinds readable(const std::filesystem::path& run, Kinds kinds) {
   return kinds;
 }
 
-/// Instants of which a file is missing or cannot be read.
+/// Instants with a missing or unreadable file.
 struct LostInstants {
   std::int64_t count = 0;
-  std::string first;  // such a file
+  std::string first;  // the first such file
 
   void add(std::int64_t more, const FrameName& name) {
     if (count == 0) first = "frames/" + frame_file(name);
@@ -115,7 +115,7 @@ std::string write_xdmf_index(const std::filesystem::path& run) {
   const Kinds all = kinds_in(run), kinds = readable(run, all);
   if (kinds.empty()) {
     std::error_code error;
-    std::filesystem::remove(run / "results.xdmf", error);  // of frames that are gone
+    std::filesystem::remove(run / "results.xdmf", error);  // its frames are gone
     return {};
   }
   LostInstants lost;
@@ -125,7 +125,7 @@ std::string write_xdmf_index(const std::filesystem::path& run) {
       instants.insert(numbers.begin(), numbers.end());
     else
       lost.add(static_cast<std::int64_t>(numbers.size()), {kind, *numbers.begin()});
-  // Piece by piece: there may be a hundred thousand frames.
+  // Written piece by piece, because there may be a hundred thousand frames.
   NewFile file(run / "results.xdmf");
   file.write(
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"

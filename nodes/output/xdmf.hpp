@@ -1,4 +1,4 @@
-// The index by which ParaView opens a run: a time series of tire surfaces and grains, from the frames that exist.
+// The index with which ParaView opens a run: a time series of tire surfaces and grains, from the existing frames.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace furrow::output {
 
-/// Writes <run>/results.xdmf for the frames under <run>/frames: the instants at which every tire and the terrain left a
-/// readable file. None when there are no frames.
-/// @returns what to warn of: a file of an instant before the last that is lost; empty: none @throws Error(io)
+/// Writes <run>/results.xdmf for the frames under <run>/frames: the instants with a readable file of every tire and the
+/// terrain. Writes none if there are no frames.
+/// @returns a warning of a lost file before the last instant; empty: none @throws Error(io)
 std::string write_xdmf_index(const std::filesystem::path& run);
 
 }  // namespace furrow::output

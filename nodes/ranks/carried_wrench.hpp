@@ -1,4 +1,4 @@
-// What a rig that carries a tire's rigid-body mass as added mass needs of the spindle wrench.
+// The spindle wrench for a rig that carries a tire's rigid-body mass as added mass.
 #pragma once
 
 #include "nodes/ranks/node.hpp"

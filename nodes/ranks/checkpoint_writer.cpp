@@ -45,7 +45,7 @@ CheckpointPart CheckpointWriter::write_part(std::int64_t step) const {
     node_.save_setup(archive);
     save_cost(archive, cost_());
     const std::filesystem::path folder = checkpoint::unfinished_checkpoint(context_.directory, step);
-    // The run's own folder is never created here: it was moved or removed. The error then names the file in it.
+    // The run's own folder is never created here, because it was moved or removed. The error then names the file in it.
     std::error_code ignored, failed;
     std::filesystem::create_directory(folder.parent_path(), ignored);
     std::filesystem::create_directory(folder, failed);
@@ -119,7 +119,7 @@ void CheckpointWriter::complete(CheckpointPart own, CheckpointNeed need) {
   if (problem.empty()) {
     try {
       fault_point("checkpoint.manifest");
-      output::sync_frames(context_.directory);  // those before the checkpoint are not made again
+      output::sync_frames(context_.directory);  // frames before the checkpoint are not made again
       checkpoint::complete_checkpoint(context_.directory, manifest(step, std::move(parts)), scenario_.checkpoint.keep);
       fault_point("checkpoint.done");
       return;

@@ -1,4 +1,4 @@
-// Writes checkpoints while a run steps: every rank its part, the rig's rank what makes them one.
+// Writes checkpoints while a run steps: every rank writes its part, and the rig's rank completes the checkpoint.
 #pragma once
 
 #include "nodes/ranks/node.hpp"
@@ -6,7 +6,7 @@
 
 namespace furrow::ranks {
 
-/// What a node used so far, summed over the segments of its run.
+/// Resources that a node has used, summed over the segments of its run.
 struct NodeCost {
   double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
 };
@@ -17,24 +17,24 @@ void visit_fields(FieldsOf<NodeCost> auto& s, auto&& visit) {
   visit(s.wait_s, Field{"wait_s", "s"});
 }
 
-/// How much depends on a checkpoint.
 enum class CheckpointNeed {
-  wished,  // one that cannot be written leaves those before it in place: the user is warned and the run continues
-  last,    // the run is complete with it: lost() says why it could not be written, once the results are
+  wished,  // if it cannot be written, earlier ones stay: the user is warned and the run continues
+  last,    // the run is complete with it: lost() gives the reason if it could not be written, after the results are
   needed,  // the run stops with it: Error(io)
 };
 
 class CheckpointWriter {
  public:
-  /// @param cost returns what this node has used until now
+  /// @param cost returns the cost of this node so far
   CheckpointWriter(const scenario::Scenario& scenario, Node& node, Transport& transport, const RunContext& context,
                    std::span<const NodeCard> cards, std::function<NodeCost()> cost);
 
-  /// All ranks call it at the same step.
+  /// Writes a checkpoint; all ranks call it at the same step.
   void write(std::int64_t step, CheckpointNeed need);
 
   std::int64_t last_step() const { return last_step_; }
-  /// Why the last checkpoint of a complete run could not be written; empty if it was, and on all ranks but the rig's.
+  /// The reason why the last checkpoint of a complete run is missing; empty if it is written, and on ranks other than
+  /// the rig's.
   const std::string& lost() const { return lost_; }
 
  private:

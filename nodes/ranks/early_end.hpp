@@ -1,5 +1,5 @@
-// The step at which a run is complete before its planned end, as nodes keep it in checkpoints: they are written while
-// not all nodes know it yet.
+// The step at which a run is complete before its planned end. Nodes save it in checkpoints, because these may be
+// written while some nodes have not received it yet.
 #pragma once
 
 #include <cstdint>

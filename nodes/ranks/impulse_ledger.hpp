@@ -1,10 +1,10 @@
-// What a tire that uses contact tangents owes its terrain: the impulse that acted on each vertex less the impulse that
-// the terrain then reported of the same interval. It is handed back a share at a time,
+// Impulse that a tire with contact tangents owes its terrain: the impulse that acted on each vertex, less the impulse
+// that the terrain then reported for the same interval. A share of it is returned in each step,
 //
 //   L ← L + H (F_n − f̄_n),      f_{n+1} = f̄_n − β L/H,
 //
-// so that Σ impulses on the tire − Σ impulses on the terrain is what the ledger holds. β is small: handed back in a
-// hurry, a difference that comes from the vertex's acceleration would act like a negative mass.
+// so the ledger holds Σ impulses on the tire − Σ impulses on the terrain. β is small: a difference due to the vertex's
+// acceleration, if returned quickly, would act like a negative mass.
 #pragma once
 
 #include <vector>
@@ -20,12 +20,12 @@ class ImpulseLedger {
   ImpulseLedger() = default;
   explicit ImpulseLedger(int vertices) : owed_(vertices, Vec3::Zero()) {}
 
-  /// Takes what the terrain reports of the last interval, H = `duration`.
+  /// Subtracts the impulse that the terrain reports for the last interval, H = `duration`.
   void settle(const NodalForces& reported, double duration);
-  /// Changes reported forces into those of the next interval. At most half of a force is taken back; vertices that
-  /// touch nothing any more get their share as well. @pre settled
+  /// Changes reported forces into those of the next interval. At most half of a force is taken back; vertices that no
+  /// longer touch anything also get their share. @pre settled
   void hand_back(NodalForces& forces, double duration);
-  /// Books what acted over an interval. @pre duration > 0, here and above; all vertices are the ledger's
+  /// Adds the impulse that acted over an interval. @pre duration > 0, here and above; all vertices are the ledger's
   void book(const NodalForces& acted, double duration);
 
   Vec3 sum() const;                            // now, N s

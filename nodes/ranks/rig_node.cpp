@@ -1,4 +1,4 @@
-// The rig's rank: moves the wheels, gathers what all report, and writes the results.
+// The rig's rank: moves the wheels, gathers all reports, and writes the results.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -27,10 +27,10 @@
 namespace furrow::ranks {
 namespace {
 
-// Between the highest grain and the inflated tire: of its radius, and at most, m.
+// Gap between the highest grain and the inflated tire: of its radius, and at most, m.
 constexpr double kPlacementShare = 1.0 / 400.0, kMostPlacementGap = 1e-3;
 constexpr double kProgressInterval = 0.25;  // s of wall time
-constexpr double kFolderInterval = 1.0;     // s of wall time after which a folder that was moved is noticed
+constexpr double kFolderInterval = 1.0;     // s of wall time between checks whether the folder was moved
 
 class RigNode : public Node {
  public:
@@ -64,7 +64,7 @@ class RigNode : public Node {
       walls_.emplace(*bin, scenario_.rig->stop_before_wall(), wheel_places());
     make_tables();
     check_folder();
-    // First of all, as the others begin to write frames once they are placed.
+    // Done first, because the others begin to write frames once they are placed.
     if (!context.directory.empty()) {
       std::vector<output::Table> tables;
       for (const output::SubjectSeries& series : series_) tables.push_back(series.empty_table());
@@ -151,7 +151,7 @@ class RigNode : public Node {
   void fail(ExitCode code, const std::string& text) noexcept override {
     try {
       if (!results_) return;
-      check_folder();  // by now it may be another run's
+      check_folder();  // by now the folder may be another run's
       std::vector<output::WheelEnd> wheels;
       if (time_ > time_start_) wheels = wheel_ends();
       flush();
@@ -160,12 +160,12 @@ class RigNode : public Node {
                       terrain_,
                       *accounts_,
                       time_,
-                      wall_start_ > 0.0 ? wall_clock() - wall_start_ : 0.0,  // 0: it has not begun to step
+                      wall_start_ > 0.0 ? wall_clock() - wall_start_ : 0.0,  // 0: the run has not begun to step
                       end_reason_,
                       rig_->findings()},
                      {code, text});
     } catch (...) {
-      // The failure itself is reported. A further error of the disk must not hide it.
+      // The failure itself is reported; a further error of the disk must not hide it.
     }
   }
 
@@ -227,7 +227,6 @@ class RigNode : public Node {
     return wheels;
   }
 
-  /// What shall be done when all stand at `step`.
   Order order(std::int64_t step) {
     FURROW_ASSERT(step >= 0, step);
     if (next_ == Order::stop) return Order::stop;
@@ -259,7 +258,7 @@ class RigNode : public Node {
     accounts_.emplace(std::move(added), scenario_.run.step);
   }
 
-  /// @throws Error(physics) naming what a rig does not say of itself
+  /// @throws Error(physics) naming an account that the rig does not give
   void keep_accounts(const StepHeader& header, const TerrainReport& terrain) {
     const rigs::RigAccounts rig = rig_->accounts();
     if (const char* missing = first_missing(rig))
@@ -279,7 +278,7 @@ class RigNode : public Node {
         series_[k].add(header.time, *rig_, k);
   }
 
-  /// @throws Error(physics) where late forces decide the result, unless run.on_lag has it go on
+  /// @throws Error(physics) if late forces affect the result, unless run.on_lag lets the run continue
   void watch_lag(const TerrainReport& terrain) {
     for (int k = 0; k < rig_->wheel_count(); ++k) {
       const auto window =
@@ -347,7 +346,7 @@ class RigNode : public Node {
   TerrainSetup setup_;
   std::vector<Wrench> wrenches_;
   std::vector<SpindleReport> tires_;           // the last ones
-  std::vector<output::SubjectSeries> series_;  // as rig_->subjects()
+  std::vector<output::SubjectSeries> series_;  // in the order of rig_->subjects()
   std::vector<output::LagWatch> lag_;          // of each wheel
   bool lag_told_ = false;
   std::optional<output::Accounts> accounts_;  // once the tables are made
@@ -359,9 +358,9 @@ class RigNode : public Node {
   double wall_start_ = 0.0, shown_ = 0.0, checked_ = 0.0;  // wall time, s
   double time_start_ = 0.0;                                // simulated, when this segment began, s
   double time_ = 0.0;                                      // simulated, of the last synchronization, s
-  TerrainState terrain_;                                   // then
+  TerrainState terrain_;                                   // at the last synchronization
   Order next_ = Order::go_on, due_ = Order::go_on;
-  std::optional<WallWatch> walls_;  // of a bin, if the run is to end before them
+  std::optional<WallWatch> walls_;  // of a bin, if the run ends before them
   std::int64_t ends_at_ = kNotYet;
   output::EndReason end_reason_ = output::EndReason::run_end;
 };

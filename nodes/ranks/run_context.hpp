@@ -1,4 +1,4 @@
-// What a rank is given beside its scenario.
+// Inputs of a rank besides its scenario.
 #pragma once
 
 #include <filesystem>

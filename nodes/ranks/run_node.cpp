@@ -18,7 +18,7 @@
 namespace furrow::ranks {
 namespace {
 
-/// Of all threads of this process, s; in-process tests share it.
+/// Processor time of all threads of this process, s; in-process tests share it.
 double cpu_s() { return processor_time(CLOCK_PROCESS_CPUTIME_ID); }
 
 }  // namespace
@@ -52,18 +52,18 @@ std::int64_t run_steps(Node& node, Transport& transport, double step, std::int64
 
 namespace {
 
-/// The node's stepping loop, with what it costs.
+/// The node's stepping loop and its cost.
 class RunLoop {
  public:
   RunLoop(const scenario::Scenario& scenario, Transport& transport, const RunContext& context)
       : scenario_(scenario), transport_(transport), context_(context) {}
 
-  /// Tells what there is of results after a failure that is none of the user's input or wish.
+  /// Writes the available results after a failure, except one of the user's input or a stop.
   void fail(ExitCode code, const std::string& text) noexcept {
     if (node_ && code != ExitCode::bad_input && code != ExitCode::stopped) node_->fail(code, text);
   }
 
-  /// Why the checkpoint of the end could not be written; empty if it was.
+  /// The reason why the final checkpoint could not be written; empty if it was.
   const std::string& lost() const { return lost_; }
 
   ExitCode run() {
@@ -88,7 +88,7 @@ class RunLoop {
   }
 
  private:
-  /// While a node makes itself ready the others must not take it for lost, nor it miss that they are.
+  /// Shows that this node lives while it prepares itself, and notices if another node is lost.
   void show_life() {
     transport_.heartbeat();
     transport_.check_peers();
@@ -134,7 +134,7 @@ class RunLoop {
 
   NodeCost cost() const {
     const double wait = transport_.wait_clock().waited_s - waited_start_;
-    // Nearly all waiting is for messages; the little that checkpoints wait for each other is none of them.
+    // Nearly all waiting is for messages; the short waits of checkpoints are not included.
     const double communicate = std::max(0.0, profile_.exchanging() - wait);
     return {cost_before_.cpu_s + cpu_s() - cpu_start_,
             cost_before_.compute_s + wall_clock() - wall_start_ - wait - communicate,
@@ -176,7 +176,7 @@ ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, cons
     loop.fail(error.code(), error.what());
     throw error;
   }
-  // The run itself has not failed: its results are complete, and no other rank need know.
+  // The run itself has not failed: its results are complete, and the other ranks need not be informed.
   if (!loop.lost().empty())
     throw Error(ExitCode::io, loop.lost() + "; all results are written, but the run cannot be continued from its end");
   return code;

@@ -1,4 +1,4 @@
-// The run loop: what one rank does from handshake to final report.
+// The run loop: one rank's work from the handshake to the final report.
 #pragma once
 
 #include "nodes/ranks/run_context.hpp"
@@ -7,10 +7,10 @@
 
 namespace furrow::ranks {
 
-/// Runs this rank's node to the end. Result files are written by the rank that owns them; the rig's writes the series,
-/// the summary and the index. Checkpoints are written as the scenario asks.
+/// Runs this rank's node to the end. Each rank writes its own files; the rig's rank writes the series, the summary and
+/// the index. Checkpoints are written as the scenario sets.
 /// @returns done, or stopped when a signal ended the run early, after a checkpoint
-/// @throws Error; of code io after all results are written where the checkpoint of the end could not be
+/// @throws Error; with code io, after all results are written, if the final checkpoint could not be written
 ExitCode run_node(const scenario::Scenario& scenario, Transport& transport, const RunContext& context);
 
 }  // namespace furrow::ranks

@@ -1,4 +1,4 @@
-// Nodal forces read back from a saved state.
+// Reads nodal forces from a saved state.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace furrow::ranks {
 
-/// @param vertices of the surface that the forces act on
-/// @throws Error(io) unless every force has its vertex on that surface, and its tangent where there are any
+/// @param vertices of the surface on which the forces act
+/// @throws Error(io) unless every force has its vertex on that surface, and its tangent if there are tangents
 inline void restore_forces(const Archive& archive, const std::string& name, std::size_t vertices, NodalForces& forces) {
   restore_fields(archive, name, forces);
   const std::size_t count = forces.vertex.size();

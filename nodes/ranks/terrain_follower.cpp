@@ -1,5 +1,5 @@
-// A rank of a terrain of several that is not its leader. It follows the leader's orders and computes its share; to the
-// tires and the rig speaks the leader alone.
+// A rank of a terrain that follows the terrain's leader: it carries out the leader's orders and computes its share.
+// Only the leader exchanges messages with the tires and the rig.
 #include <fmt/format.h>
 
 #include "nodes/ranks/early_end.hpp"
@@ -68,7 +68,7 @@ class TerrainFollower final : public Node {
     FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
     const Outcome outcome =
         terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, contact_);
-    if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));  // as the leader says it
+    if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));  // same text as the leader's
     terrain_->gather_state();
   }
 

@@ -1,5 +1,5 @@
-// The terrain's rank: prepares the bed, says how high it stands under each tire, then pushes back. Of a terrain of
-// several ranks it is the leader: whatever all of them do, it orders (terrain_orders.hpp).
+// The terrain's rank: prepares the bed, reports its height under each tire, then computes the forces on the tires. In a
+// terrain of several ranks it is the leader and orders what all of them do (terrain_orders.hpp).
 #include <algorithm>
 
 #include "nodes/output/frames.hpp"
@@ -194,7 +194,7 @@ class TerrainNode : public Node {
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
   std::vector<bool> states_contact_, prompt_;  // of each tire
-  std::vector<StatedContact> stated_;          // by the tires, of the running step
+  std::vector<StatedContact> stated_;          // by the tires, for the current step
   AdvanceOrder now_;
   std::vector<NodalForces> forces_;
   TerrainReport report_;

@@ -8,7 +8,7 @@
 namespace furrow::ranks {
 namespace {
 
-constexpr double kFootprintShare = 0.6;  // of the tire radius ahead and behind: where a grain can touch it at rest
+constexpr double kFootprintShare = 0.6;  // of the tire radius ahead and behind: a grain there can touch it at rest
 
 }  // namespace
 

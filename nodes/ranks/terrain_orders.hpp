@@ -1,6 +1,6 @@
-// The orders that the leader of a terrain of several ranks sends to the others, so that all of them call the same verbs
-// of the terrain in the same order: prepare, measure, attach, advance, frame. All prepare first of all, without an
-// order. Saving and ending follow the run loop, which is every rank's own.
+// Orders from the leader of a terrain of several ranks to the others, so that all call the same functions of the
+// terrain in the same order: prepare, measure, attach, advance, frame. All prepare first, without an order. Saving and
+// ending follow the run loop of each rank.
 #pragma once
 
 #include <span>
@@ -15,16 +15,14 @@
 
 namespace furrow::ranks {
 
-/// In the saved state: how many grains a rank of a terrain of several owned when the run began.
+/// In the saved state: number of grains that a rank of such a terrain owned when the run began.
 inline constexpr char kGrainsBegin[] = "setup/grains_begin";
 
-/// Now measure it under the tires.
 struct MeasureOrder {
-  std::vector<Vec3> rims;  // where they will stand, m
+  std::vector<Vec3> rims;  // where they will be, m
 };
 void visit_fields(FieldsOf<MeasureOrder> auto& s, auto&& visit) { visit(s.rims, Field{"rims", "m"}); }
 
-/// Now attach the tires' surfaces.
 struct AttachOrder {
   std::vector<SurfaceSetup> surfaces;
   std::vector<SurfaceState> start;
@@ -34,10 +32,9 @@ void visit_fields(FieldsOf<AttachOrder> auto& s, auto&& visit) {
   visit(s.start, Field{"start", ""});
 }
 
-/// Now advance from this step.
 struct AdvanceOrder {
   StepHeader header;
-  Order order = Order::go_on;      // due once that is done
+  Order order = Order::go_on;      // due after the advance
   std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end
   std::vector<SurfaceState> targets;
 };
@@ -48,20 +45,20 @@ void visit_fields(FieldsOf<AdvanceOrder> auto& s, auto&& visit) {
   visit(s.targets, Field{"targets", ""});
 }
 
-/// The leader gives an order, the others receive it. A terrain of one rank (no group) sends none.
+/// The leader sends an order, the others receive it. A terrain of one rank (no group) sends none.
 template <class M>
 void share(RankGroup* group, M& order);
 
-/// What a rank calls while its terrain prepares itself: it shows that it lives, ends where another has failed or the
-/// user wants it to, and hands progress on.
+/// Progress call for a rank while its terrain prepares itself: it shows that the rank lives, ends if another rank has
+/// failed or the user stops it, and passes progress on.
 ProgressCall watched_progress(const scenario::Scenario& scenario, Transport& transport, const RunContext& context);
 
-/// Heights of the terrain under the tires' footprints, into `setup`.
+/// Puts the heights of the terrain under the tires' footprints into `setup`.
 /// @param tires cards of the tires
 void measure_heights(const scenario::Scenario& scenario, const terrain::Terrain& terrain, std::span<const Vec3> rims,
                      std::span<const NodeCard> tires, TerrainSetup& setup);
 
-/// The frame of the whole terrain on its leader, of each rank's own share before.
+/// Joins the ranks' shares of a frame to the frame of the whole terrain on its leader.
 void join_frames(RankGroup* group, terrain::TerrainFrame& frame);
 
 }  // namespace furrow::ranks

@@ -1,10 +1,10 @@
-// The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp); the terrain's forces of
-// the last interval act over the next one, those of a prompt tire over their own (nodes/ranks/node.hpp). To the rig
-// goes the spindle wrench without the tire's own rigid-body inertia and weight, which the rig carries as added mass
-// (nodes/ranks/carried_wrench.hpp), with v and ω those of the bead's trajectory: nothing is counted twice, and a rigid
-// tire sends its contact alone.
-// With contact tangents the forces answer to the tire's motion; what they differ by from those that the terrain then
-// reports is booked and handed back (nodes/ranks/impulse_ledger.hpp).
+// The tire's rank. Its bead follows the rim's extrapolated motion (tire/rim_trajectory.hpp). The terrain's forces of
+// the last interval act over the next one, those of a prompt tire over their own (nodes/ranks/node.hpp). The rig
+// receives the spindle wrench without the tire's own rigid-body inertia and weight, which it carries as added mass
+// (nodes/ranks/carried_wrench.hpp), with v and ω of the bead's trajectory. Thus nothing is counted twice, and a rigid
+// tire sends only its contact.
+// With contact tangents the forces follow the tire's motion within a step. Their difference from the forces that the
+// terrain then reports is recorded and returned (nodes/ranks/impulse_ledger.hpp).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -64,7 +64,7 @@ class TireNode : public Node {
     directory_ = context.directory;
     held_ = context.held;
     frames_ = frame_clock(scenario_, context);
-    // Before anybody touches the results of the run: what is damaged is refused here.
+    // Done before anybody touches the results of the run: damaged data is refused here.
     if (context.saved) restore_forces(*context.saved, kShown, tire_->mesh().vertex_count, forces_);
     send(transport, kTerrain, SurfaceSetup{tire_->mesh(), tire_->material()});
     const auto start = receive_step<RimMotion>(transport, kRig, kPlacement);
@@ -107,7 +107,7 @@ class TireNode : public Node {
     trajectory_.extend_accelerated(rim_.rim, duration);
     SurfaceMotion end{header, {}, Order::go_on, kNotYet};
     tire_->surface_on(trajectory_.end(), end.surface);
-    std::ranges::fill(end.surface.velocity, Vec3::Zero());  // there the interval ends
+    std::ranges::fill(end.surface.velocity, Vec3::Zero());  // the interval ends there
     send(transport, kTerrain, end);
     if (const StatedContact* contact = tire_->stated_contact())
       send(transport, kTerrain, ContactStatement{header, *contact});
@@ -133,7 +133,7 @@ class TireNode : public Node {
     save_fields(archive, kReport, report_);
   }
 
-  /// The next forces come from the terrain; those that acted last are shown by the frame of the checkpoint's step.
+  /// The next forces come from the terrain; the frame of the checkpoint's step shows the last ones.
   void save_setup(Archive& archive) const override {
     save_fields(archive, kShown, NodalForces{forces_.vertex, forces_.force});
     save_end(archive, motion_.ends_at);

@@ -7,7 +7,7 @@
 namespace furrow::ranks {
 namespace {
 
-constexpr int kEndWalls = 2;  // come first
+constexpr int kEndWalls = 2;  // are the first ones
 
 }  // namespace
 

@@ -1,8 +1,8 @@
-// Notices a wheel that comes near a wall of the bin, so that the run can end before it.
+// Notices a wheel that approaches a wall of the bin, so that the run can end before it.
 //
-// A wheel of radius R and width w that travels along e takes R|e_x| + w/2 |e_y| of the bin along x from its centre, and
-// across likewise. What is left to an end wall may come down to the given distance, to a side wall to half the wheel's
-// width; a wheel that starts nearer than that to a wall may come half of the way.
+// A wheel of radius R and width w that travels along e extends R|e_x| + w/2 |e_y| along x from its centre, and R|e_y| +
+// w/2 |e_x| across. It may approach an end wall up to the given distance, and a side wall up to half its width. A wheel
+// that starts nearer to a wall than that may go half of the way.
 #pragma once
 
 #include <array>
@@ -16,7 +16,6 @@
 
 namespace furrow::ranks {
 
-/// A wheel as walls know it.
 struct WheelPlace {
   Vec3 center = Vec3::Zero();    // m
   Vec3 heading = Vec3::UnitX();  // unit, horizontal
@@ -29,17 +28,17 @@ class WallWatch {
   /// @param wheels where they start
   WallWatch(const terrain::TerrainBounds& bounds, double stop_before, std::span<const WheelPlace> wheels);
 
-  /// The kind of wall that a wheel is near, or nothing while all keep clear.
+  /// The kind of wall that a wheel is near; none while all keep clear.
   std::optional<output::EndReason> near(std::span<const WheelPlace> wheels) const;
 
  private:
   static constexpr int kWalls = 4;
   using Distances = std::array<double, kWalls>;
-  /// To the walls behind, ahead, to the right and to the left, m.
+  /// Distances to the walls behind, ahead, to the right and to the left, m.
   Distances distances(const WheelPlace& wheel) const;
 
   double length_, width_;           // of the bin, m
-  std::vector<Distances> nearest_;  // that each wheel may come to each wall, m
+  std::vector<Distances> nearest_;  // smallest allowed distance of each wheel from each wall, m
 };
 
 }  // namespace furrow::ranks

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kBytesPerRank = 40e6;  // program, MPI and libraries
 constexpr double kBytesPerFrameVertex = 100.0;
-// Of a line of the series in CSV, in results.h5, and among the lines that are kept until the run ends.
+// Bytes of a line of the series in CSV, in results.h5, and among the lines kept until the run ends.
 constexpr double kBytesPerWheelLine = 2000.0, kBytesPerAccountsLine = 1100.0;
 
-/// Of what is written once in every interval, at most once per step.
+/// Number of outputs that are written once in every interval, at most once per step.
 double times(const Scenario& s, double interval) {
   const std::int64_t every = s.run.steps_in(interval);
   return every > 0 ? static_cast<double>(s.run.steps() / every) : 0.0;

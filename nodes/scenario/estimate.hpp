@@ -1,4 +1,4 @@
-// What a run of a scenario will need, before any rank exists, and what this machine has.
+// Needs of a scenario's run, before any rank exists, and the resources of this machine.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ struct Estimate {
   std::int64_t coordinates = 0;   // of all tires
   double memory = 0.0;            // of all ranks, bytes
   double disk = 0.0;              // of the results, bytes
-  double frames = 0.0;            // that are written
+  double frames = 0.0;            // number written
   double frame_bytes = 0.0;       // of one of them, all ranks
-  double checkpoints = 0.0;       // that are written, those by wall time aside
+  double checkpoints = 0.0;       // number written, without those by wall time
   double checkpoint_bytes = 0.0;  // of one of them
 };
 
 Estimate estimate(const Scenario& scenario);
 
-/// What this machine has to give now; 0 where unknown.
+/// 0: unknown.
 struct MachineState {
   double memory_free = 0.0;  // bytes
   double disk_free = 0.0;    // in the working directory, bytes

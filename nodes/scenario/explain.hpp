@@ -1,12 +1,12 @@
-// `furrow explain`: what a scenario key means.
+// `furrow explain`: the meaning of a scenario key.
 #pragma once
 
 #include <string>
 
 namespace furrow::scenario {
 
-/// Meaning, unit, range and default of a key; of a section, its keys; of an empty key, all keys.
-/// @throws Error(bad_input) for an unknown key, with those that look like it
+/// Returns meaning, unit, range and default of a key, the keys of a section, or all keys for an empty key.
+/// @throws Error(bad_input) for an unknown key, with similar ones
 std::string explain(const std::string& key);
 
 }  // namespace furrow::scenario

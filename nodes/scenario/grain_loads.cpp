@@ -21,9 +21,9 @@ namespace dem = terrain::dem;
 
 constexpr double kCount = 0.6;         // A, see the header
 constexpr double kLargest = 8.0;       // the largest force of a run over the mean one
-constexpr double kSoundOverlap = 0.2;  // of the diameter: what advice aims at
+constexpr double kSoundOverlap = 0.2;  // of the diameter: the overlap that advice aims at
 
-/// A contact where nothing moves.
+/// A contact without motion.
 struct Contact {
   dem::LawKind law;
   dem::ContactCoefficients coefficients;
@@ -36,7 +36,6 @@ struct Contact {
   }
 };
 
-/// A wheel's grains.
 struct Pressed {
   double force = 0.0;   // p d², N
   double grains = 0.0;  // n
@@ -107,7 +106,7 @@ std::optional<Bound> too_hard(const Scenario& s, const GrainLoads& loads) {
       loads.on_tire ? "a grain and a tire" : "two grains", 100.0 * loads.overlap, 100.0 * dem::kDeepestShare);
   std::vector<std::string> wheels;
   if (const std::string label = wheel_label(describe_rig(s), loads.wheel); !label.empty()) wheels.push_back(label);
-  // As StiffnessKey says.
+  // As StiffnessKey describes.
   const double stiffer = std::pow(loads.overlap / kSoundOverlap, 1.5);
   if (loads.on_tire)
     return Bound{"tire.file",

@@ -1,12 +1,12 @@
-// How hard wheels press grains together, before any grain exists: what makes the terrain take its steps in parts, and
-// what ends a run (terrain/dem/refinement/).
+// Estimates, before any grain exists, how hard wheels press grains together. Large loads make the terrain refine its
+// steps, and may end a run (terrain/dem/refinement/).
 //
-// A wheel's mean pressure p (wheel_scales.hpp) puts f̄ ≈ p d² on a grain of diameter d. Forces between grains are about
-// exponentially spread [Radjai et al. 1996, doi:10.1103/PhysRevLett.77.274], so that of the n grains in the contacts
-// of all wheels so many are pressed by more than x f̄ at an instant:
+// A wheel's mean pressure p (wheel_scales.hpp) puts f̄ ≈ p d² on a grain of diameter d. Forces between grains are
+// distributed about exponentially [Radjai et al. 1996, doi:10.1103/PhysRevLett.77.274]. Of the n grains in the contacts
+// of all wheels, the number pressed by more than x f̄ at an instant is
 //   λ(x) = A Σ n e^{−x},   x(δ) = (K δ^{3/2} − F_c)/(p d²), the smaller one of grain–grain and grain–tire,
-// and 1 − e^{−λ} is the share of the time in which a contact is deeper than δ. A holds what lies below the contact, and
-// that larger parts return only after 100 calm steps.
+// and 1 − e^{−λ} is the share of the time in which a contact is deeper than δ. A includes the grains below the contact,
+// and the 100 calm steps before the terrain takes larger parts again.
 //
 // A = 0.6 and the largest force of a run, kLargest = 8 f̄, compared with runs at x_δ, where one part per step stops
 // being stable, and x_30, where overlaps are 30 % of the diameter (E in MPa):
@@ -20,8 +20,8 @@
 //   small rig on the report's soil              74   none    0, 0                        9.3    largest seen 0.21 d
 //   small rig on the report's soil, E 6.2       74   none    0, 0                        2.0    failed after 0.2 s
 //
-// So the share is right within a factor of three. It grows with the speed of the treads, which is left out: the driver
-// of a vehicle decides it. In hmmwv_straight 0.97 of the steps were refined at 7 m/s.
+// So the share is right within a factor of three. It also grows with the speed of the treads; this is neglected,
+// because a vehicle's driver sets that speed. In hmmwv_straight 0.97 of the steps were refined at 7 m/s.
 #pragma once
 
 #include <optional>
@@ -33,16 +33,16 @@ namespace furrow::scenario {
 
 struct GrainLoads {
   double overlap = 0.0;   // the largest in a run of some seconds, of a mean grain's diameter, -
-  bool on_tire = false;   // it is that of a grain and a tire
-  std::size_t wheel = 0;  // under which it is
-  double refined = 0.0;   // share of the time in which the terrain's steps are taken in parts, -
+  bool on_tire = false;   // between a grain and a tire, not two grains
+  std::size_t wheel = 0;  // under which it occurs
+  double refined = 0.0;   // share of the time in which the terrain's steps are divided into parts, -
   double parts = 1.0;     // of one of its steps, on average
 };
 
-/// Of no grains, and where an unstable step is allowed: no overlap, whole steps.
+/// Without grains, or if an unstable step is allowed: no overlap, whole steps.
 GrainLoads grain_loads(const Scenario& scenario);
 
-/// The key that moves a largest overlap which would end the run, with the figure; none where it is below that.
+/// The key that changes a largest overlap which would end the run, with the figure; none if the overlap is smaller.
 std::optional<Bound> too_hard(const Scenario& scenario, const GrainLoads& loads);
 
 }  // namespace furrow::scenario

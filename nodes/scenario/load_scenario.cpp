@@ -43,13 +43,13 @@ std::vector<std::string> split(const std::string& key) {
   return parts;
 }
 
-/// Results hold names, in JSON. `what`: "has a name"
+/// Names are written into results, which are JSON. `what`: "has a name"
 void require_utf8(const std::string& name, const std::string& file, const std::string& key, const char* what) {
   if (find_invalid_utf8(name) != std::string::npos)
     throw input_error(file, key, std::string(what) + " that is not UTF-8, expected one that is: results keep it");
 }
 
-/// Puts the value of `--set key=value` into the document, making sections that it lacks.
+/// Puts the value of `--set key=value` into the document and makes missing sections.
 void set_value(json& document, const std::string& key, const std::string& text, const std::string& file) {
   const std::vector<std::string> parts = split(key);
   if (std::find(parts.begin(), parts.end(), "") != parts.end() || parts.size() >= kMaxDepth ||
@@ -75,7 +75,7 @@ void set_value(json& document, const std::string& key, const std::string& text, 
   *at = value;
 }
 
-/// Keys of a vehicle's file are not the scenario's: how they are changed.
+/// Refuses keys of a vehicle's file, which are not the scenario's; the message explains how to change them.
 void refuse_vehicle_key(const json& document, const std::string& key, const std::string& file) {
   std::string within = key;
   for (const char* prefix : {"rig.vehicle.", "vehicle."})
@@ -98,7 +98,7 @@ Error all_problems(const std::string& file, const std::vector<Problem>& problems
   return Error(ExitCode::bad_input, text);
 }
 
-/// The engine that the scenario will have once all settings are made.
+/// The engine of the scenario after all settings.
 std::string engine_to_be(json document, const std::string& file, const Settings& settings) {
   for (const auto& [key, text] : settings)
     if (key == "terrain.engine") set_value(document, key, text, file);
@@ -111,7 +111,7 @@ json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
   if (!document.is_object()) throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
   refuse_other_kinds(document, FileKind::scenario, file);
-  // What is said later wins: a soil of the command line replaces what the file says of its soil.
+  // Later settings win: a soil on the command line replaces the file's own values of soil.
   const std::string soil = "terrain.material", engine = engine_to_be(document, file, settings);
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
     apply_soil_material(document, file, engine);
@@ -130,7 +130,7 @@ json read_document(const std::string& file, const Settings& settings) {
   return document;
 }
 
-/// Returns warnings of keys that were set aside. @param friction of the ground, where it is stated
+/// Returns warnings of keys that were set aside. @param friction of the ground, if it is stated
 std::vector<std::string> complete(json& document, const std::string& file, const Settings& settings,
                                   std::optional<double>& friction) {
   const Schema& schema = Schema::of_scenarios();
@@ -149,7 +149,7 @@ std::vector<std::string> complete(json& document, const std::string& file, const
   return set_aside;
 }
 
-/// The rig comes back for its starts to be filled in.
+/// Returns the rig, so that its starts can be filled in.
 std::shared_ptr<rigs::RigSpec> take_rig(const json& j, Scenario& s) {
   rigs::RigOptions options;
   read_fields(j, options);
@@ -160,7 +160,6 @@ std::shared_ptr<rigs::RigSpec> take_rig(const json& j, Scenario& s) {
   return rig;
 }
 
-/// All wheels share a single `tire`.
 void take_tires(const json& document, Scenario& s) {
   s.tires_listed = document.contains("tires");
   if (document.contains("tire"))
@@ -204,11 +203,11 @@ void take_terrain(const json& j, Scenario& s) {
   s.terrain = terrain::find_terrain(common.engine, context).read(j, context);
 }
 
-// Keys beside the sections that say something to people and editors alone.
+// Keys outside the sections that only users and editors read.
 constexpr const char* kCompletedBy = "completed_by";
 constexpr std::array<const char*, 3> kRemarks{"description", "$schema", kCompletedBy};
 
-/// Keys that change no result, as the structs' lists of fields say; with their sections.
+/// Keys that change no result, by the structs' lists of fields; with their sections.
 const std::vector<std::string>& harmless_keys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all{kRemarks.begin(), kRemarks.end()};
@@ -230,16 +229,16 @@ bool is_harmless(const std::string& key) {
   return std::find(harmless_keys().begin(), harmless_keys().end(), key) != harmless_keys().end();
 }
 
-/// What is written how often is part of the digest, but leaves the physics alone.
+/// The output intervals are part of the digest, but do not affect the physics.
 bool is_output(const std::string& key) { return key.starts_with("output."); }
 
-/// The expected result holds for the scenario as shipped; a setting that changes the physics makes it void.
+/// The expected result holds for the scenario as shipped; a setting that changes the physics invalidates it.
 bool changes_results(const std::string& key) {
   const bool section = key == "expected" || key == "press" || key == "checkpoint" || key == "output";
   return !section && !is_harmless(key) && !is_output(key);
 }
 
-/// Without the value at the dotted key, and without its section where that was the last one.
+/// Removes the value at the dotted key, and its section if it is then empty.
 void erase(json& document, const std::string& key) {
   const std::size_t dot = key.find('.');
   const auto section = document.find(key.substr(0, dot));
@@ -248,22 +247,22 @@ void erase(json& document, const std::string& key) {
   if (dot == std::string::npos || section->empty()) document.erase(section);
 }
 
-// Raised when a default changes: scenarios that leave the key out mean something else from then on.
+// Increased when a default changes: scenarios without the key then have another meaning.
 constexpr int kDigestVersion = 2;
 
-/// What differs from the default counts, by name: a key that is added later changes no digest of those that do not use
-/// it.
+/// Only values that differ from the default count, by name. A key that is added later thus does not change the digest
+/// of scenarios without it.
 std::string digest_of(json completed, const Scenario& s) {
   for (const std::string& key : harmless_keys()) erase(completed, key);
   erase(completed, std::string("terrain.") + kSoilKey);  // its values are in the other keys
-  // Files count by what they hold, wherever they stand.
+  // Files count by their content, at any place.
   for (const rigs::RigFile& file : s.rig->files()) completed["rig"].erase(file.key);
   for (const terrain::TerrainFile& file : s.terrain->files()) completed["terrain"].erase(file.key);
   if (completed.contains("tire")) completed["tire"].erase("file");
   if (completed.contains("tires"))
     for (json& tire : completed["tires"]) tire.erase("file");
   Schema::of_scenarios().remove_defaults(completed);
-  // To a tire with a contact of its own the default is not the same as nothing.
+  // For a tire with a contact of its own, the stated default differs from no value.
   if (s.ground_friction && s.has_own_contact()) completed["terrain"][kFriction] = *s.ground_friction;
   Hash hash;
   hash.add(&kDigestVersion, sizeof kDigestVersion);
@@ -272,7 +271,7 @@ std::string digest_of(json completed, const Scenario& s) {
   return hash.hex();
 }
 
-/// Files that stand beside the scenario get their full names; those of the data folders are found from anywhere.
+/// Gives files next to the scenario their full names; those of the data folders are found from anywhere.
 void make_movable(json& document, const Scenario& s) {
   const auto full = [&](json& name, const std::string& key) {
     std::error_code error;
@@ -296,7 +295,7 @@ void make_movable(json& document, const Scenario& s) {
 }  // namespace
 
 Scenario load_scenario(const std::filesystem::path& name, const Settings& settings, Purpose purpose) {
-  // A vehicle's name is found too, and then refused for what it is.
+  // A vehicle's name is found too, and then refused with its own message.
   const std::filesystem::path file = named_file(name, {"rigs", "vehicle/data"});
   Scenario s;
   s.file = file;
@@ -320,7 +319,7 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
     take_terrain(document["terrain"], s);
     check_scenario(s, *rig, purpose);
     rig->complete(document["rig"]);
-  } catch (const Error& error) {  // what looks wrong may be why it does not fit
+  } catch (const Error& error) {  // an unlikely value may be the cause
     throw RefusedScenario(error, unusual);
   }
   if (document.contains("expected")) {

@@ -18,15 +18,15 @@
 namespace furrow::scenario {
 namespace {
 
-constexpr double kSettle = 0.12;            // of the small bed, s: it has its contacts, resting or not
-constexpr double kGrainTime = 0.3;          // processor time for the steps that are timed, s
+constexpr double kSettle = 0.12;            // of the small bed, s: long enough for its contacts to form
+constexpr double kGrainTime = 0.3;          // processor time for the timed steps, s
 constexpr double kTireTime = 0.8;           // s
-constexpr double kTireWarm = 0.8;           // processor time before, s
+constexpr double kTireWarm = 0.8;           // processor time before the timed steps, s
 constexpr int kColumns = 60, kAcross = 12;  // mesh of the reference tire
 
 double own_time() { return processor_time(CLOCK_THREAD_CPUTIME_ID); }
 
-/// Runs `step` for so much processor time and returns that of one.
+/// Runs `step` for this processor time and returns the time of one step.
 template <class Step>
 double time_of(double seconds, const Step& step) {
   const double begin = own_time();
@@ -68,7 +68,6 @@ void measure_tire(MachineSpeed& found) {
   found.tire_coordinates = static_cast<int>(tire->coordinates());
 }
 
-/// Names machine and build.
 std::string digest() {
   Hash hash;
   hash.add(build_id());

@@ -7,10 +7,10 @@
 namespace furrow::scenario {
 namespace {
 
-// Of the estimate, which is of the most: the solver takes 350 of its 900 bytes per grain, and another 300 while the bed
-// is handed over.
+// Share of the estimate, which is an upper limit: the solver takes 350 of its 900 bytes per grain, and another 300
+// while the bed is handed over.
 constexpr double kSure = 0.5;
-constexpr double kAddressSpace = 600e6;  // bytes that program, libraries and stacks of a rank take of it
+constexpr double kAddressSpace = 600e6;  // bytes of it that program, libraries and stacks of a rank take
 
 std::string gigabytes(double bytes) { return fmt::format("{:.1f} GB", 1e-9 * bytes); }
 

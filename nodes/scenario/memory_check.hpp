@@ -1,4 +1,4 @@
-// Whether the memory that a scenario needs is to be had here, and what to say when it has run out.
+// Checks whether this machine has the memory for a scenario, and makes the message if memory has run out.
 #pragma once
 
 #include "nodes/scenario/scenario.hpp"
@@ -6,8 +6,8 @@
 
 namespace furrow::scenario {
 
-/// @throws Error(limit) when the terrain's rank cannot fit into what this machine gives one process, however
-/// little else is running. Where it is not sure there is at most a warning (scenario_checks.cpp).
+/// @throws Error(limit) if the terrain's rank cannot fit into the memory that this machine gives one process, even
+/// without other programs. In doubtful cases there is at most a warning (scenario_checks.cpp).
 void require_memory(const Scenario& scenario);
 
 /// "out of memory: needs about 1.2 GB, limit 0.3 GB (ulimit -v)", exit code 6.

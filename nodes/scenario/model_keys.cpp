@@ -20,7 +20,7 @@ std::string chosen_model(const json& document, const ModelSection& of) {
   return document[of.name].value(of.chooser, of.standard);
 }
 
-/// Keys of the section that other models take and its own does not.
+/// Keys in the section that belong to other models only.
 std::vector<std::string> foreign_keys(const json& document, const ModelSection& of) {
   std::vector<std::string> keys;
   if (!document.contains(of.name) || !document[of.name].is_object()) return keys;

@@ -1,4 +1,4 @@
-// Which MPI rank does what.
+// Tasks of the MPI ranks.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,22 @@ namespace furrow::scenario {
 struct RankEntry {
   int rank = 0;
   std::string node;  // "rig", "tire 0", "terrain"
-  std::string does;  // for people
+  std::string does;  // its task, for users
 };
 
 /// World rank 0 is the rig, 1…k the tires, the rest the terrain.
 std::vector<RankEntry> rank_table(const Scenario& scenario);
-/// The rank of the terrain, of one of several ranks that of its leader.
+/// The rank of the terrain, or of its leader if the terrain has several ranks.
 inline std::size_t terrain_rank(const Scenario& scenario) { return 1 + scenario.tires.size(); }
 
-/// The table as lines for people.
 std::string rank_table_text(const Scenario& scenario);
 
 /// The lines that start the run by hand, without and with a batch system.
 std::string launch_lines(const Scenario& scenario, const std::vector<std::string>& arguments);
 
-/// An argument as a shell takes it.
+/// Quotes an argument for a shell.
 std::string shell_quoted(const std::string& argument);
-/// A file or folder as one may type it after a command: no option, even if its name begins with a hyphen.
+/// A file or folder as an argument of a command: never read as an option, even if its name begins with a hyphen.
 std::string shell_path(const std::string& path);
 
 }  // namespace furrow::scenario

@@ -1,4 +1,4 @@
-// A scenario that does not fit, with what looks odd about it and may be why.
+// A refused scenario, with warnings of unlikely values that may be the cause.
 #pragma once
 
 #include <string>

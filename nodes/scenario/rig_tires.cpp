@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What one entry of `tires` says of a wheel; null says nothing.
+/// Applies one entry of `tires` to a wheel's tire; null changes nothing.
 void change(json& tire, const json& by) {
   for (const auto& [key, value] : by.items()) tire[key] = value;
 }
@@ -26,7 +26,7 @@ void fill_rig_tires(json& document, const std::string& file) {
   const std::vector<rigs::WheelTire> own = rigs::tires_of_rig(document["rig"], {file, "rig"});
   const bool one = document.contains("tire"), many = document.contains("tires");
   if (own.empty()) return;
-  if (one && !is_entry(document["tire"])) return;  // the schema says why
+  if (one && !is_entry(document["tire"])) return;  // the schema reports the mistake
   json tires = json::array();
   for (const rigs::WheelTire& wheel : own) tires.push_back(wheel.section);
   if (one)

@@ -1,4 +1,4 @@
-// The tires of a scenario whose rig brings its own: what its wheels name, changed by what the scenario says.
+// The tires of a scenario whose rig brings its own: those of its wheels, changed by the scenario.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace furrow::scenario {
 
-/// Puts one complete entry per wheel into `tires`, in place of a `tire` that changes all of them and of entries that
-/// change each wheel's, or each axle's. Leaves scenarios alone whose rig brings no tires.
-/// @pre the document is an object; nothing of it was checked. @throws Error(bad_input)
+/// Puts one complete entry per wheel into `tires`. The entries replace a `tire` that changes all wheels, or entries
+/// that change each wheel or axle. Does nothing if the rig brings no tires.
+/// @pre the document is an object; none of it was checked. @throws Error(bad_input)
 void fill_rig_tires(nlohmann::json& document, const std::string& file);
 
 }  // namespace furrow::scenario

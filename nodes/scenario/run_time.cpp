@@ -21,31 +21,31 @@
 namespace furrow::scenario {
 namespace {
 
-// Measured runs against the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
+// Factors from measured runs over the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
 constexpr double kLargeBed = 1.8;      // a grain-step of a bed that is settled or rolled on
-constexpr double kPackings = 2.5;      // beds of which one has the solid fraction that is asked for, and their sample
+constexpr double kPackings = 2.5;      // number of beds until one has the wanted solid fraction, and their sample
 constexpr double kOnSoil = 1.2;        // a step of a tire
-constexpr double kDouble = 1.5;        // what a grain-step takes in double precision, of one in mixed
-constexpr double kSettling = 0.6;      // that a new bed takes to settle, simulated s
-constexpr double kJoints = 0.15;       // the same for joints, as if all grains were awake
+constexpr double kDouble = 1.5;        // a grain-step in double precision over one in mixed
+constexpr double kSettling = 0.6;      // simulated time in which a new bed settles, s
+constexpr double kJoints = 0.15;       // settling of joints between tiles, as if all grains were awake
 constexpr double kAwake = 1.6;         // tire radii before and behind an axle within which grains are awake
-constexpr double kMeshExponent = 1.1;  // of the time of a tire's step with its unknowns
+constexpr double kMeshExponent = 1.1;  // of a tire's step time over its unknowns
 constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
-constexpr double kMessages = 8e-5;     // for each tire, in its rank and in the rig's: to send, receive and write, s
+constexpr double kMessages = 8e-5;     // for each tire, in its rank and the rig's: send, receive and write, s
 constexpr double kFewRanks = 3.0;      // for a core: with more of them messages take longer
 constexpr double kCrowd = 0.8;         // by this share with each doubling
 constexpr double kStart = 0.45;        // until mpirun has begun, and until it has ended, s
 constexpr double kRankStart = 0.05;    // of each rank of a core, s
-constexpr double kPairStart = 0.004;   // of each pair of ranks of a core: they find each other, s
-constexpr double kFrameFile = 1.6e-3;  // of a frame: made, named and on the disk, s
-constexpr double kPart = 6e-3;         // of a checkpoint: the same, and its checksum, s
-constexpr double kManifest = 1e-3;     // and folders of a checkpoint, and of the one that is removed for it, s
+constexpr double kPairStart = 0.004;   // of each pair of ranks of a core, to find each other, s
+constexpr double kFrameFile = 1.6e-3;  // of a frame: made, named and flushed to the disk, s
+constexpr double kPart = 6e-3;         // of a checkpoint: like a frame, and its checksum, s
+constexpr double kManifest = 1e-3;     // and folders of a checkpoint, and of the checkpoint removed for it, s
 constexpr double kByte = 2.5e-9;       // of either, s
 constexpr double kVertex = 8e-8;       // of a tire, in the terrain: finding its contacts, messages, s
 constexpr double kLatency = 5e-5;      // until a message is noticed, s
-constexpr int kPlaces = 9;             // along the axles' paths at which the awake share is looked at
+constexpr int kPlaces = 9;             // along the axles' paths for the mean of the awake share
 
-/// Mean share of a bin's length that lies near an axle.
+/// Mean share of a bin's length that is near an axle.
 double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
   const rigs::RigDescription rig = describe_rig(s, tires);
   FURROW_ASSERT(rig.wheels.size() == tires.size(), rig.wheels.size(), tires.size());
@@ -67,7 +67,7 @@ double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& 
   return std::clamp(sum / (kPlaces * length), 0.0, 1.0);
 }
 
-/// Grain-steps that settling the bed takes; 0 where it is kept.
+/// Grain-steps for settling the bed; 0 if it is in the cache.
 double settling(const terrain::dem::DemOptions& o) {
   namespace dem = terrain::dem;
   std::error_code error;
@@ -85,11 +85,12 @@ double settling(const terrain::dem::DemOptions& o) {
   return (is_kept(piece) ? 0.0 : steps(piece, time)) + steps(o, kJoints);
 }
 
-/// How much longer messages take where there are several ranks for each core: who has slept finds its caches cold,
-/// and a core goes from one rank to another for each message. Measured with 3 to 66 ranks on two cores.
+/// Factor by which messages take longer with several ranks per core: a rank that has slept finds its caches cold, and a
+/// core switches between ranks for each message. Measured with 3 to 66 ranks on two cores.
 double crowd(double ranks_per_core) { return 1.0 + kCrowd * std::max(0.0, std::log2(ranks_per_core / kFewRanks)); }
 
-/// Of all frames and checkpoints, s. Every rank writes a part of a checkpoint, tires and terrain a file of a frame.
+/// Time for all frames and checkpoints, s. Every rank writes a part of a checkpoint; tires and terrain each write a
+/// frame.
 double writing(const Scenario& s, int ranks, int cores) {
   const Estimate e = estimate(s);
   const auto files = [&](int count, double each) { return each * count / std::min(count, cores); };

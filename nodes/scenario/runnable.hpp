@@ -1,4 +1,4 @@
-// Whether a scenario can run: every tire of it needs a model that moves.
+// Checks whether a scenario can run: each of its tires needs a model that moves.
 #pragma once
 
 #include "nodes/scenario/scenario.hpp"

@@ -1,5 +1,5 @@
-// A scenario: what the user's JSON file says, validated, completed with the schema's defaults, and made into
-// the options of each room.
+// A scenario: the user's JSON file, validated, completed with the schema's defaults, and converted into the options of
+// each module.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace furrow::scenario {
 
-/// Keys by their dotted paths with the values that they get in addition to the file, as `--set key=value` says them.
+/// Keys by their dotted paths, with the values of `--set key=value`.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// `run.*`
@@ -31,7 +31,7 @@ struct RunOptions {
   double peer_timeout = 60.0;  // s
   std::string on_lag = "end";  // end | warn
   std::int64_t steps() const;  // round(end / step)
-  /// In an interval, which is rounded to a whole number of steps, at least one; 0 for an interval of 0.
+  /// Steps in an interval, rounded to a whole number of at least one; 0 for an interval of 0.
   std::int64_t steps_in(double interval) const;
 };
 
@@ -97,12 +97,12 @@ void visit_fields(FieldsOf<CheckpointOptions> auto& s, auto&& visit) {
                       "and the next pass of a study start from its terrain."));
 }
 
-/// `press.*`, optional: what `furrow press` takes where its options do not say it.
+/// `press.*`, optional: defaults for the options of `furrow press`.
 struct PressKeys {
   std::string on = "plate";  // plate | cleat
   double deflection = 0.02;  // largest, m
   int points = 10;           // of the curve up to it
-  double load = -1.0;        // of the footprint, N; negative: what the scenario's first wheel carries
+  double load = -1.0;        // of the footprint, N; negative: the load of the scenario's first wheel
   double camber = 0.0;       // of the wheel, rad
   double cleat_height = 0.025, cleat_width = 0.025;  // m
   double cleat_position = 0.0;                       // of its middle, forward of the axle, m
@@ -129,8 +129,8 @@ void visit_fields(FieldsOf<PressKeys> auto& s, auto&& visit) {
                               "Position of the cleat's middle, forward of the axle."));
 }
 
-/// `expected.*`, optional: what the shipped scenarios print beside their result. A spread is of runs on one bed; the
-/// mean over n beds is expected within spread/√n. A spread of 0: nothing is expected of this figure.
+/// `expected.*`, optional: what the shipped scenarios print next to their result. A spread is for runs on one bed; the
+/// mean over n beds is expected within spread/√n. With a spread of 0 nothing is expected of this figure.
 struct ExpectedResult {
   bool given = false;
   double drawbar_pull = 0.0;         // N
@@ -155,31 +155,31 @@ void visit_fields(FieldsOf<ExpectedResult> auto& s, auto&& visit) {
                                 "Spread ± of the rut depth on one bed, as of the pull. 0: not stated."));
 }
 
-/// What a run will take, about, bytes.
+/// Approximate memory of a run, bytes.
 struct MemoryNeed {
   double all = 0.0;      // ranks together
   double terrain = 0.0;  // a rank of the terrain
 };
 
-/// A file whose content decides results.
+/// A file whose content affects the results.
 struct InputFile {
-  std::string key;  // that names it: "tires.2.file"
+  std::string key;  // key with its name: "tires.2.file"
   std::filesystem::path path;
 };
 
 struct Scenario {
   std::filesystem::path file;
   std::string name;       // file name without extension
-  std::string completed;  // the whole scenario as JSON text with defaults filled in; can be read from any folder
-  std::string digest;     // hash of all in `completed` that decides the results, and of the tire files
+  std::string completed;  // the whole scenario as JSON text with all defaults; readable from any folder
+  std::string digest;     // hash of the tire files and of all in `completed` that affects the results
   std::shared_ptr<const rigs::RigSpec> rig = rigs::drawbar_spec({{}});
   int rig_substeps = 1;
   double drop_height = 0.0;                                  // of all tires above the ground at t = 0, m
   std::vector<std::shared_ptr<const tire::TireSpec>> tires;  // one per wheel
-  bool tires_listed = false;                                 // as entries of `tires`, not by one `tire` for all
+  bool tires_listed = false;                                 // as entries of `tires`, not as one `tire`
   int tire_substeps = 1;
   std::shared_ptr<const terrain::TerrainSpec> terrain = terrain::default_terrain();
-  std::optional<double> ground_friction;  // terrain.friction where it is stated, -
+  std::optional<double> ground_friction;  // terrain.friction if it is stated, -
   int terrain_ranks = 1;
   int terrain_substeps = 1;
   int settle_threads = 1;  // OpenMP threads of the terrain while a bed settles
@@ -189,22 +189,22 @@ struct Scenario {
   PressKeys press;
   ExpectedResult expected;
   MemoryNeed memory;
-  std::vector<std::string> warnings;  // what looks wrong but is allowed
+  std::vector<std::string> warnings;  // unlikely but allowed values
 
   /// Key of the tire of wheel k: "tire.pressure", "tires.2.pressure".
   std::string tire_key(std::size_t wheel, const std::string& name) const;
-  /// Whether the forces on the tire of wheel k act over the interval for which they are computed, and not one later.
+  /// Checks whether the forces on the tire of wheel k act in the interval for which they are computed, not one later.
   bool prompt(std::size_t wheel) const;
-  /// Whether the law of contact of any tire is its own (TireDescription::own_contact).
+  /// Checks whether any tire has its own law of contact (TireDescription::own_contact).
   bool has_own_contact() const;
   double terrain_step() const { return run.step / terrain_substeps; }  // s
-  /// What the run supplies to its terrain, with as many threads as a bed settles with.
+  /// Values that the run supplies to its terrain, with as many threads as settle a bed.
   terrain::TerrainContext terrain_context() const;
-  /// The options of the terrain's grains, with what the run supplies.
-  /// @throws Error(bad_input) unless the terrain is made of grains; `what` says why it must be
+  /// The options of the terrain's grains, with the values that the run supplies.
+  /// @throws Error(bad_input) unless the terrain is made of grains; `what` states why it must be
   terrain::dem::DemOptions grains(const std::string& what) const;
 
-  /// Of what the tire files, the terrain's and the rig's files hold, in this order.
+  /// Hashes of the contents of the tire files, the terrain's and the rig's files, in this order.
   std::vector<std::string> file_hashes() const;
   /// Those files, in the same order.
   std::vector<InputFile> input_files() const;

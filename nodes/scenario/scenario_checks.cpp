@@ -23,17 +23,17 @@ namespace furrow::scenario {
 namespace {
 
 constexpr double kMaxSteps = 1e10;    // beyond it the value is almost certainly a typo
-constexpr double kLeastPart = 6.0;    // radii along x that a rank's part of the bed must measure at least
-constexpr double kMinGrains = 4.0;    // radii that the bin must measure at least
+constexpr double kLeastPart = 6.0;    // least length along x of a rank's part of the bed, in radii
+constexpr double kMinGrains = 4.0;    // least size of the bin, in radii
 constexpr double kCoarseGrain = 0.1;  // of the tire radius
 constexpr double kBeyond = 1.5;       // of the load that a tire was fitted to
 constexpr double kMostBend = 0.1;     // of ground under a tire that takes it as a plane: R/radius of the ground
 constexpr double kMostScanned = 2e5;  // points of it
 constexpr double kGigabyte = 1e9;
 constexpr double kWallShare = 0.05, kMostWallMargin = 0.02;  // of the tire's radius; m
-constexpr double kRounding = 1e-9;                           // relative, of times that people write as decimals
+constexpr double kRounding = 1e-9;                           // relative, of times that are typed as decimals
 
-/// Without what binary rounding added: 0.30000000000000004 as 0.3.
+/// Removes the error of binary rounding: 0.30000000000000004 becomes 0.3.
 double short_decimal(double value) { return std::stod(fmt::format("{:.9g}", value)); }
 
 /// "flexible ring tire"
@@ -54,7 +54,7 @@ class Checks {
   void warn(const std::string& key, fmt::format_string<Args...> what, Args&&... args) {
     warn_of(wrong(key, what, std::forward<Args>(args)...));
   }
-  /// Once: of several wheels on the same tire each has the same to say.
+  /// Warns once, because several wheels on the same tire give the same warning.
   void warn_of(const Error& error) {
     const std::string text = error.what();
     if (std::find(s_.warnings.begin(), s_.warnings.end(), text) == s_.warnings.end()) s_.warnings.push_back(text);
@@ -76,7 +76,7 @@ class Checks {
       throw wrong("output.series_interval", "is {} s, expected at most the averaging window of {} s",
                   number_text(first_line), number_text(run.end - run.average_from));
     whole_steps("run.end", run.end, run.steps());
-    // The defaults mean about as often as that.
+    // A default interval is only approximate.
     for (const auto& [key, interval, usual] :
          {std::tuple{"output.series_interval", s_.output.series_interval, OutputOptions().series_interval},
           {"output.frame_interval", s_.output.frame_interval, OutputOptions().frame_interval},
@@ -84,7 +84,7 @@ class Checks {
       if (interval != usual) whole_steps(key, interval, run.steps_in(interval));
   }
 
-  /// Says so where a time is not what it will be, beyond the rounding of numbers.
+  /// Warns if a time changes by more than the rounding of numbers.
   void whole_steps(const char* key, double given, std::int64_t steps) {
     const double taken = static_cast<double>(steps) * s_.run.step;
     if (std::abs(taken - given) > kRounding * given)
@@ -145,7 +145,7 @@ class Checks {
            number_text(s_.run.step), digits(least.step), least.because, other_help(s_));
   }
 
-  /// Tires that carry far more than their file was fitted to.
+  /// Warns of tires that carry far more than the load for which their file was fitted.
   void tire_loads() {
     const std::vector<double> loads = wheel_loads(s_);
     for (std::size_t k = 0; k < loads.size(); ++k)
@@ -155,7 +155,7 @@ class Checks {
              digits(most));
   }
 
-  /// What the scenario says of the tire of one wheel must be something to its model and to the terrain.
+  /// Checks that the model of a wheel's tire and the terrain support the options for that tire.
   void tire_options(std::size_t wheel) {
     const tire::TireSpec& tire = *s_.tires[wheel];
     if (tire.options().contact_tangent && !terrain_.gives_tangents)
@@ -224,7 +224,7 @@ class Checks {
                 terrain_.most_ranks > 1 ? "no more" : "one rank, on all of its cores");
   }
 
-  /// A rank exchanges grains with its next neighbours.
+  /// Checks the parts of the bed, because a rank exchanges grains only with its next neighbours.
   void thin_parts() {
     if (!terrain_.core_per_rank || !terrain_.bounds) return;
     const double length = terrain_.bounds->length, least = kLeastPart * terrain_.grain_radius;
@@ -264,7 +264,7 @@ class Checks {
       if (wheel.from - radius < 0.0 || wheel.from + radius > length) throw in_a_wall(wheel);
       if (wheel.to - radius < 0.0 || wheel.to + radius > length) {
         const double behind =
-            wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // what lies behind it stays
+            wheel.to > wheel.from ? wheel.from : radius + wall_margin(radius);  // soil behind it stays
         const double needed = behind + std::abs(wheel.to - wheel.from) + radius + wall_margin(radius);
         throw wrong("terrain.length",
                     "is {} m, but the axle travels from x = {:.3f} to {:.3f} m and the tire's radius is "
@@ -274,7 +274,7 @@ class Checks {
     }
   }
 
-  /// A road that no wheel meets; how far a steered vehicle drives is not known.
+  /// Warns of a road that no wheel reaches; the distance of a steered vehicle is not known.
   void road() {
     if (terrain_.uneven_key.empty()) return;
     const terrain::UnevenPart& road = terrain_.uneven;
@@ -343,7 +343,7 @@ class Checks {
   /// What is wrong with the start of a wheel that stands in a wall of the bin.
   Error in_a_wall(const rigs::WheelDescription& wheel) const {
     const double length = terrain_.bounds->length;
-    double ahead = 0.0, behind = 0.0;  // of the ends of the tires from what the key places, m
+    double ahead = 0.0, behind = 0.0;  // of the ends of the tires from the place that the key sets, m
     for (const rigs::WheelDescription& other : describe().wheels) {
       if (other.start_key != wheel.start_key) continue;
       ahead = std::max(ahead, other.start_offset + other.along);
@@ -361,7 +361,7 @@ class Checks {
                  wheel.name.empty() ? "" : wheel.name + " with ", wheel.along);
   }
 
-  /// Wheels do not feel each other: one that is in another would push the same grains twice.
+  /// Wheels do not act on each other: one inside another would push the same grains twice.
   void overlaps() {
     const std::vector<rigs::WheelDescription> wheels = describe().wheels;
     for (std::size_t k = 1; k < tires_.size(); ++k)
@@ -370,7 +370,7 @@ class Checks {
         if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
         const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
         if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;
-        if (wheels[k].start_key == wheels[i].start_key && !rig_.files().empty())  // which places both of them
+        if (wheels[k].start_key == wheels[i].start_key && !rig_.files().empty())  // this key places both wheels
           throw wrong("rig." + rig_.files().front().key,
                       "has the wheel {} in the way of {}, expected {:.2f} m between their axles or {:.2f} m "
                       "between their mid-planes",

@@ -17,7 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Keys beside the sections.
 struct Head {
   std::string schema, description, completed_by;
   int format_version = 1;
@@ -32,7 +31,7 @@ void visit_fields(FieldsOf<Head> auto& s, auto&& visit) {
   visit(s.format_version, key("format_version", "", from(1, 1), "Version of the scenario format."));
 }
 
-/// A section that a scenario may leave out: all its keys have defaults.
+/// A section that a scenario may omit: all its keys have defaults.
 Json with_default(Json section) {
   section["default"] = Json::object();
   return section;

@@ -5,8 +5,8 @@
 
 namespace furrow::scenario {
 
-/// A JSON schema (draft 7). Besides, each key may have `unit`, `usual` (outside of it: a warning) and `entries` (what a
-/// list holds).
+/// Returns a JSON schema (draft 7). In addition, each key may have `unit`, `usual` (a value outside causes a warning)
+/// and `entries` (the content of a list).
 nlohmann::ordered_json scenario_schema();
 
 }  // namespace furrow::scenario

@@ -23,14 +23,14 @@ namespace {
 using nlohmann::json;
 
 constexpr double kMaxWhole = 9007199254740992.0;  // 2^53
-constexpr std::size_t kMaxProblems = 20;          // that are reported at once
+constexpr std::size_t kMaxProblems = 20;          // reported at once
 
 std::string joined(const std::string& path, const std::string& name) { return path.empty() ? name : path + "." + name; }
 
 bool is_whole(double value) { return value == std::round(value) && std::abs(value) <= kMaxWhole; }
 
-/// The same with numbers beyond 64-bit integers cut there: valijson converts them where a multiple is asked for, which
-/// is undefined. No bound of a schema is as large.
+/// Limits numbers beyond 64-bit integers: valijson converts them if a multiple is required, which is undefined. No
+/// bound of a schema is as large.
 json within_int64(json value) {
   constexpr double kMost = 9e18;
   if (value.is_structured()) {
@@ -41,7 +41,7 @@ json within_int64(json value) {
   return value;
 }
 
-/// valijson's words for a place, {"<root>", "[tires]", "[0]"}, as the parts of a key.
+/// Converts valijson's words for a place, {"<root>", "[tires]", "[0]"}, to the parts of a key.
 std::vector<std::string> key_parts(const std::vector<std::string>& context) {
   std::vector<std::string> parts;
   for (const std::string& entry : context)
@@ -211,7 +211,7 @@ std::vector<std::string> Schema::nearest(const std::string& key) const {
   std::vector<std::string> known = keys();
   for (const auto& [name, entry] : root_["properties"].items())
     if (resolved(entry).contains("properties")) known.push_back(name);
-  // The right name in the wrong section, or without any.
+  // Finds the right name in the wrong section, or without a section.
   const std::string leaf = key.substr(key.rfind('.') + 1);
   for (const std::string& candidate : known)
     if (candidate.size() > leaf.size() && candidate.ends_with("." + leaf)) return {candidate};

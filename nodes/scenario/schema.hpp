@@ -1,4 +1,4 @@
-// The scenario schema at work: finds mistakes and says them in words, fills in defaults, explains keys.
+// The scenario schema in use: finds and describes mistakes, fills in defaults, explains keys.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace furrow::scenario {
 
-/// What is wrong with the value at a dotted key ("tires.0.pressure"), and what is expected.
+/// A mistake in the value at a dotted key ("tires.0.pressure"), and the expected value.
 struct Problem {
   std::string key;
   std::string what;
@@ -17,24 +17,23 @@ struct Problem {
 class Schema {
  public:
   explicit Schema(nlohmann::json text) : root_(std::move(text)) {}
-  /// That of scenarios (scenario_schema.hpp), made once.
+  /// The schema of scenarios (scenario_schema.hpp), made once.
   static const Schema& of_scenarios();
 
-  /// 15.0 becomes 15 where a whole number is wanted, and 450 becomes 450.0 where any number is: equal scenarios are
-  /// equal.
+  /// Makes equal scenarios identical: 15.0 becomes 15 for a whole number, and 450 becomes 450.0 for any number.
   void normalize(nlohmann::json& document) const { normalize(document, root_); }
   std::vector<Problem> problems(const nlohmann::json& document) const;
-  /// Values outside the magnitudes that are usual; to warn of.
+  /// Allowed values outside their usual magnitudes, for warnings.
   std::vector<Problem> unusual(const nlohmann::json& document) const;
   void fill_defaults(nlohmann::json& document) const { fill_defaults(document, root_); }
-  /// Takes away what fill_defaults would add; entries of lists stay, empty perhaps.
+  /// Removes the defaults that fill_defaults would add; entries of lists stay, even if empty.
   void remove_defaults(nlohmann::json& document) const { remove_defaults(document, root_); }
 
-  /// The schema of a dotted key, references resolved; null when there is none.
+  /// The schema of a dotted key, references resolved; null if there is none.
   const nlohmann::json* find(const std::string& key) const;
-  /// All dotted keys of a section ("": of all) that hold values or lists, sorted; of a list those of its entry 0.
+  /// All dotted keys of a section ("": all) with values or lists, sorted; for a list the keys of its entry 0.
   std::vector<std::string> keys(const std::string& section = "") const;
-  /// Known keys that look like this one, best first, at most three.
+  /// Keys similar to this one, best first, at most three.
   std::vector<std::string> nearest(const std::string& key) const;
 
  private:

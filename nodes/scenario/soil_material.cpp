@@ -28,7 +28,6 @@ bool takes(const std::string& engine, const std::string& key) {
   return std::find(engines.begin(), engines.end(), engine) != engines.end();
 }
 
-/// What of a soil file the engine takes.
 json values_for(const std::string& engine, const json& soil, const std::string& file) {
   json own = json::object();
   std::vector<std::string> others;
@@ -44,7 +43,6 @@ json values_for(const std::string& engine, const json& soil, const std::string& 
   return own;
 }
 
-/// What a soil file holds, checked.
 struct SoilFile {
   json values;    // by their key in `terrain`
   json measured;  // null: nothing
@@ -58,7 +56,7 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   reader.child("terrain");
   reader.allow_only({"format_version", "description", "terrain", "measured"});
   reader.check_version(kFormatVersion, true);
-  // The bin and the size of its grains are the scenario's.
+  // The scenario itself sets the bin and the size of its grains.
   const std::vector<std::string> of_soil = terrain::terrain_keys(role::soil);
   for (const auto& [key, value] : soil["terrain"].items())
     if (std::find(of_soil.begin(), of_soil.end(), key) == of_soil.end())
@@ -72,31 +70,31 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   return {alone["terrain"], soil.value("measured", json())};
 }
 
-/// The soil file that a completed scenario names; none where it names none.
+/// The soil file that a completed scenario names; none if it names none.
 std::optional<SoilFile> soil_of(const json& terrain, const std::filesystem::path& scenario) {
   const json name = terrain.value(kSoilKey, json());
   if (!name.is_string()) return {};
   return read_soil_file(find_file(name, "terrain.material", scenario));
 }
 
-/// The scenario takes the soil's values as they are, with none of its own in their place.
+/// Checks whether the scenario uses all of the soil's values and replaces none.
 bool taken_whole(const SoilFile& soil, const json& terrain) {
   for (const auto& [key, value] : soil.values.items())
     if (terrain.contains(key) && terrain[key] != value) return false;
   return true;
 }
 
-/// The soil's strength depends on the size of its grains, and the scenario's are of another. @returns the size that it
-/// was measured with, m; null: it does not, or the same holds for both
+/// Checks whether the soil's strength depends on the size of its grains, and the scenario has another size. @returns
+/// the measured size, m; null: the strength does not depend on it, or the sizes are equal
 json other_radius(const SoilFile& soil, const json& terrain) {
   const json radius = terrain.value("radius", json());
   const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
   if (!radius.is_number() || !with.is_number() || !(with.get<double>() > 0.0)) return {};
   if (std::abs(radius.get<double>() / with.get<double>() - 1.0) <= kSameSize) return {};
-  return soil.values.value("cohesion", 0.0) == 0.0 ? json() : with;  // without cohesion it has no length in it
+  return soil.values.value("cohesion", 0.0) == 0.0 ? json() : with;  // no length without cohesion
 }
 
-/// What the soil named in the scenario says to the engine; null when none is named.
+/// Values for the engine from the soil named in the scenario; null if none is named.
 json named_material(const json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const auto terrain = document.find("terrain");
   if (terrain == document.end() || !terrain->is_object()) return {};
@@ -138,7 +136,7 @@ void fill_cone_index(json& completed, const std::filesystem::path& scenario) {
 std::string other_grains_warning(const json& completed, const std::filesystem::path& scenario) {
   const json& terrain = completed.at("terrain");
   const std::optional<SoilFile> soil = soil_of(terrain, scenario);
-  if (!soil || !taken_whole(*soil, terrain)) return {};  // no soil, or one of the scenario's own
+  if (!soil || !taken_whole(*soil, terrain)) return {};  // no soil, or a changed one
   const json with = other_radius(*soil, terrain);
   if (with.is_null()) return {};
   return input_error(

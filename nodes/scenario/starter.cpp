@@ -31,7 +31,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of the small rig, on which the lengths and times of all others are modelled.
+// The small rig, the model for the lengths and times of all others.
 constexpr double kRadius = 0.4673, kLoad = 4608.0;                        // m, N
 constexpr double kCohesion = 80e3, kModulus = 2.49e7, kPressure = 155e3;  // Pa
 // In tire radii.
@@ -52,33 +52,31 @@ constexpr double kLargestStep = 5e-4;  // s, where neither grains nor tire ask f
 constexpr double kNodes = 20.0;        // of empirical soil across a tread
 constexpr std::size_t kColumns = 110;  // of a comment
 
-/// The number that a person would have typed.
+/// The number as a person would type it.
 double typed(double value) { return std::strtod(fmt::format("{:.10g}", value).c_str(), nullptr); }
 
-/// To two significant digits.
+/// Rounds to two significant digits.
 double rounded(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
   return typed(std::round(value / unit) * unit);
 }
 
-/// What the tires are to roll on.
 enum class Ground { grains, empirical, hard };
 
-/// What the sizes of a scenario follow from.
 struct Scales {
   Ground ground = Ground::grains;
   double radius = 0.0, tread = 0.0;  // of the smallest tire, m
   double largest = 0.0;              // radius, m
   double first = 0.0, last = 0.0;    // axles, x, m
   double across = 0.0;               // of the outermost point of any wheel, |y|, m
-  bool meshed = false;               // the tire is a shell, whose mesh the scenario may choose
-  // On the soil; first guesses until a bed has been described.
+  bool meshed = false;               // the tire is a shell with a mesh that the scenario may set
+  // On the soil; first guesses until a bed was described.
   double pressure = kPressure;  // under the wheel that presses most, Pa
-  double sinkage = 0.0;         // of the wheel that sinks most, m
+  double sinkage = 0.0;         // of the wheel with the largest sinkage, m
   double contact = 0.0;         // the shortest contact, m
   double layer = 1.3;           // height of a layer, grain radii
-  double lowered = 0.0;         // when the load is carried, s
-  double near_wall = 0.0;       // the way over which the end wall is felt, m
+  double lowered = 0.0;         // time at which the load is carried, s
+  double near_wall = 0.0;       // distance within which the end wall has an effect, m
 };
 
 Scales scales_of(const Scenario& s) {
@@ -138,7 +136,7 @@ void add_soil(Scales& scales, const Scenario& s) {
 double tread_speed(const Scales& s) { return kTreadSpeed * std::sqrt(kStandardGravity * s.radius); }
 double time_scale(const Scales& s) { return std::sqrt(s.radius / kRadius); }
 double slip_of(const Scales& s) { return s.ground == Ground::hard ? kHardSlip : kSlip; }
-/// When a drawbar rig begins to move, s.
+/// Time at which a drawbar rig begins to move, s.
 double begin(const Scales& s) { return std::max(kMoveFrom * time_scale(s), 1.1 * s.lowered); }
 
 Json rig_section(const StarterOptions& o, const Scales& s) {
@@ -147,7 +145,7 @@ Json rig_section(const StarterOptions& o, const Scales& s) {
   if (!o.vehicle.empty()) {
     rig["type"] = "vehicle";
     rig["vehicle"] = o.vehicle;
-    // What is no vehicle is told once the scenario is read.
+    // Another kind of file is reported after the scenario was read.
     const auto car =
         is_vehicle(o.vehicle) ? std::optional(vehicle::read_vehicle(find_vehicle(o.vehicle))) : std::nullopt;
     if (!car || vehicle::can_drive(*car))
@@ -169,7 +167,7 @@ Json rig_section(const StarterOptions& o, const Scales& s) {
   return rig;
 }
 
-/// The tire's own mesh is for results; this one shows within minutes what there is to see.
+/// The tire's own mesh is for results; this coarser one gives a first result within minutes.
 Json tire_section(const StarterOptions& o, const Scales& s) {
   Json tire;
   if (!o.tire.empty() || o.vehicle.empty()) tire["file"] = o.tire.empty() ? "hmmwv_layered.json" : o.tire;
@@ -200,10 +198,10 @@ Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
   } else {
     terrain["material"] = o.soil;
   }
-  // Of a vehicle's wheels the contact is as large, but the bed is many times as long and wide.
+  // The contact of a vehicle's wheel has the same size, but the bed is many times as long and wide.
   const double coarse = o.vehicle.empty() ? 1.0 : 2.0;
   terrain["radius"] = rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross));
-  // As many times the pressure as of the small rig: stiffer grains would need shorter steps, softer ones overlap more.
+  // Scales with the pressure of the small rig: stiffer grains need shorter steps, softer ones overlap more.
   terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));
   terrain["layers"] =
       std::clamp(static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * terrain["radius"].get<double>()))), kLayers,
@@ -231,7 +229,6 @@ Json output_section(const Scales& s) {
   return output;
 }
 
-/// Text in lines of comments.
 std::string comment(const std::string& text, const std::string& indent) {
   std::string lines, line;
   std::size_t from = 0;
@@ -248,7 +245,7 @@ std::string comment(const std::string& text, const std::string& indent) {
   return lines + indent + "// " + line + "\n";
 }
 
-/// A section with what the schema says of its keys.
+/// A section with the schema's descriptions of its keys.
 std::string section_text(const Schema& schema, const std::string& name, const Json& section) {
   std::string text = fmt::format("  \"{}\": {{\n", name);
   std::size_t left = section.size();
@@ -278,13 +275,13 @@ std::string text_of(const Json& document, const std::string& file) {
   return text + "}\n";
 }
 
-/// As the program would run it.
+/// Reads the document as the program would for a run.
 Scenario checked(const std::filesystem::path& file, const Json& document) {
   write_whole_file(file, text_of(document, file.string()));
   return load_scenario(file, {});
 }
 
-/// As it is typed: 1, 2, 4, 5 or 8 times a power of ten, so that usual times are whole numbers of it.
+/// Rounds to 1, 2, 4, 5 or 8 times a power of ten, so that usual times are whole numbers of steps.
 double step_of(const Scenario& s) {
   const double stable = kStepShare * s.terrain->estimate(s.terrain_context()).stable_step;
   const double largest = std::min({stable, kLargestStep, smallest_coupling_step(s).step});
@@ -317,7 +314,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
                             (ground == Ground::hard ? "hard ground." : "soil.");
 
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
-  scales = scales_of(checked(file, document));  // the mesh decides how wide the tread is
+  scales = scales_of(checked(file, document));  // the mesh decides the width of the tread
   scales.ground = ground;
   const double travel = o.vehicle.empty()
                             ? (1.0 - slip_of(scales)) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)

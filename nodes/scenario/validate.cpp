@@ -38,7 +38,7 @@ nlohmann::ordered_json scales_json(const WheelScales& w, const std::string& name
   return json;
 }
 
-/// Name and text of each line. @param travels it is known how far the wheel gets
+/// Name and text of each line. @param travels whether the wheel's travel is known
 std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales& w, bool travels) {
   std::vector<std::pair<std::string, std::string>> lines{{"load", digits(w.load) + " N"}};
   std::string speed = fmt::format("Froude number {}", digits(w.froude));
@@ -82,7 +82,7 @@ std::vector<Bound> all_bounds(const Scenario& s) {
   return bounds;
 }
 
-/// " (front_left, rear_left)"; empty where the rig has one wheel.
+/// " (front_left, rear_left)"; empty if the rig has one wheel.
 std::string wheels_text(const Bound& bound, std::size_t all) {
   if (bound.wheels.empty()) return "";
   return bound.wheels.size() == all ? " (all wheels)" : fmt::format(" ({})", fmt::join(bound.wheels, ", "));
@@ -179,7 +179,7 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
                              tires[k].radius));
     const MassProperties& mass = tires[k].mass;
     line("tire mass", fmt::format("{:.2f} kg, spin inertia {:.3g} kg m²", mass.mass, mass.inertia(1, 1)));
-    // Of a vehicle that is driven by its pedals nobody knows yet how far it gets.
+    // The distance of a vehicle that is driven by its pedals is not known yet.
     const double from = rig.wheels[k].from, to = rig.wheels[k].to;
     const bool travels = to != from;
     line("axle", travels ? fmt::format("from x = {:.3f} m to {:.3f} m", from, to)

@@ -1,4 +1,4 @@
-// What `furrow validate` says of a scenario.
+// The report of `furrow validate` on a scenario.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace furrow::scenario {
 
-/// What `furrow validate` prints: the figures by name, or as lines for people. Without `time` it says nothing of time.
+/// Output of `furrow validate`: figures by name, or lines for users. Without `time` it leaves out durations.
 nlohmann::ordered_json validation_report(const Scenario& scenario, const RunTime* time = nullptr);
 std::string validation_text(const Scenario& scenario, const RunTime* time = nullptr);
 

@@ -16,9 +16,9 @@
 namespace furrow::scenario {
 namespace {
 
-constexpr double kMore = 1.5;  // times the mean load of a wheel, up to which tires are pressed
+constexpr double kMore = 1.5;  // times the mean load of a wheel; tires are pressed up to this load
 
-/// The file that `name` means, if there is one.
+/// The file with this name, if there is one.
 std::filesystem::path candidate(const std::string& name) {
   std::error_code error;
   for (const std::filesystem::path& place : {std::filesystem::path(name), data_folder() / "vehicle" / "data" / name})

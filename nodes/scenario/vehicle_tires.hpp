@@ -1,4 +1,4 @@
-// A vehicle's file beside the program, and the tires that it stands on: each pressed on flat ground.
+// A vehicle's file outside a scenario, and its tires at rest, each pressed on flat ground.
 #pragma once
 
 #include <filesystem>
@@ -13,22 +13,21 @@
 
 namespace furrow::scenario {
 
-/// `name` as it stands, or in vehicle/data/. @throws Error(bad_input) naming the places where it was looked for
+/// Finds `name` as it is, or in vehicle/data/. @throws Error(bad_input) naming the places searched
 std::filesystem::path find_vehicle(const std::string& name);
 
-/// As find_vehicle(), for a command that takes nothing else. @throws Error(bad_input) of a scenario, naming its vehicle
+/// Like find_vehicle(), for a command that accepts only vehicles. @throws Error(bad_input) for a scenario, naming its
+/// vehicle
 std::filesystem::path find_vehicle_alone(const std::string& name);
 
-/// Whether `name` is a file that describes a vehicle, by what it holds: it has axles or a
-/// chassis, which no scenario has.
+/// Checks whether `name` is a file that describes a vehicle: it has axles or a chassis, which a scenario never has.
 bool is_vehicle(const std::string& name);
 
-/// The tires that the file of a vehicle names, one for each wheel; wheels of the same tire share it. With coarse
-/// meshes, which are pressed within seconds. @throws Error(bad_input) naming file and key
+/// The tires named in a vehicle's file, one for each wheel; wheels with the same tire share it. Their meshes are
+/// coarse, so that pressing takes seconds. @throws Error(bad_input) naming file and key
 std::vector<std::shared_ptr<const tire::TireSpec>> tires_of(const vehicle::VehicleSpec& vehicle);
 
-/// Each tire at rest, pressed up to more than its share of the weight; see
-/// tire/press/press_curve.hpp for what that costs.
+/// Presses each tire at rest up to more than its share of the weight; tire/press/press_curve.hpp states the cost.
 /// @pre one tire for each wheel. @throws Error
 std::vector<vehicle::StandingTire> standing_tires(const vehicle::VehicleSpec& vehicle,
                                                   std::span<const std::shared_ptr<const tire::TireSpec>> tires,

@@ -1,4 +1,4 @@
-// How large the tires of a scenario are and where their axles travel, before any model is made.
+// Sizes of a scenario's tires and paths of their axles, before any model is made.
 #pragma once
 
 #include <vector>
@@ -10,15 +10,13 @@ namespace furrow::scenario {
 /// In the order of the wheels. @throws Error(bad_input) naming file and key
 std::vector<tire::TireDescription> describe_tires(const Scenario& scenario);
 
-/// The sizes that a rig asks for.
 std::vector<rigs::WheelSize> wheel_sizes(const std::vector<tire::TireDescription>& tires);
 
-/// What a rig may take from the scenario's tires, described as `tires`.
+/// Values that a rig may take from the scenario's tires, described as `tires`.
 std::vector<rigs::MountedTire> mounted_tires(const Scenario& scenario, const std::vector<tire::TireDescription>& tires);
 
-/// The rig under the scenario's tires, over its whole run. @throws Error(bad_input) naming file and key
+/// Describes the rig with the scenario's tires over its whole run. @throws Error(bad_input) naming file and key
 rigs::RigDescription describe_rig(const Scenario& scenario);
-/// The same with the tires described already.
 rigs::RigDescription describe_rig(const Scenario& scenario, const std::vector<tire::TireDescription>& tires);
 
 }  // namespace furrow::scenario

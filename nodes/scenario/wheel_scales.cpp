@@ -19,18 +19,19 @@ namespace {
 using terrain::dem::DemOptions;
 
 constexpr double kG = kStandardGravity;
-// Strength of grains, see the header.
+// Strength of grains; see the header.
 constexpr double kAngle = 26.0 * std::numbers::pi / 180.0, kAngleOfRolling = 25.0 * std::numbers::pi / 180.0;
-constexpr double kRough = 0.5;  // friction from which the angle does not grow any more
-// Solid fraction of a bed as it falls, less with rolling friction, and without friction; how the angle grows with it.
+constexpr double kRough = 0.5;  // friction beyond which the angle does not grow
+// Solid fraction of a bed as it falls, its decrease with rolling friction, its value without friction; increase of the
+// angle with it.
 constexpr double kFallen = 0.585, kFallenOfRolling = 0.075, kSmooth = 0.65;
 constexpr double kAngleOfPacking = 110.0 * std::numbers::pi / 180.0;  // per solid fraction
 constexpr double kShearBand = 10.0;                                   // grain diameters
-constexpr double kTimesToSettle = 4.0;  // z/v: F grows with depth while the damper lets the wheel down
+constexpr double kTimesToSettle = 4.0;  // z/v: F grows with depth while the damper lowers the wheel
 // μ(I) = μ_s + (μ_2 − μ_s)/(1 + I_0/I) [Jop, Forterre & Pouliquen 2006, doi:10.1038/nature04801].
 constexpr double kStatic = 0.38, kFast = 0.64, kInertial0 = 0.279;
 
-// Where what binds the answer.
+// Limits beyond which a scale binds the answer.
 constexpr double kGrains = 5.0;       // diameters in the contact, either way
 constexpr double kDepth = 8.0;        // sinkages
 constexpr double kBeside = 0.5;       // tread widths
@@ -38,7 +39,7 @@ constexpr double kNearEnd = 0.1;      // of the averaging window
 constexpr double kRateEffect = 0.05;  // of the friction, of the pressure
 constexpr double kNodes = 5.0;        // of empirical soil in the contact's length
 
-constexpr double kLeapfrog = 0.5;  // ω H of a prompt force, up to which the rule's error is about 1 %
+constexpr double kLeapfrog = 0.5;  // ω H of a prompt force at which the rule's error is about 1 %
 
 struct Strength {
   double cohesion = 0.0, angle = 0.0, weight = 0.0;  // Pa; rad; N/m³
@@ -72,7 +73,7 @@ double bearing_pressure(const Strength& s, double radius, double width, double s
          0.5 * s.weight * std::min(width, contact_length(radius, sinkage)) * n_gamma;
 }
 
-/// By bisection; at most one radius.
+/// Sinkage by bisection; at most one radius.
 double sinkage_of(const Strength& s, double load, double radius, double width) {
   FURROW_ASSERT(radius > 0.0 && width > 0.0, radius, width);
   double low = 0.0, high = radius;
@@ -84,7 +85,7 @@ double sinkage_of(const Strength& s, double load, double radius, double width) {
   return high;
 }
 
-/// How far a footing of this length moves the soil in front of it: Prandtl's mechanism.
+/// Distance to which a footing of this length moves the soil in front of it: Prandtl's mechanism.
 double reach_of_failure(double angle, double length) {
   return length * std::tan(0.25 * std::numbers::pi + 0.5 * angle) * std::exp(0.5 * std::numbers::pi * std::tan(angle));
 }
@@ -114,10 +115,9 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
   return g;
 }
 
-/// Wheels that are alike say the same once.
+/// Wheels with the same bound share one entry.
 class Bounds {
  public:
-  /// Of the wheel that follows.
   void begin(const std::string& wheel) { wheel_ = wheel; }
   void add(bool binds, const std::string& key, const std::string& what) {
     if (!binds) return;
@@ -173,7 +173,7 @@ void take(CouplingStep& least, double step, const char* because) {
   if (step < least.step) least = {step, because};
 }
 
-/// Of a spring and a mass; where one is not known there is none.
+/// Takes the step of a spring and a mass, if both are known.
 void take_spring(CouplingStep& least, double stiffness, double inertia, const char* because) {
   if (stiffness > 0.0 && inertia > 0.0) take(least, kLeapfrog * std::sqrt(inertia / stiffness), because);
 }

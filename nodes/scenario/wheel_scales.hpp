@@ -1,14 +1,15 @@
-// How large a wheel is beside its grains, its bed and its walls, and how fast beside gravity and pressure, before any
-// model is made: figures that separate a result from an artefact of the bin. Estimates, for `furrow validate` alone.
+// Size of a wheel compared with its grains, bed and walls, and its speed compared with gravity and pressure, before any
+// model is made. These figures separate a result from an artefact of the bin. They are estimates, only for `furrow
+// validate`.
 //
-// Sinkage z of a rigid wheel (R, b, W) on a strip footing's bearing capacity [Terzaghi 1943; N_γ of Vesić 1973]:
+// Sinkage z of a rigid wheel (R, b, W) from a strip footing's bearing capacity [Terzaghi 1943; N_γ of Vesić 1973]:
 //   W = b ℓ (c N_c + γ z N_q + ½ γ min(b, ℓ) N_γ),   ℓ = √(2 R z), the contact in front of the axle
 // with the strength that soil tests of this program found for its grains: φ = 26° (26.5 ± 1.0° at friction 0.9, 26.8 ±
 // 0.7° at 0.5 with rolling friction 0.2, 34 ± 2° with 0.5), c = 0.08 × the contact cohesion (6.8 ± 1.4 kPa at 80 kPa).
-// A denser bed has more: 30.2 ± 1.6° at a solid fraction of 0.6 with friction 0.5 and rolling friction 0.1; such grains
-// fall to 0.56 (tests/studies/packing.csv, calibrated_lete_sand.csv).
-// Beside runs of the reference wheel, 4.6 kN: 15 mm at 80 kPa (runs: 15 to 20 mm, 30 mm on a bed twice as deep), 42 mm
-// at 40 kPa (35), 80 mm at 20 kPa (77 on a deep bed).
+// A denser bed is stronger: 30.2 ± 1.6° at a solid fraction of 0.6 with friction 0.5 and rolling friction 0.1; such
+// grains fall to 0.56 (tests/studies/packing.csv, calibrated_lete_sand.csv).
+// Compared with runs of the reference wheel, 4.6 kN: 15 mm at 80 kPa (runs: 15 to 20 mm, 30 mm on a bed twice as deep),
+// 42 mm at 40 kPa (35), 80 mm at 20 kPa (77 on a deep bed).
 //
 // [Terzaghi 1943] Theoretical Soil Mechanics, ch. 8. [Vesić 1973] J. Soil Mech. Found. Div. ASCE 99(1), 45–73.
 #pragma once
@@ -25,9 +26,8 @@ namespace furrow::scenario {
 struct WheelScales {
   double load = 0.0;            // W, N
   double froude = 0.0;          // v/√(g R) at full speed, v the faster of axle and tread
-  double lowering_needs = 0.0;  // s until the load is carried, with rig.move_from; 0: not asked for
+  double lowering_needs = 0.0;  // s until the load is carried, with rig.move_from; 0: not needed
 
-  /// On grains.
   struct OnGrains {
     double sinkage = 0.0;          // z, m
     double contact_length = 0.0;   // ℓ, m
@@ -44,30 +44,29 @@ struct WheelScales {
   std::optional<OnGrains> grains;
 };
 
-/// What each wheel carries when it stands, with the tire's own weight, N.
+/// Load of each wheel at rest, with the tire's own weight, N.
 std::vector<double> wheel_loads(const Scenario& scenario);
 
-/// Of each wheel.
 std::vector<WheelScales> wheel_scales(const Scenario& scenario);
 
-/// A scale that binds the answer, and what the effect is known to be.
+/// A scale that binds the answer, and its known effect.
 struct Bound {
-  std::string key;  // of the scenario, that moves it
+  std::string key;  // of the scenario, that changes it
   std::string what;
-  std::vector<std::string> wheels = {};  // that it holds for, by name; none where the rig has one wheel
+  std::vector<std::string> wheels = {};  // affected wheels, by name; none if the rig has one wheel
 };
 std::vector<Bound> scale_bounds(const Scenario& scenario);
 
-/// As results name it: "front_left", "wheel 2".
+/// Name in results: "front_left", "wheel 2".
 std::string wheel_name(const rigs::RigDescription& rig, std::size_t wheel);
-/// Of a wheel among several; empty where there is one.
+/// Label of a wheel among several; empty if there is only one.
 std::string wheel_label(const rigs::RigDescription& rig, std::size_t wheel);
 
-/// How large the communication step may be before forces at the contact of a wheel decide the result by their timing.
+/// Largest communication step before the timing of forces at a wheel's contact affects the result.
 ///
-/// A tire with a motion of its own gets its forces one step late, which feeds it: its own damping must be faster, so
-/// H ≤ share × τ (TireDescription). Prompt forces (Scenario::prompt) are those of springs under a leapfrog rule:
-/// H ≤ 1/(2 ω) with the fastest of
+/// A tire with a motion of its own gets its forces one step late, which adds energy to it. Its own damping must be
+/// faster, so H ≤ share × τ (TireDescription). Prompt forces (Scenario::prompt) are those of springs under a leapfrog
+/// rule: H ≤ 1/(2 ω) with the fastest of
 ///   bounce  ω² = k/m     k of a rigid wheel on its ground, or of a handling tire; m the tire and what moves with it
 ///   spin    ω² = K R²/(σ I)   of a handling tire: slip stiffness K over its relaxation length σ
 struct CouplingStep {
@@ -75,11 +74,9 @@ struct CouplingStep {
   std::string because;                                    // "the spin of its wheel on the tire's grip"
 };
 
-/// Of each wheel.
 std::vector<CouplingStep> coupling_steps(const Scenario& scenario);
-/// Of the wheel with the smallest.
 CouplingStep smallest_coupling_step(const Scenario& scenario);
-/// What else helps, for people: ", or tire.contact_tangent"; empty: nothing.
+/// Other remedies, for users: ", or tire.contact_tangent"; empty: none.
 std::string other_help(const Scenario& scenario);
 
 }  // namespace furrow::scenario

@@ -23,7 +23,7 @@ using checkpoint::value_at;
 
 constexpr std::uint64_t kLargestSeed = 9007199254740991;  // of run.seed
 
-/// What is averaged over beds, and where a bed's summary has it.
+/// A figure that is averaged over beds, and its place in a bed's summary.
 struct Figure {
   const char* name;
   const char* place;
@@ -45,7 +45,7 @@ Json beds_json(const OverBeds& o) {
   return {{"n", o.n}, {"mean", json_number(o.mean)}, {"half_width_95", json_number(o.half_width)}};
 }
 
-/// Of one wheel; figures that no bed has are left out.
+/// Figures of one wheel; those that no bed has are left out.
 Json figures(std::span<const Json> wheels) {
   Json json = Json::object();
   for (const Figure& figure : kFigures) {
@@ -66,7 +66,6 @@ Json figures(std::span<const Json> wheels) {
   return json;
 }
 
-/// A bed as the table of beds has it.
 Json entry(const Sweep::Outcome& bed, std::uint64_t seed, const Json& summary) {
   Json json{{"folder", name_of(bed)}, {"seed", seed}, {"done", bed.done}};
   if (!bed.done) {
@@ -79,7 +78,7 @@ Json entry(const Sweep::Outcome& bed, std::uint64_t seed, const Json& summary) {
   return json;
 }
 
-/// Whether a wheel of the run has a pull that is not steady.
+/// Checks whether a wheel of the run has a pull that is not steady.
 bool unsteady(const Json& summary) {
   const Json wheels = value_at(summary, "wheels");
   for (const Json& wheel : wheels.is_array() ? wheels : Json::array())
@@ -87,7 +86,7 @@ bool unsteady(const Json& summary) {
   return false;
 }
 
-/// Of the scenario on the first bed; null where a study has the folder. @param told sweep.json
+/// Digest of the scenario on the first bed; null if the folder belongs to a study. @param told sweep.json
 Json digest_of_beds(const Json& told) { return value_at(told, "beds.scenario_digest"); }
 
 }  // namespace
@@ -122,7 +121,7 @@ void begin_beds(launch::RunDirectory& directory, const std::string& digest, bool
     if (overwrite) directory.replace();
   }
   directory.add({"sweep.json", "summary.json", "summary_failed.json"});
-  std::error_code error;  // they say of fewer beds than there will be
+  std::error_code error;  // the old ones cover fewer beds
   for (const char* name : {"summary.json", "summary_failed.json"}) fs::remove(folder / name, error);
 }
 

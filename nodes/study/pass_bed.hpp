@@ -1,4 +1,4 @@
-// The bed of a further pass: the terrain as a run left it, without the tire, after a rest.
+// The bed of a further pass: the terrain after a run, without the tire, after a rest.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 namespace furrow::study {
 
 /// @param run   folder of a finished run on grains; its last checkpoint is read
-/// @param rest  simulated time that the bed lies before the next pass, s
+/// @param rest  simulated time that the bed rests before the next pass, s
 /// @param file  receives the bed, for `terrain.bed`
 /// @throws Error
 terrain::dem::SettleResult make_pass_bed(const std::filesystem::path& run, double rest, const ProgressCall& progress,

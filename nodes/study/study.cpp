@@ -32,7 +32,7 @@ Json load_document(const std::filesystem::path& file) {
 
 bool given_text(const Json& document, const char* key) { return document.contains(key) && document[key].is_string(); }
 
-/// All combinations of the values in `grid`, none of whose keys is in `common`.
+/// All combinations of the values in `grid`; none of its keys is in `common`.
 std::vector<Json> grid(Reader& reader, const Json& common) {
   std::vector<Json> runs{Json::object()};
   const Json axes = reader.object_or_empty("grid");
@@ -68,7 +68,7 @@ double rest(Reader& reader) {
   return rest;
 }
 
-// Whatever else a table holds, it says which means are steady, and whether late forces have part in them.
+// Every table states which means are steady, and the share of late forces.
 const std::vector<std::string> kSteadiness{"drawbar_pull_N.steady", "drawbar_pull_N.n_eff", "interface.share",
                                            "interface.ok"};
 
@@ -79,7 +79,8 @@ const std::vector<std::string> kUsualResults{
     "tractive_efficiency", "vertical_load_N",    "bed_clearance_m",       "interface.share",      "interface.ok",
     "wall_s"};
 
-/// Lines and means are over keys that the runs differ in, the ordinate is a result, the abscissa either.
+/// Checks a plot: lines and means are over keys that differ between runs, the ordinate is a result, the abscissa
+/// either.
 Json checked_plot(Reader& reader, const Study& study) {
   const std::vector<std::string> known{"x", "y", "error", "lines", "mean_over"};
   std::vector<std::string> varied;
@@ -113,7 +114,7 @@ Study study_of_beds(const std::filesystem::path& scenario, const std::string& na
   study.name = name;
   study.common = Json::object();
   for (const auto& [key, text] : settings) {
-    study.common.erase(key);  // what is said later wins
+    study.common.erase(key);  // later keys win
     study.common[key] = text;
   }
   for (int k = 0; k < beds; ++k) {

@@ -41,8 +41,8 @@ using Json = nlohmann::ordered_json;
 using checkpoint::read_summary, checkpoint::read_failed_summary, checkpoint::number_at, checkpoint::value_at;
 
 constexpr int kPoll = 20000;      // µs
-constexpr double kDeepRut = 0.4;  // of the bed's depth: a tire this deep feels the floor
-constexpr double kLook = 2.0;     // s between looks at how far the runs are
+constexpr double kDeepRut = 0.4;  // of the bed's depth: at this depth the floor affects the tire
+constexpr double kLook = 2.0;     // s between checks of the runs' progress
 
 std::string cell(const Json& value) {
   if (value.is_null()) return "";
@@ -53,7 +53,7 @@ std::string cell(const Json& value) {
   return quoted + "\"";
 }
 
-/// As many shares of the cores this process may use, as even as they come; all of them where there are too few.
+/// Divides this process's cores into equal shares; each share has all cores if there are too few.
 std::vector<cpu_set_t> core_shares(int jobs) {
   FURROW_ASSERT(jobs > 0, jobs);
   const std::vector<int> cores = allowed_cores();
@@ -71,7 +71,7 @@ bool readable(const fs::path& bed) try {
   terrain::dem::read_bed(bed);
   return true;
 } catch (const Error&) {
-  return false;  // absent or damaged: made again
+  return false;  // missing or damaged: the run is repeated
 }
 
 /// Names of all values as `results` takes them, "iso_w.force_N.0".
@@ -115,7 +115,7 @@ Sweep::Sweep(Study study, const SweepOptions& options)
   require_unlike_runs();
 }
 
-/// Runs of one digest would share a folder.
+/// Runs with the same digest would share a folder.
 void Sweep::require_unlike_runs() const {
   if (!study_.names.empty()) return;
   std::map<std::string, const Run*> known;
@@ -178,7 +178,7 @@ fs::path Sweep::log_of(const Run& run) const { return options_.folder / (run.nam
 bool Sweep::finished(const Run& run, const Json& summary) const {
   if (!summary.is_object()) return false;
   if (value_at(summary, "scenario_digest") == run.digest) return true;
-  // After a failure it was continued with a smaller step.
+  // The run was continued after a failure with a smaller step.
   const Json segments = value_at(summary, "segments");
   return std::any_of(segments.begin(), segments.end(),
                      [&](const Json& segment) { return value_at(segment, "finer_than") == run.digest; });
@@ -210,7 +210,7 @@ std::string Sweep::line_of(const Run& run, const std::string& what) const {
   return fmt::format("furrow: run {} of {} ({}) {}", number, runs_.size(), keys, what);
 }
 
-/// How much of the study is done, and for how long it will take: runs count alike.
+/// Shows how much of the study is done and the time left; all runs count the same.
 void Sweep::show_progress() {
   const double now = wall_clock();
   if (now - looked_ < kLook) return;
@@ -223,14 +223,14 @@ void Sweep::show_progress() {
     share += run.done / static_cast<double>(runs_.size());
   }
   if (begin_ == 0.0) begin_ = now, begin_share_ = share;
-  const bool under_way = share > 0.0 && share < 1.0;  // then the share follows
+  const bool under_way = share > 0.0 && share < 1.0;  // then the share is printed
   launch::Progress progress{.phase = fmt::format("{} of {} runs done{}", done, runs_.size(), under_way ? "," : ""),
                             .share = share};
   if (share > begin_share_) progress.eta = (now - begin_) * (1.0 - share) / (share - begin_share_);
   display_.show(progress);
 }
 
-/// The next run to start; null when none can be now.
+/// The next run to start; null if none can start now.
 Sweep::Run* Sweep::next() {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     Run& run = runs_[i];
@@ -253,8 +253,9 @@ Sweep::Run* Sweep::next() {
   return nullptr;
 }
 
-/// The bed of a pass is what the pass before it left, after a rest; sinkage counts from the surface before the first.
-/// @returns false when there is none: stopped by a signal, or the run has failed
+/// Makes the bed of a pass from that of the previous pass, after a rest; sinkage counts from the surface before the
+/// first.
+/// @returns false if there is none: stopped by a signal, or the run has failed
 bool Sweep::prepare_bed(Run& run) try {
   FURROW_ASSERT(run.pass > 1, run.pass);
   const Run& before = *(&run - 1);
@@ -296,7 +297,7 @@ void Sweep::start(Run& run, std::size_t share) {
   std::error_code error;
   launch::add_to_run_list(options_.folder, {study_.names.empty() ? "runs/" : run.name + "/", run.name + ".log"});
   fs::create_directory(folder_of(run).parent_path(), error);
-  launch::wait_until_free(folder_of(run));  // ranks outlive a supervisor that was killed by a second or two
+  launch::wait_until_free(folder_of(run));  // ranks outlive a killed supervisor by a second or two
   const std::vector<std::string> list = command(run);
   const int log = open(log_of(run).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
   const auto prepare = [cores = shares_[share]] {
@@ -317,7 +318,7 @@ void Sweep::poll(Run& run) {
   int status = 0;
   const pid_t ended = waitpid(run.process, &status, WNOHANG);
   if (ended == 0 || (ended < 0 && errno == EINTR)) return;
-  if (ended < 0) status = SIGKILL;  // there is no such child any more, and nothing tells how it ended
+  if (ended < 0) status = SIGKILL;  // the child no longer exists, and nothing shows how it ended
   run.process = -1;
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : static_cast<int>(ExitCode::rank_lost);
   const Json summary = read_summary(folder_of(run));
@@ -362,7 +363,7 @@ void Sweep::stop_all() {
     if (run.process > 0) kill(run.process, SIGTERM);
 }
 
-/// What was moved or removed must not be made again. Its runs notice it, too.
+/// Checks that the folder exists: it must not be made again if it was moved or removed. Its runs check this too.
 void Sweep::require_folder(const launch::FolderLock& lock) {
   if (lock.stands()) return;
   for (Run& run : runs_) {
@@ -376,7 +377,7 @@ void Sweep::require_folder(const launch::FolderLock& lock) {
       "was moved, removed or emptied while the study was under way; it ends here and writes nothing elsewhere");
 }
 
-/// Ctrl-Z reaches this process alone: the runs have groups of their own.
+/// Only this process receives Ctrl-Z: the runs have groups of their own.
 void Sweep::pause_all() {
   if (!launch::pause_asked()) return;
   std::vector<int> stopped;
@@ -426,7 +427,7 @@ ExitCode Sweep::run(const launch::FolderLock& lock) {
   return outcome();
 }
 
-/// Once, as it ends: the table is written anew as each run ends, and would read the summaries of all of them.
+/// Keeps a run's results once it ends, because the table is rewritten after each run and would need all summaries.
 void Sweep::keep_results(Run& run, const Json& summary) const {
   run.cells.clear();
   for (const std::string& name : study_.results) run.cells += "," + cell(value_at(summary, name));

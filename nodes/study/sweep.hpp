@@ -1,12 +1,12 @@
-// The runs of a study, one after another or several at once, each `furrow run` or `furrow resume` in a process of its
-// own. What is finished stays: a sweep that was interrupted continues where it was.
+// The runs of a study, one after another or several at once, each a process of `furrow run` or `furrow resume`.
+// Finished runs stay: an interrupted sweep continues.
 //
-//   <folder>/sweep.csv     one line per run: its keys, how it went, its results; of one that failed the means of what
-//                          there is
+//   <folder>/sweep.csv     one line per run: its keys, its outcome, its results; for a failed run the means of the
+//                          available lines
 //   <folder>/sweep.json    the study, for the plots
-//   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: what it said. Runs
-//                          that the study names are in <folder>/<name> instead
-//   <folder>/beds/         of passes: the bed that each begins on
+//   <folder>/runs/<digest> the folder of each run, named after its scenario's digest; <digest>.log: its output. Runs
+//                          with names in the study are in <folder>/<name> instead
+//   <folder>/beds/         for passes: the bed at the beginning of each
 #pragma once
 
 #include <sched.h>
@@ -30,21 +30,20 @@ struct SweepOptions {
 
 class Sweep {
  public:
-  /// @throws Error(bad_input) when a run's scenario is wrong; nothing was written then
+  /// @throws Error(bad_input) if a run's scenario is wrong; nothing was written then
   Sweep(Study study, const SweepOptions& options);
 
-  /// Before anything is written or removed. @throws Error(bad_input) where a file of the user's stands in a run's place
+  /// Call it before anything is written or removed. @throws Error(bad_input) if a user's file is in a run's place
   void require_places() const;
 
-  /// How many runs the folder's table has that are all none of this study's; 0 where one is.
+  /// Number of runs in the folder's table if none of them belongs to this study; otherwise 0.
   std::size_t runs_of_another_study() const;
 
   /// @param lock of the study's folder
-  /// @returns done, stopped, or how the first run that failed ended
-  /// @throws Error(io) when the folder was moved or removed meanwhile; its runs have ended then
+  /// @returns done, stopped, or the exit code of the first run that failed
+  /// @throws Error(io) if the folder was moved or removed meanwhile; its runs have ended then
   ExitCode run(const launch::FolderLock& lock);
 
-  /// How a run ended, in the order of the study.
   struct Outcome {
     std::filesystem::path folder;
     bool done = false;
@@ -56,18 +55,18 @@ class Sweep {
  private:
   enum class State { waiting, running, done, failed, stopped };
   struct Run {
-    nlohmann::ordered_json keys = nlohmann::ordered_json::object();       // what the user varies
-    nlohmann::ordered_json passes_on = nlohmann::ordered_json::object();  // what a pass takes from those before
+    nlohmann::ordered_json keys = nlohmann::ordered_json::object();       // varied by the user
+    nlohmann::ordered_json passes_on = nlohmann::ordered_json::object();  // inputs of a pass from earlier ones
     int pass = 0;                                                         // 1, 2, …; 0: on a bed of its own
     State state = State::waiting;
     bool loaded = false;
     std::string digest, problem;
     std::string name;   // of its folder in the study's
-    std::string cells;  // of its results in the table; empty ones until it has ended
+    std::string cells;  // its results in the table; empty cells until it has ended
     int exit_code = 0;
     pid_t process = -1;
     std::size_t share = 0;  // of the cores
-    double done = 0.0;      // share of the run that is done, 0…1, by its log
+    double done = 0.0;      // share of the run done, 0…1, from its log
   };
 
   void load(Run& run);
@@ -98,9 +97,9 @@ class Sweep {
   std::vector<cpu_set_t> shares_;
   int told_stops_ = 0;
   launch::ProgressDisplay display_;
-  double begin_ = 0.0;        // wall time at which the first run was started here, s
-  double begin_share_ = 0.0;  // of the study, done then
-  double looked_ = 0.0;       // wall time of the last look at the logs, s
+  double begin_ = 0.0;        // wall time when this process started its first run, s
+  double begin_share_ = 0.0;  // of the study, at that time
+  double looked_ = 0.0;       // wall time when the logs were last read, s
 };
 
 }  // namespace furrow::study

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLifted = 0.01, kDown = 0.05, kTouched = 0.5;  // of the load at rest
 constexpr double kLeastLift = 0.01;                             // s
-constexpr std::size_t kMostLifts = 1000;                        // that are reported
+constexpr std::size_t kMostLifts = 1000;                        // largest number reported
 constexpr int kErrorFields = 7, kWheelFields = 3, kLiftFields = 3;
 
 }  // namespace

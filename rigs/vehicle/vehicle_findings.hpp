@@ -1,10 +1,10 @@
-// What a vehicle's run reports besides its tables: wheels that lose the ground, how near it keeps to its path, changes
-// of gear. Nothing that moves depends on it.
+// Findings of a vehicle's run besides its tables: lifted wheels, distances from the path, changes of gear. Nothing that
+// moves depends on them.
 //
-// A wheel is lifted while it carries less than 1 % of its load at rest, until it carries 5 % again, for at least 10 ms,
-// and after it has once carried half of it. Path errors are those of the axle that the law looks at. The margin in the
-// lanes of a lane change is what is left between their limits and the rectangle of the vehicle's width from axle to
-// axle.
+// A wheel is lifted from when it carries less than 1 % of its load at rest until it carries 5 % again. This counts if
+// it lasts at least 10 ms and the wheel has once carried half of its load. Path errors are those of the axle that the
+// driver's law follows. The margin of a lane change is the distance between the lane's limits and the rectangle of the
+// vehicle's width from axle to axle.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class VehicleFindings {
   VehicleFindings(std::vector<double> loads, const std::optional<vehicle::DriverSpec>& driver,
                   const vehicle::DriverCar& car);
 
-  /// Wheel k carries this much, N, from this time on, s.
+  /// Records that wheel k carries `force`, N, from `time`, s, on.
   void wheel(int k, double force, double time);
   void path(const vehicle::DriverView& view, const vehicle::DriverRecord& record);
   void gear(int gear);
@@ -38,10 +38,10 @@ class VehicleFindings {
     double since = 0.0;  // when it was lifted, s
   };
   struct PathErrors {
-    double count = 0.0, squares = 0.0;  // of calls; Σ e², m²
+    double count = 0.0, squares = 0.0;  // number of calls; Σ e², m²
     double largest = 0.0, largest_at = 0.0;
-    double margin = 0.0, margin_at = 0.0;  // the least, in lanes
-    double lanes = 0.0;                    // 1: it was in one
+    double margin = 0.0, margin_at = 0.0;  // the least within lanes
+    double lanes = 0.0;                    // 1: the vehicle was in a lane
   };
 
   std::vector<double> loads_;

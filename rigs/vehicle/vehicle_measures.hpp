@@ -1,4 +1,4 @@
-// What the vehicle rig measures of the vehicle as a whole: its table's columns, from the vehicle and its driver.
+// Columns of the vehicle's own table, measured on the vehicle and its driver.
 #pragma once
 
 #include "rigs/vehicle/vehicle_rows.hpp"
@@ -7,7 +7,6 @@
 
 namespace furrow::rigs {
 
-/// Where an advance began.
 struct MotionBefore {
   Vec3 origin = Vec3::Zero();    // of the vehicle, m
   Vec3 momentum = Vec3::Zero();  // kg m/s
@@ -16,20 +15,19 @@ struct MotionBefore {
   static MotionBefore of(const vehicle::Vehicle& car);
 };
 
-/// Of the driveline, summed over steps; finish_driveline() makes means over the advance of them.
+/// Sums of the driveline over steps; finish_driveline() makes means over the advance of them.
 void begin_driveline(VehicleRow& row);
 void add_driveline(const vehicle::Vehicle& car, VehicleRow& row);
 /// @pre substeps > 0; duration > 0, in s
 void finish_driveline(const vehicle::Vehicle& car, const MotionBefore& before, double duration, int substeps,
                       VehicleRow& row);
 
-/// Mean motion over the advance. @pre duration > 0, in s; `row` holds the yaw of its beginning
+/// Measures the mean motion over the advance. @pre duration > 0, in s; `row` has the yaw at the beginning
 void measure_motion(const vehicle::Vehicle& car, const MotionBefore& before, double duration, VehicleRow& row);
 
-/// @param driver null: nobody drives
+/// @param driver null: there is no driver
 void measure_driver(const vehicle::DriverInputs& inputs, const vehicle::Driver* driver, VehicleRow& row);
 
-/// Place, gear and energies of the instant.
 void measure_now(const vehicle::Vehicle& car, const vehicle::DriverInputs& inputs, VehicleRow& row);
 
 }  // namespace furrow::rigs

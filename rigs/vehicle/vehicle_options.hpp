@@ -1,4 +1,4 @@
-// What a scenario says of a rig of type `vehicle`, and what its rig is made of.
+// Scenario keys of a rig of type `vehicle`, and the parts from which the rig is made.
 #pragma once
 
 #include <optional>
@@ -18,17 +18,16 @@ namespace furrow::rigs {
 
 /// Every field is the scenario key `rig.<name>`.
 struct VehicleRigOptions {
-  std::string vehicle;    // a vehicle's file
-  nlohmann::json driver;  // a driver's file, or what is in one; null: nobody drives, the brakes hold
-  double start = 0.0;     // x of the vehicle's origin at t = 0, m; where the scenario does not say it, it is filled in
-  double lateral = 0.0;   // y of the vehicle's origin at t = 0, m
-  double heading = 0.0;   // of the vehicle's x axis at t = 0, about +z from the world's, rad
-  double slope = 0.0;     // of the ground, which rises along +x, rad
-  double start_speed = 0.0;      // at t = 0, forward, m/s
-  double lowering_speed = -1.0;  // at which the vehicle is let down, m/s; negative: open
-  double touchdown_time = -1.0;  // how long the damper of the lowering acts, s; negative: open
-  double stop_before_wall =
-      -1.0;  // left between a tire and the end wall when the run ends before it, m; negative: open
+  std::string vehicle;             // a vehicle's file
+  nlohmann::json driver;           // a driver's file, or its content; null: no driver, the brakes hold
+  double start = 0.0;              // x of the vehicle's origin at t = 0, m; filled in if the scenario does not give it
+  double lateral = 0.0;            // y of the vehicle's origin at t = 0, m
+  double heading = 0.0;            // of the vehicle's x axis at t = 0, about +z from the world's, rad
+  double slope = 0.0;              // of the ground, which rises along +x, rad
+  double start_speed = 0.0;        // at t = 0, forward, m/s
+  double lowering_speed = -1.0;    // at which the vehicle is lowered, m/s; negative: open
+  double touchdown_time = -1.0;    // how long the damper of the lowering acts, s; negative: open
+  double stop_before_wall = -1.0;  // between a tire and the end wall, at which the run ends, m; negative: open
 };
 void visit_fields(FieldsOf<VehicleRigOptions> auto& s, auto&& visit) {
   using namespace allowed;
@@ -62,7 +61,6 @@ void visit_fields(FieldsOf<VehicleRigOptions> auto& s, auto&& visit) {
             "a tire and a side wall. 0: the run does not end there. null: radius of the largest tire."));
 }
 
-/// Everything that the rig needs.
 struct VehicleRigPlan {
   vehicle::VehicleSpec vehicle;
   std::optional<vehicle::DriverSpec> driver;

@@ -84,8 +84,8 @@ class VehicleRig final : public Rig {
   std::unique_ptr<vehicle::Driver> driver_;
   std::vector<std::vector<TorqueRow>> rows_;  // of each wheel
   std::vector<RutTrace> traces_;              // of each wheel
-  vehicle::DriverCar driven_;                 // what a driver knows of it
-  std::optional<VehicleFindings> findings_;   // once it moves
+  vehicle::DriverCar driven_;                 // the driver's data of the vehicle
+  std::optional<VehicleFindings> findings_;   // empty until the vehicle moves
   Vec3 seat_ = Vec3::Zero();                  // of the driver's view, in the vehicle's frame, m
 };
 
@@ -95,7 +95,7 @@ std::vector<double> VehicleRig::radii() const {
   return radii;
 }
 
-/// Of the wheels at rest, N.
+/// Loads of the wheels at rest, N.
 std::vector<double> VehicleRig::loads() const {
   std::vector<double> loads;
   for (const WheelRecord& wheel : wheels_) loads.push_back(wheel.load);
@@ -175,7 +175,6 @@ void VehicleRig::drive() {
   car_->set_inputs(vehicle_inputs(record_.inputs));
 }
 
-/// Of the instant at which the step begins.
 void VehicleRig::note_findings(std::span<const Wrench> wrenches) {
   if (!findings_) findings_.emplace(loads(), plan_.driver, driven_);
   const double time = car_->system().time();
@@ -234,7 +233,7 @@ Outcome VehicleRig::step(std::span<const Wrench> wrenches, double h, std::vector
   return {};
 }
 
-/// Works and impulses of a step: mean force times way.
+/// Adds works (mean force times displacement) and impulses of a step to the accounts.
 void VehicleRig::book(std::span<const RimState> before, std::span<const Wrench> wrenches, double h) {
   FURROW_ASSERT(before.size() == wrenches.size() && h > 0.0, before.size(), h);
   const vehicle::System& system = car_->system();

@@ -5,8 +5,8 @@
 // A damper above the chassis, c = weight/lowering_speed, lets it down until touchdown_time;
 // with lowering_speed 0 it falls.
 //
-// Slip of a wheel: 1 − v/(ω r) with the speed v of its centre along its own heading; 0 while it stands, which is while
-// both |v| and |ω r| are below 0.01 √(g r).
+// Slip of a wheel: 1 − v/(ω r) with the speed v of its centre along its own heading. The slip is 0 while both |v| and
+// |ω r| are below 0.01 √(g r).
 #pragma once
 
 #include <memory>

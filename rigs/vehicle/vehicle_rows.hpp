@@ -1,15 +1,14 @@
-// What the vehicle rig measures beside the columns of every wheel: of each wheel, and of
-// the vehicle (subject `vehicle`).
+// Columns that the vehicle rig adds to those of every wheel, and the columns of the vehicle (subject `vehicle`).
 #pragma once
 
 #include "protocol/core/column.hpp"
 
 namespace furrow::rigs {
 
-/// Of wheel k, in the vehicle's frame: vehicle/analysis/wheel_angles.hpp.
+/// Columns of wheel k, in the vehicle's frame: vehicle/analysis/wheel_angles.hpp.
 struct VehicleWheelRow {
   double sinkage_in_rut = 0.0;  // bottom of the deepest rut before it − lowest tire point, m
-  double travel = 0.0;          // of the wheel's centre against its drawn position, upward, m
+  double travel = 0.0;          // of the wheel's centre from its drawn position, upward, m
   double camber = 0.0;          // positive: the top leans outward, rad
   double toe = 0.0;             // positive: toe-in, rad
   double steer = 0.0;           // positive: to the left, rad
@@ -29,18 +28,18 @@ void visit_fields(FieldsOf<VehicleWheelRow> auto& r, auto&& visit) {
   visit(r.brake_torque, mean("brake_torque_Nm", "N m"));
 }
 
-/// Of the vehicle. Place and angles are those of its frame: x forward, y left, z up.
+/// Columns of the vehicle. Place and angles are those of its frame: x forward, y left, z up.
 struct VehicleRow {
   double x = 0.0, y = 0.0, z = 0.0;           // of the vehicle's origin, m
   double roll = 0.0, pitch = 0.0, yaw = 0.0;  // of the chassis, rad; right side down, nose down, to the left
-  double distance = 0.0;                      // that the origin has moved over the ground, m
+  double distance = 0.0;                      // of the origin over the ground, m
   double speed = 0.0;                         // of the origin over the ground, forward, m/s
-  double lateral_speed = 0.0;                 // likewise, to the left, m/s
-  double acceleration = 0.0;                  // of the centre of mass of all, forward, m/s²
-  double lateral_acceleration = 0.0;          // likewise, to the left, m/s²
+  double lateral_speed = 0.0;                 // of the origin over the ground, to the left, m/s
+  double acceleration = 0.0;                  // of the centre of mass of vehicle and tires, forward, m/s²
+  double lateral_acceleration = 0.0;          // of this centre of mass, to the left, m/s²
   double yaw_rate = 0.0;                      // rad/s
   double throttle = 0.0, brake = 0.0;         // 0 to 1
-  double steering = 0.0;                      // −1 to 1, positive to the left: what the driver turns
+  double steering = 0.0;                      // −1 to 1, positive to the left: the driver's input
   double gear = 0.0;                          // −1 reverse, 0 neutral, 1, 2, …
   double shifting = 0.0;                      // share of the time
   double engine_speed = 0.0;                  // of the crank, 1/min
@@ -48,7 +47,7 @@ struct VehicleRow {
   double engine_torque = 0.0;                 // N m
   double engine_power = 0.0;                  // of engine and motors, W
   double wheel_power = 0.0;                   // of drive and brakes at the wheels, W
-  double soil_power = 0.0;                    // that tires and ground take, W
+  double soil_power = 0.0;                    // dissipated in tires and ground, W
   double target_speed = 0.0, path_distance = 0.0, cross_track = 0.0, heading_error = 0.0;  // of the driver
   double drive_work = 0.0;                                                                 // of engine and motors, J
   double converter_heat = 0.0;                                                             // J
@@ -56,7 +55,7 @@ struct VehicleRow {
   double shift_heat = 0.0;     // J
   double brake_heat = 0.0;     // J
   double shock_heat = 0.0;     // J
-  double lowering_heat = 0.0;  // of the damper that lets the vehicle down, J
+  double lowering_heat = 0.0;  // of the damper that lowers the vehicle, J
   double spring_energy = 0.0;  // J
   double lock = 0.0;           // 1 while the driver locks the differentials that have a lock
 };

@@ -30,10 +30,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarFromPath = 3.0;  // wheelbases between a path and the rear axle, to warn of
-constexpr double kBendLength = 0.25;  // wheelbases over which a path's curvature is looked at
-constexpr double kTooTight = 1.02;    // of the tightest curve
-constexpr int kPlacesOfPiece = 8;     // of a path's piece, at which it is looked at
+constexpr double kFarFromPath = 3.0;  // in wheelbases; warns if the path is farther from the rear axle
+constexpr double kBendLength = 0.25;  // in wheelbases; a path's curvature is computed over this length
+constexpr double kTooTight = 1.02;    // warns if the path is this much tighter than the vehicle's tightest curve
+constexpr int kPlacesOfPiece = 8;     // of a path's piece, at which its curvature is computed
 
 std::filesystem::path vehicle_file(const json& section, const ReadContext& context) {
   if (!says(section, "vehicle"))
@@ -42,14 +42,14 @@ std::filesystem::path vehicle_file(const json& section, const ReadContext& conte
   return find_file(section["vehicle"].get<std::string>(), context.key("vehicle"), context.file);
 }
 
-/// Of axle and side, as one word for keys and labels: "front_left".
+/// Joins axle and side to one word for keys and labels: "front_left".
 std::string wheel_name(const vehicle::VehicleSpec& vehicle, std::size_t wheel) {
   std::string name = vehicle.axles[wheel / 2].name + "_" + vehicle::kSideNames[wheel % 2];
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
 
-/// A driver's file, or its content within the scenario, which may leave its version out.
+/// Reads a driver's file, or its content within the scenario, which may omit its version.
 std::optional<vehicle::DriverSpec> read_driver_of(const json& driver, const ReadContext& context) {
   const std::string key = context.key("driver");
   if (driver.is_null()) return std::nullopt;
@@ -101,10 +101,10 @@ class VehicleRigSpec final : public RigSpec {
     double camber = 0.0, toe = 0.0;
     double tire_mass = 0.0;     // kg
     double turning_mass = 0.0;  // rim, hub and what turns with them, kg
-    double spin_inertia = 0.0;  // of the same, kg m²
+    double spin_inertia = 0.0;  // of these parts, kg m²
   };
 
-  /// What a vehicle of this file cannot do is the file's fault. @throws Error(bad_input)
+  /// Reports a failure of `work` as an error in the vehicle's file. @throws Error(bad_input)
   template <class Work>
   void attempt(const Work& work) const {
     try {
@@ -129,9 +129,9 @@ class VehicleRigSpec final : public RigSpec {
   std::vector<WheelPlace> wheels_;
   int bodies_ = 0;
   double mass_ = 0.0;                                       // without tires, kg
-  std::vector<std::pair<std::string, std::string>> stops_;  // in which springs rest
+  std::vector<std::pair<std::string, std::string>> stops_;  // stops on which springs rest
   std::optional<double> length_;                            // of the bin, m
-  vehicle::DriverCar driven_;                               // what a driver knows of it, if there is one
+  vehicle::DriverCar driven_;                               // the driver's data of the vehicle, if there is a driver
 };
 
 void VehicleRigSpec::check_gears() const {
@@ -178,7 +178,7 @@ void VehicleRigSpec::check_driver() const {
     refuse("gives lock", "no differential with a lock_torque");
 }
 
-/// With the tires' masses it can be seen how the vehicle stands.
+/// Computes the trim, which needs the tires' masses.
 void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
   FURROW_ASSERT(tires.size() == wheels_.size(), tires.size(), wheels_.size());
   std::vector<double> radii;
@@ -214,12 +214,12 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
   if (o.stop_before_wall < 0.0) o.stop_before_wall = largest;
 }
 
-/// Of a wheel against the vehicle's origin, W, m.
+/// Place of a wheel relative to the vehicle's origin, W, m.
 Vec3 VehicleRigSpec::place_of(std::size_t k) const {
   return Eigen::AngleAxisd(plan_.options.heading, Vec3::UnitZ()) * wheels_.at(k).center;
 }
 
-/// Of a driver that holds speeds and goes straight, at most, m; of others it is not known.
+/// Largest distance that a driver covers who holds speeds and goes straight, m; 0 for other drivers.
 double VehicleRigSpec::travel(double duration) const {
   if (!plan_.driver || !plan_.driver->speed || steers()) return 0.0;
   const vehicle::Table target = vehicle::table_of_time("target", plan_.driver->speed->target);
@@ -305,7 +305,8 @@ std::vector<std::pair<std::string, std::string>> VehicleRigSpec::unlikely_values
   return odd;
 }
 
-/// A path that the vehicle cannot follow is followed as well as it can be; whoever wrote it may have meant another.
+/// Finds what the vehicle cannot follow of its path. It follows the path as well as it can, but the user may have meant
+/// another path.
 std::vector<std::string> VehicleRigSpec::oddities_of_path() const {
   std::vector<std::string> odd;
   const vehicle::Path path = vehicle::make_path(*plan_.driver->path, driven_.width);
@@ -336,7 +337,7 @@ std::vector<std::string> VehicleRigSpec::oddities_of_path() const {
   return odd;
 }
 
-/// The wheel that comes nearest to the wall behind the vehicle says where it starts.
+/// The wheel that comes nearest to the wall behind the vehicle decides where the vehicle starts.
 void VehicleRigSpec::fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                                  std::span<const double> margins) {
   FURROW_ASSERT(margins.size() == wheels_.size(), margins.size(), wheels_.size());
@@ -375,7 +376,7 @@ std::unique_ptr<RigSpec> read_vehicle_rig(const json& section, const ReadContext
   return spec;
 }
 
-/// Tire files stand beside the vehicle's file, or where those of a scenario do.
+/// Tire files are next to the vehicle's file, or where a scenario's tire files are.
 std::vector<WheelTire> tires_of_vehicle(const json& section, const ReadContext& context) {
   if (says(section, "vehicle") && !section["vehicle"].is_string()) return {};
   const std::filesystem::path file = vehicle_file(section, context);

@@ -14,15 +14,15 @@ namespace furrow::rigs {
 namespace {
 
 constexpr double kDeflection = 0.02;  // of the radius, in the trim
-constexpr double kLeastLoad = 1e-3;   // of the mean, that a wheel must carry
+constexpr double kLeastLoad = 1e-3;   // of the mean load; a wheel must carry more
 
 vehicle::TireCurve spring(double radius, double load) {
   const double stiffness = load / (kDeflection * radius);
   return {radius, [stiffness](double deflection) { return stiffness * std::max(0.0, deflection); }};
 }
 
-// First with springs for the mean load, then with each wheel's own for the load that it was found to have: all tires
-// are deflected alike, and the wheels' heights differ by their radii alone.
+// The first trim uses springs for the mean load, the second a spring for each wheel's load in the first. Thus all tires
+// have the same relative deflection, and the wheels' heights differ only by their radii.
 vehicle::Trim stand_in(vehicle::Vehicle& vehicle, std::span<const double> radii, const Vec3& gravity) {
   const double weight = vehicle.mass() * std::abs(gravity.z()), mean = weight / static_cast<double>(radii.size());
   std::vector<vehicle::TireCurve> tires;

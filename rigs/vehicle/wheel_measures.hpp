@@ -1,5 +1,5 @@
-// What the vehicle rig measures of each wheel: means over an advance from sums over its
-// steps, and what holds at its end.
+// Measurements of each wheel by the vehicle rig: means over an advance, from sums over its steps, and values at its
+// end.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace furrow::rigs {
 
-/// What is saved of a wheel besides the vehicle's own state.
+/// Saved values of a wheel besides the vehicle's own state.
 struct WheelRecord {
   WheelReport report;
   VehicleWheelRow row;
@@ -23,36 +23,37 @@ void visit_fields(FieldsOf<WheelRecord> auto& s, auto&& visit) {
   visit(s.load, Field{"load", "N"});
 }
 
-/// A row in speeds that turns a wheel, with what its torque does to the wheel.
+/// A row in speeds whose torque turns a wheel.
 struct TorqueRow {
   int row = 0;
   double factor = 1.0;
   bool brake = false;
 };
 
-/// What a wheel does in one advance: sums over the substeps.
+/// Sums of a wheel over the substeps of one advance.
 struct WheelSums {
   double turned = 0.0, torque = 0.0, brake = 0.0, spring = 0.0, shock = 0.0;  // rad; N m, N times substeps
   Vec3 from = Vec3::Zero();                                                   // of its centre, m
 };
 
-/// Where wheel k travels: horizontal, unit, W.
+/// Direction in which wheel k travels: horizontal, unit, W.
 Vec3 wheel_heading(const vehicle::Vehicle& car, int k);
 
-/// Of each wheel. Rows in speeds act on a wheel's spindle as their second body, about the axle as it was when they were
-/// added.
+/// Rows in speeds of each wheel. They act on a wheel's spindle as their second body, about the axle at the time when
+/// they were added.
 std::vector<std::vector<TorqueRow>> torque_rows(const vehicle::Vehicle& car);
 
-/// After a step. @param before of the rim, before it @param rows of wheel k
+/// Adds a step to the sums. @param before the rim's state before the step @param rows of wheel k
 void add_step(const vehicle::Vehicle& car, int k, const RimState& before, const std::vector<TorqueRow>& rows,
               WheelSums& sums);
 
-/// After the last step of an advance. @param radius of the tire, undeformed, m @param wrench on the rim during it
+/// Sets the means after the last step of an advance.
+/// @param radius of the tire, undeformed, m @param wrench on the rim during the advance
 /// @pre duration > 0, in s; substeps > 0
 void measure_advance(const vehicle::Vehicle& car, int k, double radius, const Wrench& wrench, const WheelSums& sums,
                      double duration, int substeps, WheelRecord& wheel);
 
-/// Of the instant. @param heading of the vehicle's x axis at t = 0, about +z from the world's, rad
+/// Measures current values. @param heading of the vehicle's x axis at t = 0, about +z from the world's, rad
 void measure_now(const vehicle::Vehicle& car, int k, double heading, WheelRecord& wheel);
 
 }  // namespace furrow::rigs

@@ -5,13 +5,13 @@
 
 namespace furrow::test {
 
-/// N.
+/// Sum of the forces, N.
 inline Vec3 sum(const NodalForces& f) {
   Vec3 force = Vec3::Zero();
   for (const Vec3& one : f.force) force += one;
   return force;
 }
-/// N m.
+/// Sum of the moments, N m.
 inline Vec3 moment_about(const Vec3& centre, const NodalForces& f, const SurfaceState& surface) {
   Vec3 moment = Vec3::Zero();
   for (std::size_t k = 0; k < f.vertex.size(); ++k)

@@ -1,4 +1,4 @@
-// What a refusal says: the message of an Error, compared by its parts.
+// Checks of refusals: the message of an Error, compared by its parts.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@
 
 namespace furrow {
 
-/// Whether `text` has `part` in it.
+/// Whether `text` contains `part`.
 inline ::testing::AssertionResult holds(const std::string& text, const std::string& part) {
   if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "'" << part << "' is not in: " << text;
 }
 
-/// The message of the Error that `work` throws; empty when it throws none. Its code must be `code`.
+/// The message of the Error that `work` throws, with the code `code`; empty if it throws none.
 inline std::string refusal(ExitCode code, const std::function<void()>& work) {
   try {
     work();
@@ -30,7 +30,7 @@ inline std::string refusal(ExitCode code, const std::function<void()>& work) {
   return "";
 }
 
-/// A message without the name of its file: what follows "f.json: ", or the place in "f.json:3:7: …".
+/// A message without the name of its file: the text after "f.json: ", or the place in "f.json:3:7: …".
 inline std::string without_file(const std::string& text, const std::string& file) {
   if (text.empty()) return text;
   EXPECT_TRUE(text.starts_with(file + ":")) << text;
@@ -38,7 +38,7 @@ inline std::string without_file(const std::string& text, const std::string& file
   return rest.starts_with(' ') ? rest.substr(1) : rest;
 }
 
-/// `work` must throw an Error with this code, whose message has every part in it.
+/// Checks that `work` throws an Error with this code and every part in its message.
 inline void expect_refused(ExitCode code, const std::vector<std::string>& parts, const std::function<void()>& work,
                            std::source_location here = std::source_location::current()) {
   const ::testing::ScopedTrace trace(here.file_name(), static_cast<int>(here.line()), "was to be refused");

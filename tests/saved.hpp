@@ -1,11 +1,11 @@
-// What objects save of their state.
+// Saved states of objects.
 #pragma once
 
 #include "protocol/core/archive.hpp"
 
 namespace furrow::testing {
 
-/// What the parts save, in one archive.
+/// The states of the parts in one archive.
 template <class... Parts>
 Archive saved(const Parts&... parts) {
   Archive archive;

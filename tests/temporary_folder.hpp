@@ -1,4 +1,4 @@
-// A folder that lives as long as a test.
+// A folder that exists during a test.
 #pragma once
 
 #include <stdlib.h>
@@ -28,7 +28,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// One that is also the cache of the program while it lives.
+/// A temporary folder that is also the program's cache while it exists.
 class OwnCache : public TemporaryFolder {
  public:
   OwnCache() { setenv("XDG_CACHE_HOME", path().c_str(), 1); }

@@ -1,12 +1,12 @@
-// CHOLMOD opens a team of four OpenMP threads for the columns of a supernode, whatever OMP_NUM_THREADS says. In factors
-// of the size of a tire's there is less work in each than it costs to wake them.
+// CHOLMOD opens a team of four OpenMP threads for the columns of a supernode, for any OMP_NUM_THREADS. A tire's factors
+// are so small that waking the threads costs more than their work saves.
 #pragma once
 
 #include <omp.h>
 
 namespace furrow::tire {
 
-/// While it lives, parallel regions that this thread opens are its own alone.
+/// While it lives, parallel regions that this thread opens run on this thread only.
 class LoneThread {
  public:
   LoneThread() : levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }

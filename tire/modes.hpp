@@ -1,10 +1,10 @@
-// What `furrow modes` computes: the lowest natural frequencies of a tire on a rim at rest, by circumferential order.
+// Results of `furrow modes`: the lowest natural frequencies of a tire on a rim at rest, by circumferential order.
 //
-// A tire whose sections are all alike vibrates in û e^{i n θ}, û in axes that turn with the sections: stiffness and
-// mass of the whole tire are one small Hermitian matrix for each order n,
+// A tire with equal sections vibrates in û e^{i n θ}, û in axes that turn with the sections. For each order n,
+// stiffness and mass of the whole tire reduce to small Hermitian matrices,
 //   K_n û = ω² M_n û,   K_n = Σ over the elements of one section T_eᴴ k_e T_e,
-// T_e with the turn and the phase of each node [Thomas 1979]. From order 1 on every frequency has two modes, one turned
-// by a quarter of a wave against the other.
+// T_e contains the turn and the phase of each node [Thomas 1979]. From order 1 on, every frequency has two modes,
+// turned against each other by a quarter of a wave.
 //
 // Thomas, Dynamics of rotationally periodic structures, Int. J. Numer. Methods Eng. 14 (1979) 81,
 // doi:10.1002/nme.1620140107.
@@ -37,8 +37,8 @@ struct SectionNode {
 
 struct Mode {
   int order = 0, number = 0;  // number from 1, by frequency
-  double frequency = 0.0;     // Hz; below zero: growth rate over 2π of a shape that is not stable
-  /// Of the section's nodes: tangential (forward at the top), along the axle, radial; the largest amplitude is 1.
+  double frequency = 0.0;     // Hz; negative: growth rate over 2π of an unstable shape
+  /// Amplitudes of the section's nodes: tangential (forward at the top), along the axle, radial. The largest is 1.
   std::vector<std::array<std::complex<double>, 3>> shape;
 };
 
@@ -47,17 +47,17 @@ struct ModesResults {
   std::vector<SectionNode> section;
   std::vector<std::array<int, 2>> lines;  // between nodes of the section, for pictures
   MassProperties mass;                    // of the whole tire
-  std::optional<double> pressure;         // gauge, Pa; where the model has one
+  std::optional<double> pressure;         // gauge, Pa; if the model has one
   int around = 0;                         // sections
 };
 
-/// What TireSpec::modal_test() gives for models that vibrate.
+/// Modal test of a model that vibrates, as TireSpec::modal_test() makes it.
 class ModalTest {
  public:
   virtual ~ModalTest() = default;
   virtual int sections() const = 0;  // around; orders up to half of them
-  virtual int unknowns() const = 0;  // of one section; as many modes has each order
-  /// @pre 0 ≤ orders ≤ sections()/2, 1 ≤ count ≤ unknowns(). @throws Error(physics) where the tire cannot be inflated
+  virtual int unknowns() const = 0;  // of one section; also the number of modes of each order
+  /// @pre 0 ≤ orders ≤ sections()/2, 1 ≤ count ≤ unknowns(). @throws Error(physics) if the tire cannot be inflated
   virtual ModesResults modes(const ModesOptions& options, const ProgressCall& progress) const = 0;
 };
 
@@ -69,13 +69,13 @@ struct LowestModes {
 /// @pre mass is positive definite, count ≤ its size
 LowestModes lowest_modes(const Eigen::MatrixXcd& stiffness, const Eigen::MatrixXcd& mass, int count);
 
-/// The squares alone, which takes a third of the time.
+/// The eigenvalues ω² alone, in a third of the time.
 Eigen::VectorXd lowest_squares(const Eigen::MatrixXcd& stiffness, const Eigen::MatrixXcd& mass, int count);
 
 /// ω² → Hz, with the sign of ω².
 double signed_frequency(double square);
 
-/// Frequency and shape of eigenvector k, with the amplitudes of the nodes as `at` picks them.
+/// Frequency and shape of eigenvector k; `at` picks the amplitudes of a node.
 template <class At>
 Mode mode_of(const LowestModes& lowest, int order, int k, int nodes, At&& at) {
   Mode mode{order, k + 1, signed_frequency(lowest.squares[k]), {}};
@@ -90,7 +90,7 @@ Mode mode_of(const LowestModes& lowest, int order, int k, int nodes, At&& at) {
   return mode;
 }
 
-/// summary.json without what names the tire.
+/// summary.json without the keys that identify the tire.
 nlohmann::ordered_json modes_json(const ModesResults& results);
 /// One line for each mode.
 std::string modes_csv(const ModesResults& results);

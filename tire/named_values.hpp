@@ -1,4 +1,4 @@
-// A few figures of a model under names of its own, without allocation: what one model counts another may not know.
+// A few figures of a model under the model's own names, without allocation. Models count different things.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ class NamedValues {
     FURROW_ASSERT(size_ < kCapacity, size_);
     values_[size_++] = value;
   }
-  /// 0 where no value has the name.
+  /// 0 if no value has the name.
   double of(std::string_view name) const {
     for (const NamedValue& value : *this)
       if (value.name == name) return value.value;

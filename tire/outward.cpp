@@ -15,7 +15,7 @@ void require_outward(const SurfaceMesh& mesh, std::span<const Vec3> position, co
                      const std::string& who) {
   const auto refuse = [&](const std::string& what) { return input_error(who, "", "the contact surface " + what); };
   double volume = 0.0;                     // six times (1), m³
-  std::vector<std::pair<int, int>> edges;  // as their triangles run through them
+  std::vector<std::pair<int, int>> edges;  // in the direction of their triangles
   for (const auto& triangle : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
       if (!in_range(triangle[k], position.size()))

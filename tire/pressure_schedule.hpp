@@ -14,7 +14,7 @@ struct PressureSchedule {
     double pressure = 0.0;  // gauge, Pa
     bool operator==(const Knot&) const = default;
   };
-  std::vector<Knot> knots;  // times increase; none: nothing is said
+  std::vector<Knot> knots;  // times increase; empty: not stated
 
   bool empty() const { return knots.empty(); }
   bool varies() const { return knots.size() > 1; }
@@ -24,7 +24,7 @@ struct PressureSchedule {
   bool operator==(const PressureSchedule&) const = default;
 };
 
-/// A number is one knot, an array has [t, p] for each, in s and Pa; as read, not checked.
+/// Reads a number as one knot, or an array of [t, p] in s and Pa. Does not check them.
 void from_json(const nlohmann::json& value, PressureSchedule& schedule);
 
 }  // namespace furrow::tire

@@ -1,4 +1,4 @@
-// A pressure schedule for people, in kPa.
+// A pressure schedule as readable text, in kPa.
 #pragma once
 
 #include <string>

@@ -97,7 +97,7 @@ TireFile read_own(JsonReader& reader) {
   return f;
 }
 
-/// Where a template's name is in the file, its name, and what reads it.
+/// A template: the key of its name in the file, the name, and its reader.
 struct Template {
   const char* key;
   const char* name;

@@ -12,7 +12,7 @@ namespace furrow::tire {
 
 /// @throws Error(bad_input) naming file and key.
 TireFile read_tire_file(const std::filesystem::path& file);
-/// The same for a document that was read already from the file of that name.
+/// Reads a tire from a document that was parsed from `file`.
 TireFile read_tire_file(const nlohmann::json& document, const std::string& file);
 
 }  // namespace furrow::tire

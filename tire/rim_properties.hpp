@@ -1,5 +1,4 @@
-// What a tire file says of the rim that it is mounted on and of what the wheel carries: its block `rim`. Whatever the
-// model, tires.cpp reads it.
+// The block `rim` of a tire file: the rim, and the mass that the wheel carries. tires.cpp reads it for every model.
 #pragma once
 
 #include "protocol/core/fields.hpp"
@@ -7,7 +6,7 @@
 
 namespace furrow::tire {
 
-/// Negative: the file does not say.
+/// Negative: the file does not state it.
 struct RimProperties {
   static constexpr SchemaName kSchema{"rim",
                                       "The rim that the tire is mounted on and what the wheel carries. A scenario that "
@@ -15,7 +14,7 @@ struct RimProperties {
   double mass = -1.0;               // rim with spindle, without tire, kg
   double spin_inertia = -1.0;       // of the rim about its axle, without tire, kg m²
   double diametral_inertia = -1.0;  // of the rim about a diameter, without tire, kg m²
-  double carrier_mass = -1.0;       // what the wheel carries besides rim and tire, kg
+  double carrier_mass = -1.0;       // that the wheel carries besides rim and tire, kg
 };
 
 void visit_fields(FieldsOf<RimProperties> auto& s, auto&& visit) {

@@ -50,7 +50,7 @@ void RimTrajectory::extend(const RimState& received, double duration) {
 }
 
 void RimTrajectory::extend_accelerated(const RimState& received, double duration) {
-  // Where the last interval ended, the velocities are those of the rim one step before.
+  // The velocities at the end of the last interval are the rim's velocities of one step before.
   extend(received, duration, duration * (1.5 * received.velocity - 0.5 * end_.velocity),
          duration * (1.5 * received.angular_velocity - 0.5 * end_.angular_velocity));
 }

@@ -1,7 +1,6 @@
-// The continuous (C¹) motion that a tire gives its bead over one communication interval. The rim's state
-// arrives at the interval's start t₀; the tire extrapolates it to t₁ = t₀ + H and goes there from the pose it
-// last used: a cubic Hermite curve in position, and in the rotation vector relative to the starting
-// orientation.
+// The continuous (C¹) motion that a tire gives its bead over one communication interval. The rim's state arrives at the
+// interval's start t₀, and the tire extrapolates it to t₁ = t₀ + H. The motion from the pose last used to there is a
+// cubic Hermite curve in position, and in the rotation vector relative to the starting orientation.
 #pragma once
 
 #include "protocol/core/archive.hpp"
@@ -22,12 +21,12 @@ class RimTrajectory {
   /// At rest on `start`; start() = end() = start.
   explicit RimTrajectory(const RimState& start = {});
 
-  /// Begins the next interval: from where the last one ended to `received` extrapolated by `duration` at
-  /// constant velocity and angular velocity. @pre duration > 0
+  /// Begins the next interval where the last one ended. Its end is `received`, extrapolated by `duration` at constant
+  /// velocity and angular velocity. @pre duration > 0
   void extend(const RimState& received, double duration);
-  /// The same at the acceleration of the rim's last step, so that it ends where the rim will be but for the change of
-  /// that acceleration. With the forces of a spring taken over this path, and acting over the same interval, a body on
-  /// it is stable for ω H below 1.2, and damped up to 1 by a share (ω H)³/8 of the critical damping.
+  /// Extrapolates at the acceleration of the rim's last step instead. Only a change of that acceleration makes the end
+  /// differ from the rim's. A body on a spring whose forces are taken over this path, and act over the same interval,
+  /// is stable for ω H below 1.2. Up to 1 it is damped by a share (ω H)³/8 of the critical damping.
   /// @pre every extension was of this kind
   void extend_accelerated(const RimState& received, double duration);
 

@@ -1,6 +1,5 @@
-// Undeformed geometry of a tire in rim axes (origin at the rim centre, y the spin axis): a meridian of nodes
-// turned around the axis, and the closed triangulated contact surface on it. Shared by all models that use a
-// tire file.
+// Undeformed geometry of a tire in rim axes (origin at the rim centre, y the spin axis): a meridian of nodes turned
+// around the axis, and the closed triangulated contact surface on it. All models that use a shell tire file share it.
 //
 // Node (i, j): column i of the circumference at angle θ_i = 2πi/n_c, row j of the width from the left (−y)
 // bead.

@@ -1,4 +1,4 @@
-// The interface of every tire model: a deformable (or rigid) body held by a rim and pressed on by a terrain.
+// The interface of every tire model: a deformable or rigid body that a rim holds and a terrain presses.
 #pragma once
 
 #include <utility>
@@ -36,7 +36,7 @@ class Tire {
   MassProperties mass_properties() const { return shape_.mass; }
   double radius() const { return shape_.radius; }            // of the undeformed contact surface, m
   double tread_width() const { return shape_.tread_width; }  // m
-  Vec3 gravity() const { return gravity_; }                  // that it was made for, W, m/s²
+  Vec3 gravity() const { return gravity_; }                  // W, m/s²
   virtual int coordinates() const = 0;                       // unknowns
 
   /// Gauge pressure from now on, Pa. Ignored by tires without air.
@@ -48,42 +48,40 @@ class Tire {
 
   /// Vertices at the current time.
   virtual void surface(SurfaceState& out) const = 0;
-  /// Of a tire that follows its rim (TireDescription::follows_rim): its vertices on that rim.
+  /// Vertices on the given rim, for a tire that follows its rim (TireDescription::follows_rim).
   virtual void surface_on(const RimState& rim, SurfaceState& out) const;
 
-  /// Computes the contact forces of a tire that has a law of its own for them (TireDescription::own_contact), over the
-  /// interval that begins with this rim and has the same `duration` as the one before.
+  /// Computes the contact forces of a tire with a contact law of its own (TireDescription::own_contact). The interval
+  /// begins with this rim and has the same `duration` as the one before.
   /// @returns failure when the tire left the model's range
   virtual Outcome state_contact(const RimState& /*rim*/, double /*duration*/) { return {}; }
-  /// Those forces, as the terrain shall give them; null: the terrain computes them.
+  /// The forces of state_contact(), for the terrain to apply; null: the terrain computes them.
   virtual const StatedContact* stated_contact() const { return nullptr; }
 
-  /// Integrates from the trajectory's start to its end in `substeps` equal steps. `forces` act constantly; those that
-  /// come with tangents answer to the motion, where the model can (TireDescription::takes_tangents).
-  /// gravity() acts.
+  /// Integrates from the trajectory's start to its end in `substeps` equal steps, under gravity() and `forces`. Forces
+  /// are constant. Those with tangents follow the motion if the model can (TireDescription::takes_tangents).
   /// @returns failure when the equations have no solution, a force or the rim's motion is not finite, or the tire left
   /// the model's range
   /// @pre placed or restored; substeps > 0; one force for each vertex, vertices of the mesh
   Outcome advance(const RimTrajectory& rim, const NodalForces& forces, int substeps);
 
-  /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance;
-  /// complete, with the tire's inertia and weight, so that impulse = Δ momentum holds to round-off for the
-  /// tire as a whole.
+  /// Force and moment about the rim centre that the tire exerts on the rim, averaged over the last advance. The tire's
+  /// inertia and weight are included, so that impulse = Δ momentum holds to round-off for the whole tire.
   Wrench spindle_wrench() const { return spindle_; }
 
-  /// Replaces the forces that the last advance was given by the means of what acted. They differ where tangents came
-  /// with them.
+  /// Replaces the forces given to the last advance with the mean forces that acted. The two differ for forces with
+  /// tangents.
   virtual void acted(NodalForces&) const {}
 
   /// @post every member is set and finite
   virtual TireDiagnostics diagnostics() const = 0;
 
-  /// What the model's own method counts, cumulative, and how good its last step was: "newton_iterations",
-  /// "factorizations", "residual", … Cheap enough for every step.
+  /// Cumulative counts of the model's method, and the quality of its last step: "newton_iterations", "factorizations",
+  /// "residual", … Cheap enough for every step.
   virtual NamedValues figures() const { return {}; }
   /// Processor time of the parts of a step, s, cumulative; not part of the state.
   virtual NamedValues times() const { return {}; }
-  /// Adds what moves, coordinates and velocities, to a digest.
+  /// Adds coordinates and velocities to a digest.
   virtual void add_state(Hash& hash) const = 0;
 
   /// State of the model and its integrator; a restored tire continues bit for bit.
@@ -94,7 +92,7 @@ class Tire {
   /// A model that makes its shape itself sets it in its constructor.
   explicit Tire(const Vec3& gravity, TireShape shape = {}) : shape_(std::move(shape)), gravity_(gravity) {}
 
-  /// It was placed or restored.
+  /// Whether the tire was placed or restored.
   bool placed() const { return placed_; }
 
   TireShape shape_;
@@ -104,7 +102,7 @@ class Tire {
 
  private:
   virtual void do_place(const RimState& rim) = 0;
-  /// Of what advance() has checked.
+  /// Advances; advance() has checked the arguments.
   virtual Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) = 0;
   virtual void do_restore(const Archive& archive) = 0;
 

@@ -1,6 +1,6 @@
-// What the file of a shell tire says: profile, layup, materials, pressure, contact. Two layouts are read, our own
-// (data/tire.schema.json describes it) and the public ANCFTire layout of Project Chrono; template names are
-// registered in read_tire_file.cpp.
+// The file of a shell tire: profile, layup, materials, pressure, contact. Two layouts are read: our own
+// (data/tire.schema.json describes it) and the public ANCFTire layout of Project Chrono. read_tire_file.cpp registers
+// the template names.
 #pragma once
 
 #include <string>
@@ -13,12 +13,13 @@
 
 namespace furrow::tire {
 
-// What the schema says of the lists in a tire file.
+// Schemas of the lists in a tire file.
 extern const char* const kMaterialsShape;
 extern const char* const kSectionsShape;
 extern const char* const kProfileShape;
 
-/// Elements that a file may ask for: around, and of a band on each side; a mesh has at most kMaxElements.
+/// Largest numbers of elements that a file may set: around, and of a band on each side. A mesh has at most
+/// kMaxElements.
 inline constexpr int kMaxAround = 10000, kMaxPerSide = 500, kMaxElements = 1000000;
 
 /// Orthotropic linear elastic material; x along the fibre, y across it in the layer, z through the thickness.
@@ -47,7 +48,7 @@ struct Section {
   }
 };
 
-/// A spring and a dashpot in series, beside the tire's elastic stiffness.
+/// A spring and a dashpot in series, in parallel to the tire's elastic stiffness.
 struct MaxwellBranch {
   static constexpr SchemaName kSchema{"branch", "A branch of the generalised Maxwell model."};
   double modulus = 0.0;  // g, relative to the long-term stiffness
@@ -62,7 +63,7 @@ void visit_fields(FieldsOf<MaxwellBranch> auto& s, auto&& visit) {
 
 /// One knot of the meridian of the mid-surface.
 struct ProfileKnot {
-  double t = 0.0;  // share of the way from the left to the right bead, 0…1
+  double t = 0.0;  // share of the distance from the left to the right bead, 0…1
   double x = 0.0;  // height above the rim radius, m
   double y = 0.0;  // axial, m
 };

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Contact properties that the file does not give: those of the HMMWV tire file (see tire/README.md).
+/// Contact properties that the file does not give, from the HMMWV tire file (see tire/README.md).
 constexpr double kYoungModulus = 2.47e7;  // Pa
 constexpr double kPoissonRatio = 0.45;
 constexpr double kRestitution = 0.2;
@@ -98,7 +98,7 @@ TireFile read_chrono(JsonReader& reader) {
   TireFile f;
   f.name = reader.text_or("Name", "tire");
   reader.skip("Template");
-  reader.skip("rim");  // read by tires.cpp, whatever the layout
+  reader.skip("rim");  // read by tires.cpp for every layout
   if (const auto type = reader.text("Type"); type != "Tire") reader.fail("Type", "is '" + type + "', expected 'Tire'");
   if (reader.flag_or("8-Node Elements", false))
     reader.fail("8-Node Elements", "is true, only tires of 4-node elements (false) can be read");

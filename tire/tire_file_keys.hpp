@@ -8,16 +8,16 @@
 namespace furrow::tire {
 
 namespace keys {
-/// A size of the tire, m: beyond, arithmetic on its mesh overflows or vanishes.
+/// A size of the tire, m. Outside these limits, arithmetic on its mesh overflows or underflows.
 inline constexpr Allowed kSize = allowed::from(1e-4, 100).usual(0.02, 3);
 inline constexpr Key kPressure =
     needed("pressure", "Pa", allowed::from(0).usual(1e3, 2e6), "Inflation, gauge pressure.");
-/// Of a structural damping, s.
+/// A structural damping, s.
 inline constexpr Allowed kDampingTime = allowed::from(0).usual(1e-5, 0.2);
 inline constexpr Key kContact = needed("contact");
 }  // namespace keys
 
-/// The block `contact`: what grains and ground feel of the tread.
+/// The block `contact`: properties of the tread in contact with grains and ground.
 struct ContactBlock : ContactMaterial {
   static constexpr SchemaName kSchema{"contact", "What grains and ground feel of the tread."};
 };

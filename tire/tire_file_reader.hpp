@@ -1,4 +1,4 @@
-// What the files of all tire models have in common.
+// Common parts of the files of all tire models.
 #pragma once
 
 #include "protocol/files/json_reader.hpp"

@@ -18,10 +18,10 @@ struct Range {
 constexpr Range kDensity{100.0, 2e4, "kg/m³"}, kYoungModulus{1e5, 1e12, "Pa"}, kThickness{1e-5, 0.05, "m"};
 constexpr double kMaxAngle = 95.0;  // degrees
 
-/// What is odd about a file: the first place of each kind, and how many more there are.
+/// The oddities of a file: the first place of each kind, and the number of further ones.
 class Oddities {
  public:
-  /// @param kind what is said once: the same quantity of all layers of a section, of all materials
+  /// @param kind reported once, such as one quantity of all layers of a section or of all materials
   void add(const std::string& kind, const std::string& key, const std::string& what) {
     for (Oddity& one : found_)
       if (one.kind == kind) return void(++one.more);

@@ -1,4 +1,4 @@
-// Values of a tire file that look like another unit.
+// Values of a tire file that seem to be in a wrong unit.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace furrow::tire {
 
-/// Key and what is odd about its value, for values that no tire has: densities, stiffnesses, thicknesses, angles and
-/// pressures in other units than SI. None of them keeps a tire from being used.
+/// Keys and what is odd about their values, for values that no tire has: densities, stiffnesses, thicknesses, angles
+/// and pressures in other units than SI. The tire can still be used.
 std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile& file);
 
 }  // namespace furrow::tire

@@ -14,13 +14,13 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t kMaxKnots = 2000;
-constexpr std::size_t kPieces = 800;  // of the whole meridian, straight, when crossings are looked for
+constexpr std::size_t kPieces = 800;  // of the whole meridian, straight, in the search for crossings
 
 struct Point {
   double t, x, y;
 };
 
-/// Twice the area of the triangle a, b, c; positive when they turn left.
+/// Twice the area of the triangle a, b, c; positive if they turn left.
 double turn(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -31,7 +31,7 @@ bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
   return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
 }
 
-/// The meridian as the mesh takes it, in straight pieces.
+/// The meridian as in the mesh, in straight pieces.
 std::vector<Point> drawn(const std::vector<ProfileKnot>& profile) {
   std::vector<double> t, x, y;
   for (const ProfileKnot& knot : profile) t.push_back(knot.t), x.push_back(knot.x), y.push_back(knot.y);
@@ -47,7 +47,7 @@ std::vector<Point> drawn(const std::vector<ProfileKnot>& profile) {
   return points;
 }
 
-/// A shell that passes through itself has no inside.
+/// Refuses a shell that passes through itself, which has no inside.
 void check_crossings(const std::vector<ProfileKnot>& profile, const JsonReader& reader, const std::string& key) {
   const std::vector<Point> at = drawn(profile);
   for (std::size_t b = 2; b + 1 < at.size(); ++b)

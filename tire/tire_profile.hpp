@@ -1,4 +1,4 @@
-// The meridian of a tire file, which both layouts write alike.
+// The meridian of a tire file. It has the same form in both layouts.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace furrow::tire {
 
-/// Rows t, x, y (both layouts share them).
+/// Reads rows of t, x, y.
 std::vector<ProfileKnot> read_profile(JsonReader& reader, const std::string& key);
 
 }  // namespace furrow::tire

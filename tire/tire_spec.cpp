@@ -10,7 +10,7 @@
 namespace furrow::tire {
 namespace {
 
-// What concerns every model: its file, how it is coupled, and tangents, which have a check of their own.
+// Keys of every model: its file, its coupling, and tangents, which have their own check.
 constexpr std::array<std::string_view, 4> kOfEveryModel{"file", "rigid", "contact_tangent", "substeps"};
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a scenario says of a tire, read, completed and able to describe and to make its model. The ranks, the checks and
-// the tools know tires by this interface and by Tire alone; tires.cpp lists the models.
+// A scenario's description of a tire, read and completed. It describes its model and makes it. Ranks, checks and tools
+// use tires only through this interface and Tire; tires.cpp lists the models.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@
 
 namespace furrow::tire {
 
-/// What the section `tire` of a scenario says: every field is the key `tire.<name>`, null where it says the default.
+/// The section `tire` of a scenario. Every field is the key `tire.<name>`; null stands for the default.
 struct TireOptions {
   static constexpr SchemaName kSchema{"tire", "The tire, and what the scenario changes of its file."};
   std::filesystem::path file;        // resolved
@@ -32,10 +32,10 @@ struct TireOptions {
   int elements_width = 0;            // 0: the file's; split over the sections in the file's proportions
   double structural_damping = -1.0;  // s; negative: the file's
   bool rigid = false;                // same surface, no deformation
-  bool contact_tangent = false;      // contact forces answer to the tire's motion within the step
+  bool contact_tangent = false;      // contact forces follow the tire's motion within the step
   int substeps = 1;                  // of the tire in one communication step
 
-  /// Sets what is said of the contact.
+  /// Sets the contact properties that the scenario states.
   void apply_to(ContactMaterial& contact) const {
     if (friction >= 0.0) contact.friction = contact.pair_friction = friction;
     contact.rolling_friction = rolling_friction;
@@ -82,10 +82,9 @@ void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
         key("substeps", "", from(1, 1000), "Number of steps that the tire takes in one communication step."));
 }
 
-/// What is known of a tire before its model is made. How far it reaches once inflated only the model can say
-/// (reach.hpp).
+/// Properties of a tire before its model is made. The reach of the inflated tire needs the model (reach.hpp).
 struct TireDescription {
-  std::string kind;                // as results name it: "ancf", "rigid"
+  std::string kind;                // in results: "ancf", "rigid"
   std::string name;                // for people: "layered shell"
   std::string details;             // for people: mesh, unknowns, pressure
   double radius = 0.0;             // undeformed, m
@@ -98,28 +97,28 @@ struct TireDescription {
   MassProperties mass;             // undeformed, about the rim's centre
   double memory = 0.0;             // that the model needs, bytes
   double saved_bytes = 0.0;        // in a checkpoint
-  bool takes_tangents = false;     // contact forces may answer to its motion
+  bool takes_tangents = false;     // contact forces may follow its motion
   bool deflects = true;            // false: no load deforms it
   bool follows_rim = false;        // its surface is a function of the rim's state alone: Tire::surface_on
-  std::vector<std::string> takes;  // names in TireOptions of what the model takes from the scenario: "pressure"
-  /// Why the tire computes its contact by a law of its own (Tire::stated_contact): "its forces are those of …"; empty:
-  /// it does not.
+  std::vector<std::string> takes;  // names in TireOptions that the model uses: "pressure"
+  /// Why the tire computes its contact by a law of its own (Tire::stated_contact): "its forces are those of …". Empty
+  /// if it does not.
   std::string own_contact;
-  /// Contact forces come one step late, which feeds a tire whose own damping is slower: steps of at most
-  /// `step_share` of `damping_time` are good; with a share of 0 any step is.
+  /// Contact forces come one step late, which adds energy to a tire whose own damping is slower. Steps of at most
+  /// `step_share` of `damping_time` are good; with a share of 0 any step is good.
   double damping_time = 0.0;  // s
   double step_share = 0.0;    // -
-  /// Of a tire whose contact is its own, under its nominal load: N/m upwards, N/m along where slip relaxes over a
-  /// length, N s/m along where it does not. 0: it has no such thing.
+  /// For a tire with its own contact law, under its nominal load: N/m upwards; N/m along if slip relaxes over a length,
+  /// N s/m along if it does not. 0: does not apply.
   double vertical_stiffness = 0.0, grip_stiffness = 0.0, grip_damping = 0.0;
   double contact_length = 0.0;  // likewise, m
   double most_load = 0.0;       // that its file was measured up to, N; 0: not known
   /// Why this tire can be pressed but not made and run: "whose key 'integrator' is …"; empty: it can.
   std::string static_only;
-  NamedValues model;  // what else there is to know of this model: "layers"
+  NamedValues model;  // further properties of this model: "layers"
 };
 
-/// How a model computes, and under which gravity; what is not given is as the model takes it on its own.
+/// Settings of a model's computation, and gravity. The model chooses values that are not given.
 struct TireContext {
   int threads = 1;
   std::optional<double> tolerance = {};  // of the solver's residual, relative
@@ -133,7 +132,7 @@ struct TireContext {
 
 class TireSpec;
 
-/// What the scenario states of a tire although its model does not take it: names in TireOptions.
+/// Names in TireOptions that the scenario states although the tire's model does not use them.
 std::vector<std::string> idle_keys(const TireSpec& tire);
 
 class ModalTest;
@@ -145,21 +144,21 @@ class TireSpec {
   virtual ~TireSpec() = default;
 
   const TireOptions& options() const { return options_; }
-  /// What the tire's file says of its rim.
+  /// The rim as the tire's file describes it.
   const RimProperties& rim() const { return rim_; }
   void set_rim(const RimProperties& rim) { rim_ = rim; }
   virtual TireDescription describe() const = 0;
   /// @throws Error(bad_input)
   virtual std::unique_ptr<Tire> make(const TireContext& context = {}) const = 0;
-  /// What it looks like when nothing deforms it; tire.rigid holds any model so.
+  /// The undeformed shape. The key tire.rigid keeps any model in this shape.
   virtual TireShape shape() const = 0;
-  /// Keys of the tire's file whose values look like another unit, and what is odd about them.
+  /// Keys of the tire's file whose values seem to be in a wrong unit, and what is odd about them.
   virtual std::vector<std::pair<std::string, std::string>> unlikely_values() const { return {}; }
-  /// Other files that the tire's file names. They count by what they hold.
+  /// Other files that the tire's file names. A digest counts their contents.
   virtual std::vector<std::filesystem::path> files() const { return {}; }
-  /// Static pressing on an obstacle (press.hpp); null where the model has none.
+  /// Static pressing on an obstacle (press.hpp); null if the model has none.
   virtual std::unique_ptr<StaticTest> static_test() const;
-  /// Natural frequencies (modes.hpp); null where the model has none.
+  /// Natural frequencies (modes.hpp); null if the model has none.
   virtual std::unique_ptr<ModalTest> modal_test() const;
 
  private:

@@ -29,7 +29,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The definition of a model's files, with the keys that all models share.
+/// Schema definition of a model's files, with the keys that all models share.
 template <HasFields File>
 nlohmann::ordered_json add_keys_of(SchemaWriter& writer, std::string_view model, bool is_default) {
   nlohmann::ordered_json file = object_schema(File::kSchema.description);
@@ -52,7 +52,7 @@ constexpr auto kModels = std::to_array<TireModel>({
     {"planar", read_planar, add_keys_of<PlanarFile>},
     {"handling", read_handling, add_keys_of<HandlingFile>},
 });
-// Names that tire files may come to use.
+// Model names reserved for later.
 constexpr std::array<std::string_view, 1> kLater{"wheel"};
 
 const TireModel& model_of(const json& document, const std::string& file) {
@@ -80,7 +80,7 @@ RimProperties rim_of(const json& document, const std::string& file) {
   return rim;
 }
 
-/// What a schema cannot say of a schedule.
+/// Checks the rules of a schedule that a schema cannot express.
 void check(const PressureSchedule& schedule, const std::string& key, const std::string& file) {
   for (std::size_t k = 0; k < schedule.knots.size(); ++k) {
     const PressureSchedule::Knot& knot = schedule.knots[k];

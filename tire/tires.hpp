@@ -1,4 +1,4 @@
-// The tire models by the name that a tire file gives them. A new model is one entry of the table in tires.cpp.
+// The tire models, by their names in tire files. A new model is one entry of the table in tires.cpp.
 #pragma once
 
 #include <memory>
@@ -15,13 +15,13 @@ namespace furrow::tire {
 
 struct TireModel {
   std::string_view name;  // of the key `model` in tire files
-  /// Of a tire file and what the scenario changes of it. @throws Error(bad_input) naming file and key
+  /// Reads a tire file, with the scenario's changes. @throws Error(bad_input) naming file and key
   std::unique_ptr<TireSpec> (*read)(const nlohmann::json& file, const TireOptions& options);
-  /// Of its files. @param is_default of files without the key `model`
+  /// Schema of its files. @param is_default whether files without the key `model` have this model
   nlohmann::ordered_json (*schema)(SchemaWriter& writer, std::string_view model, bool is_default) = nullptr;
 };
 
-/// The first is that of files without the key `model`.
+/// The first is the model of files without the key `model`.
 std::span<const TireModel> tire_models();
 
 /// The JSON schema of tire files.
@@ -31,10 +31,11 @@ nlohmann::ordered_json tire_schema();
 /// @pre the section was checked against the schema. @throws Error(bad_input) naming file and key
 std::shared_ptr<const TireSpec> read_tire(const nlohmann::json& section, const ReadContext& context);
 
-/// The same for options that were read already. @throws Error(bad_input); an unknown model lists the valid ones
+/// Reads the tire's file for options that were read already. @throws Error(bad_input); an unknown model lists the valid
+/// ones
 std::unique_ptr<TireSpec> read_tire(const TireOptions& options);
 
-/// The model of a tire's file. @throws Error(bad_input)
+/// Makes the model of a tire's file. @throws Error(bad_input)
 std::unique_ptr<Tire> make_tire(const TireOptions& options);
 
 }  // namespace furrow::tire

@@ -1,4 +1,4 @@
-// The tire's axes on the ground (ISO-W), in which forces and moments of tires are customarily given:
+// The tire's axes on the ground (ISO-W), the usual axes for forces and moments of tires:
 //
 //   origin C: the contact centre, where wheel plane, ground plane and the plane through the spin axis that stands on
 //     the ground meet; z up, normal to the ground; x forward, along the line in which wheel and ground plane meet;
@@ -9,9 +9,8 @@
 //
 //   x = a × z/|a × z|,   C = r − ρ (x × a),   loaded radius ρ = (r − g)·z/(x × a)·z
 //
-// Slip angle: from x to the velocity of the wheel centre, about z; a velocity with a part along +y gives a positive
-// angle and a negative lateral force. Camber (inclination) angle: of the wheel plane about x; positive leans the top to
-// −y.
+// Slip angle: from x to the velocity of the wheel centre, about z. A velocity component along +y gives a positive angle
+// and a negative lateral force. Camber (inclination) angle: of the wheel plane about x; positive leans the top to −y.
 #pragma once
 
 #include "protocol/core/surface.hpp"

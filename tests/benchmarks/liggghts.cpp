@@ -1,9 +1,9 @@
-// What a step of the engine liggghts costs, part by part, on the bed of a scenario: the pair style, motion and lists
-// alone (one `run N`); with walls and accounts; and with one `run 1` and the terrain's sums for each step, as a run of
-// Furrow does it, but without tires and messages. Under mpirun for several ranks.
+// Cost of a step of the engine liggghts, part by part, on the bed of a scenario: the pair style, motion and lists alone
+// (one `run N`); with walls and accounts; and with one `run 1` and the terrain's sums for each step, as in a run of
+// Furrow, but without tires and messages. Runs under mpirun for several ranks.
 //
-// The parts take turns, kBlock steps each. Wall time, and the processor time of the rank that took most of it: waiting
-// for other ranks is part of both.
+// The parts take turns, kBlock steps each. Prints wall time, and the largest processor time of a rank; both include
+// waiting for other ranks.
 //
 // usage: bench_liggghts SCENARIO STEPS ROUNDS [KEY=VALUE …]     prints a line of CSV for each part and round
 //        bench_liggghts RUN STEPS ROUNDS         the same from the last checkpoint of a run, without its tires, on as
@@ -48,10 +48,10 @@ class NoWork final : public StepWork {
   double contacts = 0.0;  // of the last step
 };
 
-/// The parts take turns with as many steps each: what else the machine does then lengthens all of them alike.
+/// The parts take turns with this number of steps each, so that other load on the machine affects all of them equally.
 constexpr int kBlock = 25;
 
-/// Of this process, s.
+/// Processor time of this process, s.
 double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -69,11 +69,11 @@ void broadcast(std::vector<T>& values) {
 struct Bench {
   dem::DemOptions options;
   StartingBed bed;
-  std::optional<std::vector<double>> borders;  // of a run: the bed is this rank's share
+  std::optional<std::vector<double>> borders;  // from a run: the bed is this rank's share
   std::int64_t grains = 0;                     // of all ranks
   int rank = 0, ranks = 1;
 
-  /// This rank's share of a run, without its tires.
+  /// Takes this rank's share of a run, without its tires.
   void take(const Archive& saved) {
     const Archive::Scope scope(saved, "terrain/");
     grains = saved.get_int("grains/all");
@@ -104,7 +104,7 @@ struct Bench {
   }
 };
 
-/// One of the parts that are timed, with an engine of its own.
+/// One of the timed parts, with its own engine.
 class Part {
  public:
   Part(const Bench& bench, const char* name, bool contacts_too, bool each_step)

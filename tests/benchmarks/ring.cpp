@@ -16,7 +16,7 @@ RingParams truck_ring(int segments) {
   return p;
 }
 
-/// @param state segments; width of a cleat in mm, 0 for a plate; percent of the pressure that the belt holds
+/// @param state segments; width of a cleat in mm, 0 for a plate; percentage of the pressure that the belt carries
 void loading_curve(benchmark::State& state) {
   constexpr int kPoints = 40;
   constexpr double kDeflection = 0.095;  // m

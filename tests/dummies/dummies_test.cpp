@@ -1,4 +1,4 @@
-// CONTRIBUTING.md kept true: a dummy of each thing that it tells how to add, made as it says.
+// Checks the recipes of CONTRIBUTING.md, with a dummy of each part that it describes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@
 #include "tire/outward.hpp"
 #include "tire/tires.hpp"
 
-// The line that would be in terrain/dem/contact/laws.hpp: a law is tested by being listed.
+// The line that would be in terrain/dem/contact/laws.hpp: listed laws are tested.
 namespace furrow::terrain::dem::testing {
 using NewLaws = TypesOf<std::tuple<LinearLaw>>::type;
 INSTANTIATE_TYPED_TEST_SUITE_P(Dummy, LawPromises, NewLaws, NameOfLaw);
@@ -62,7 +62,7 @@ std::unique_ptr<tire::TireSpec> read_wheel(const json& file) {
   return kTire.read(file, options);
 }
 
-/// Two springs and a rigid wheel in a scenario, as load_scenario would have made it.
+/// Two springs and a rigid wheel in a scenario, as load_scenario would make it.
 scenario::Scenario small_scenario() {
   scenario::Scenario s;
   s.file = "scenario.json";
@@ -73,7 +73,7 @@ scenario::Scenario small_scenario() {
   return s;
 }
 
-/// What the checks of a scenario say; its warnings, if it is not refused.
+/// The error of a scenario's checks, or its warnings.
 std::string checked(scenario::Scenario s) {
   const std::shared_ptr<rigs::RigSpec> rig = kRig.read(json::object(), {"scenario.json", "rig"});
   try {
@@ -86,7 +86,7 @@ std::string checked(scenario::Scenario s) {
   return text;
 }
 
-/// The three dummies coupled as ranks couple them: forces one step late.
+/// The three dummies coupled as by ranks: forces come one step late.
 struct Bench {
   std::unique_ptr<tire::Tire> tire;
   std::unique_ptr<terrain::Terrain> terrain;
@@ -368,7 +368,7 @@ TEST(Dummies, grain_under_a_new_law_rebounds_from_the_floor_as_a_damped_spring) 
   EXPECT_NEAR(dt * sums.sample.power.normal_damping, 0.5 * grain.mass * (1.0 - rebound * rebound), 2e-3 * grain.mass);
 }
 
-/// What `furrow` prints on this command line beside its own commands, or the error that ends it.
+/// Output or error of `furrow` on this command line, with the dummy's command in addition to its own.
 std::string printed(std::vector<std::string> words) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -48,7 +48,7 @@ class HeldHub final : public Rig {
     time_ += duration;
     const Vec3 way = do_rim(0).position - from.position, turn = mean_turn(from.orientation, do_rim(0).orientation);
     const Vec3 weight = mass() * Vec3(0.0, 0.0, -kStandardGravity);
-    const Vec3 guide = (momentum() - held_) / duration - wrench_.force - weight;  // what holds the hub
+    const Vec3 guide = (momentum() - held_) / duration - wrench_.force - weight;  // holds the hub
     held_ = momentum();
     add_tire(accounts_, from, do_rim(0), wrench_, duration);
     accounts_.drive_work -= wrench_.moment.dot(turn);  // the spin is constant

@@ -1,5 +1,5 @@
-// A small complete rig, made as CONTRIBUTING.md says: it holds the hub of one wheel, lowers it and turns it as imposed,
-// and adds a column of its own to the wheel's table.
+// A small complete rig, made by the recipe in CONTRIBUTING.md. It holds the hub of one wheel, lowers it and turns it as
+// imposed, and adds its own column to the wheel's table.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,8 @@ namespace furrow::rigs {
 
 /// The keys of the section `rig` with type held_hub.
 struct HeldHubOptions {
-  double depth = 0.01;    // that the hub is lowered in all, m
-  double lowering = 0.1;  // speed until then, m/s
+  double depth = 0.01;    // total lowering of the hub, m
+  double lowering = 0.1;  // speed of lowering, m/s
   double spin = 0.0;      // about the hub's y axis, rad/s
 };
 void visit_fields(FieldsOf<HeldHubOptions> auto& s, auto&& visit) {
@@ -26,7 +26,7 @@ void visit_fields(FieldsOf<HeldHubOptions> auto& s, auto&& visit) {
   visit(s.spin, key("spin", "rad/s", "Spin about the hub's y axis."));
 }
 
-/// What the rig adds to the table of its wheel.
+/// The rig's column in the table of its wheel.
 struct HeldHubRow {
   double hub_load = 0.0;  // with which the hub presses the wheel down, N
 };

@@ -1,4 +1,4 @@
-// A dummy of a command: `furrow roll` prints the angular speed of a wheel that rolls freely, ω = v/R.
+// Dummy of a command: `furrow roll` prints the angular speed of a freely rolling wheel, ω = v/R.
 #pragma once
 
 #include "nodes/commands/command.hpp"

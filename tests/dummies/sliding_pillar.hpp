@@ -1,5 +1,5 @@
-// A small complete kind of suspension, made as CONTRIBUTING.md says: an upright that slides along a pillar of the
-// chassis, on a spring and a shock absorber.
+// A small complete kind of suspension, made by the recipe in CONTRIBUTING.md: an upright that slides along a pillar of
+// the chassis, on a spring and a shock absorber.
 #pragma once
 
 #include <optional>

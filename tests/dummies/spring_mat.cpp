@@ -106,7 +106,7 @@ class SpringMat final : public Terrain {
 
   static std::string name(std::size_t k) { return "spring_mat/guest" + std::to_string(k) + "/"; }
 
-  /// Moves vertex v to where its target will be, with (1) on the way.
+  /// Moves vertex v to its target, with the force (1) on the way.
   void press(Guest& guest, std::size_t v, const SurfaceState& target, double duration, int substeps,
              NodalForces& forces, ContactSums& contact) {
     const Vec3 start = guest.position[v], end = target.position[v] + duration * target.velocity[v];

@@ -1,7 +1,7 @@
-// A small complete terrain, made as CONTRIBUTING.md says: the plane z = 0 on independent springs, without friction
-// [Winkler 1867, Die Lehre von der Elasticität und Festigkeit].
+// A small complete terrain, made by the recipe in CONTRIBUTING.md: the plane z = 0 on independent springs, without
+// friction [Winkler 1867, Die Lehre von der Elasticität und Festigkeit].
 //
-// A vertex with the area A at the height z feels, as long as this is a push,
+// The force on a vertex with the area A at the height z is, if this is a push,
 //   f = A (−κ z − d ż),                                                                                      (1)
 // with the stiffness κ and the damping d per area, evaluated at the middle of each substep.
 #pragma once

@@ -46,7 +46,7 @@ TireShape wheel_shape(const SpringWheelOptions& o) {
   return shape;
 }
 
-/// What grains and ground feel of the tread, for every contact law.
+/// Contact properties of the tread, for every contact law.
 ContactMaterial rubber() {
   ContactMaterial m;
   m.young_modulus = 1e7;
@@ -151,7 +151,7 @@ class SpringWheel final : public Tire {
     return turn * (shape_.mass.inertia * (turn.transpose() * rim.angular_velocity));
   }
 
-  /// (1) over one step.
+  /// Solves (1) over one step.
   void spring(std::size_t v, double inwards, double step) {
     const double c = options_.damping, before = deflection_[v];
     deflection_[v] = (c * before + step * inwards) / (c + step * options_.stiffness);
@@ -161,7 +161,7 @@ class SpringWheel final : public Tire {
     numerical_loss_ += 0.5 * options_.stiffness * change * change;
   }
 
-  /// What backward differences of the rim's motion lose.
+  /// Records the loss of the backward differences of the rim's motion.
   void book_rim_loss(const RimState& from, const RimState& to, double duration) {
     const Vec3 before = angular_momentum(from), after = angular_momentum(to);
     const Vec3 way = (to.position - from.position) / duration - 0.5 * (from.velocity + to.velocity),

@@ -1,5 +1,5 @@
-// A small complete tire model, made as CONTRIBUTING.md says: a rigid rim with radial springs to the vertices of its
-// surface.
+// A small complete tire model, made by the recipe in CONTRIBUTING.md: a rigid rim with radial springs to the vertices
+// of its surface.
 //
 // A vertex has no mass, a stiffness k and a damping c. With f the force on it and e its radial direction, outwards, its
 // deflection u, positive inwards, follows
@@ -18,7 +18,7 @@
 
 namespace furrow::tire {
 
-/// The keys of a tire file with "model": "spring_wheel", besides those that all models share.
+/// The keys of a tire file with "model": "spring_wheel", in addition to the keys of all models.
 struct SpringWheelOptions {
   static constexpr SchemaName kSchema{"spring_wheel", "A wheel of independent springs around a rigid rim."};
   double radius = 0.4;     // undeformed, m

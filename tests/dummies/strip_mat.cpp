@@ -25,7 +25,7 @@ struct Guest {
   std::vector<double> area;    // of each vertex, m²
 };
 
-/// What a vertex felt in an interval.
+/// Push on a vertex in an interval.
 struct Push {
   std::int32_t tire = 0, vertex = 0;
   double force = 0.0;  // mean, N
@@ -97,7 +97,7 @@ class StripMat final : public Terrain {
     return {};
   }
 
-  /// Its energy is what went in: nothing here tells how much of it is stored.
+  /// Its energy is the work done on it; the stored part is not known.
   TerrainState gather_state() const override {
     TerrainState state;
     state.energies.opening_loss = -work_;
@@ -160,7 +160,7 @@ class StripMat final : public Terrain {
     return std::clamp(static_cast<int>(std::floor(x / kColumn)), 0, static_cast<int>(height_.size()) - 1);
   }
 
-  /// Those that end above a column of this rank's: the column that they press all along the interval.
+  /// Vertices that end above a column of this rank; they press this column during the whole interval.
   std::vector<Push> own_vertices(std::span<const SurfaceState> targets, double duration) {
     if (!others_known_) exchange_heights();
     std::vector<Push> own;
@@ -172,7 +172,7 @@ class StripMat final : public Terrain {
     return own;
   }
 
-  /// Eq. (1) in the middle of substep s, and the yielding of (2).
+  /// Computes (1) in the middle of substep s, and the yielding of (2).
   void press(Push& push, std::span<const SurfaceState> targets, double duration, int s, int substeps) {
     const Guest& guest = guests_[push.tire];
     const Vec3 start = guest.position[push.vertex], end = target(targets[push.tire], push.vertex, duration);

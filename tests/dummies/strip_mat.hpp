@@ -1,11 +1,11 @@
-// A small terrain of several ranks, for tests: a mat of columns that stand side by side along the travel, each w wide
-// in x and as wide as the bin in y. It has no friction. A vertex of a tire with the area A at the height z above column
-// i feels, as long as this is a push,
+// A small terrain of several ranks, for tests: a mat of columns side by side along the travel, each w wide in x and as
+// wide as the bin in y. It has no friction. The force on a tire's vertex with the area A at the height z above column i
+// is, if this is a push,
 //   f = A (κ (h_i − z) − d ż).                                                                               (1)
-// In every substep of Δt the columns yield and even out,
+// In every substep of Δt the columns yield and level out,
 //   h_i ← h_i − Δt/T Σ f / (κ w b),    h_i ← h_i + γ (h_{i−1} − 2 h_i + h_{i+1}),                            (2)
-// with the width b of the bin. Each rank computes the columns of its own and hears of the others' in every substep.
-// What comes out is the same to the bit for any number of ranks.
+// with the width b of the bin. Each rank computes its own columns and receives those of the other ranks in every
+// substep. The results have the same bits for any number of ranks.
 #pragma once
 
 #include <memory>

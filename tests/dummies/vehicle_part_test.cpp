@@ -1,4 +1,4 @@
-// CONTRIBUTING.md kept true for parts of vehicles: a kind of suspension that is made as it says.
+// Checks the recipe of CONTRIBUTING.md for parts of vehicles, with a kind of suspension.
 #include <gtest/gtest.h>
 
 #include <cmath>

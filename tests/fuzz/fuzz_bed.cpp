@@ -1,4 +1,4 @@
-// Beds that users bring: positions as CSV.
+// Fuzzes beds of users: positions as CSV.
 #include "protocol/core/error.hpp"
 #include "terrain/dem/beds/bed_csv.hpp"
 #include "tests/fuzz/input_file.hpp"

@@ -1,5 +1,5 @@
-// Scenarios with valid keys and odd values, through all that `furrow validate` does. Most values are of the type and
-// the range that the schema asks for, or just beyond: what it refuses at once tells little about what comes after it.
+// Fuzzes `furrow validate` with scenarios of valid keys and odd values. Most values have the type and range of the
+// schema, or are just beyond: values that the schema refuses do not reach the code after it.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <algorithm>
@@ -146,7 +146,7 @@ void check(const std::filesystem::path& file, const Settings& settings) {
   if (scenario::validation_text(s).empty()) __builtin_trap();
   scenario::validation_report(s).dump();
   if (scenario::load_scenario(written("again.json", s.completed), {}).digest != s.digest)
-    __builtin_trap();  // a completed scenario is that scenario
+    __builtin_trap();  // completing a completed scenario must not change it
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::replace(pointer.begin(), pointer.end(), '.', '/');
     try {
       document[json::json_pointer(pointer)] = value;
-    } catch (const json::exception&) {  // below something that is no section
+    } catch (const json::exception&) {  // below a value that is not a section
     }
   }
   try {

@@ -1,5 +1,5 @@
-// Tire property files, and tables of sweeps that they are fitted to. A tire that was read is written and read again to
-// the same text.
+// Fuzzes tire property files, and tables of sweeps for their fits. A tire that was read, written and read again must
+// give the same text.
 #include <cmath>
 
 #include "protocol/core/error.hpp"

@@ -1,6 +1,6 @@
-// HDF5 files with datasets and attributes of any type and shape, some of them cut short; for the reader of datasets, of
-// archives and of positions. Half of the files are frames of grains, as a bed that a user brings. Their numbers, types
-// and shapes differ a little from what they should be.
+// Fuzzes the readers of datasets, archives and positions with HDF5 files. Their datasets and attributes have any type
+// and shape; some are cut short. Half of the files are frames of grains, like a user's bed, whose numbers, types and
+// shapes differ a little from valid ones.
 #include <algorithm>
 
 #include <fuzzer/FuzzedDataProvider.h>
@@ -47,7 +47,7 @@ void add_dataset(FuzzedDataProvider& in, hid_t file) {
   H5Pset_create_intermediate_group(link, 1);
   const hssize_t count = space.ok() ? H5Sget_simple_extent_npoints(space) : 0;
   switch (in.ConsumeIntegralInRange(0, 7)) {
-    case 1:  // the library does not bear large compact datasets
+    case 1:  // the library fails on large compact datasets
       if (count >= 0 && count < 1000) H5Pset_layout(made, H5D_COMPACT);
       break;
     case 2:

@@ -1,5 +1,5 @@
-// Measured roads: the first byte says whether the others are a CSV file or one of OpenCRG, in text or with numbers of
-// big-endian order.
+// Fuzzes measured roads. The first byte selects the format of the others: CSV, or OpenCRG in text or with big-endian
+// numbers.
 #include <cmath>
 
 #include "protocol/core/error.hpp"

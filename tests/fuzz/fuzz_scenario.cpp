@@ -1,4 +1,4 @@
-// Scenario files: JSON as people write it, the schema's mistakes, defaults and warnings.
+// Fuzzes scenario files: their JSON, the schema's errors, defaults and warnings.
 #include "nodes/scenario/schema.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/json_text.hpp"

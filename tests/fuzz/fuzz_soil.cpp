@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     scenario::read_soil_material(file);
     nlohmann::json document{{"terrain", {{"material", file.string()}, {"friction", 0.5}}}};
     scenario::apply_soil_material(document, file.parent_path() / "scenario.json", "dem");
-    if (document["terrain"]["friction"] != 0.5) __builtin_trap();  // what the scenario states itself
+    if (document["terrain"]["friction"] != 0.5) __builtin_trap();  // stated by the scenario itself
     scenario::override_soil_material(document, file.parent_path() / "scenario.json", "dem");
     scenario::override_soil_material(document, file.parent_path() / "scenario.json", "scm");
   } catch (const Error& error) {

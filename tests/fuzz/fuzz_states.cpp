@@ -1,5 +1,5 @@
-// Settled beds with numbers changed, arrays cut, renamed and exchanged, and a checksum that fits: what the bed file of
-// another user may hold. Read back from disk, restored and stepped.
+// Fuzzes settled beds, as another user's bed file may contain them: numbers changed, arrays cut, renamed and exchanged,
+// with a valid checksum. They are read from disk, restored and stepped.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Tire files, our own layout and the public ANCFTire layout, with what a scenario changes of them: read, described,
-// meshed where that is quick. The document: {"file": a tire file, "pressure": …, "rigid": …, "around": …, "across": …}
+// Fuzzes tire files in our own and in the public ANCFTire layout, with a scenario's changes: they are read, described,
+// and meshed if that is quick. The document: {"file": a tire file, "pressure": …, "rigid": …, "around": …, "across": …}
 #include <algorithm>
 
 #include "protocol/core/error.hpp"
@@ -14,7 +14,7 @@ using namespace furrow;
 
 constexpr int kQuick = 20000;  // vertices
 
-/// The keys of the scenario that the document has, as far as the scenario's schema lets them through.
+/// The document's scenario keys that the scenario's schema accepts.
 nlohmann::json section_of(const fuzz::Json& document, const std::string& file) {
   nlohmann::json section{{"file", file}};
   const auto take = [&](const char* from, const char* key, auto good) {

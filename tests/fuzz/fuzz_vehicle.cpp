@@ -1,4 +1,4 @@
-// Vehicles' files and drivers' files with their tables of points. The document: {"vehicle": …, "driver": …, "csv": a
+// Fuzzes vehicle files and driver files with their tables of points. The document: {"vehicle": …, "driver": …, "csv": a
 // text}
 #include "protocol/core/error.hpp"
 #include "tests/fuzz/input_file.hpp"

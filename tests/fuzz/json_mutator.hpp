@@ -1,5 +1,6 @@
-// Changes documents, not bytes: values of odd kinds and sizes, keys and entries taken away, doubled, exchanged. Include
-// it in a target that reads JSON; texts that are no JSON are left to libFuzzer, as is one change in eight.
+// Changes documents instead of bytes: sets values of odd kinds and sizes; removes, doubles and exchanges keys and
+// entries. Include it in a target that reads JSON. libFuzzer changes texts that are not JSON, and makes one change in
+// eight.
 #pragma once
 
 #include <cmath>
@@ -23,7 +24,7 @@ class JsonMutator {
  public:
   explicit JsonMutator(unsigned seed) : chance_(seed) {}
 
-  /// One to four changes. @param other gives values as well
+  /// Makes one to four changes. @param other a further source of values
   void change(Json& document, const Json& other) {
     for (std::size_t k = 1 + below(4); k > 0; --k) {
       std::vector<Json*> places, gifts;
@@ -43,7 +44,7 @@ class JsonMutator {
       for (Json& inner : value) collect(inner, places);
   }
 
-  /// An entry; objects have no iterators that jump. @pre there is one
+  /// A random entry; iterators of objects cannot jump. @pre there is one
   Json::iterator any_of(Json& value) {
     return std::next(value.begin(), static_cast<std::ptrdiff_t>(below(value.size())));
   }
@@ -141,7 +142,7 @@ class JsonMutator {
       case 0:
         at = odd();
         return;
-      case 1: {  // copied first: one may lie within the other
+      case 1: {  // copied first: one may be within the other
         const Json copy = *places[below(places.size())];
         at = copy;
         return;
@@ -172,7 +173,7 @@ inline Json parsed(const std::uint8_t* data, std::size_t size) {
   return Json::parse(data, data + size, nullptr, false);
 }
 
-/// Puts a document back as bytes. @returns 0 when it does not fit
+/// Writes a document as bytes. @returns its size, 0 when it does not fit
 inline std::size_t stored(const Json& document, std::uint8_t* data, std::size_t max_size) {
   const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > max_size) return 0;

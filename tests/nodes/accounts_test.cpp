@@ -1,4 +1,4 @@
-// The accounts of whole co-simulations: they close, better with a smaller step, and notice an entry that is wrong.
+// The accounts of whole co-simulations close, better with a smaller step, and reveal a wrong entry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ TEST(Accounts, no_list_forgets_a_member_of_its_struct) {
   expect_whole_list<LostAccount>();
 }
 
-/// The accounts as the rig's node has them after `steps` steps.
+/// The accounts of the rig's node after `steps` steps.
 Accounts accounts_after(const scenario::Scenario& scenario, std::int64_t steps) {
   testing::InProcessRun run(scenario);
   run.steps(0, steps);
@@ -57,13 +57,13 @@ OneWheel flexible_tire_on_plane() {
   return scenario;
 }
 
-/// Of the same simulated time with step H.
+/// Accounts after a simulated time with the step H.
 Accounts rolled(OneWheel scenario, double step, double time) {
   scenario.run.step = step;
   return accounts_after(scenario.made(), std::llround(time / step));
 }
 
-/// Of prompt forces nothing but the added mass' is under way.
+/// With prompt forces, only the added mass' impulse is under way.
 void expect_momentum_closes(const Accounts& accounts, bool prompt = false) {
   const MomentumAccount m = accounts.momentum();
   EXPECT_TRUE(m.closes()) << "residual " << m.residual().transpose() << ", surface "
@@ -122,7 +122,7 @@ EnergyAccount turned(double step, double time) {
   return accounts_after(testing::ScenarioFile(turn.dump()).load(), std::llround(time / step)).energy();
 }
 
-/// The shear of the ground under tires that slip sideways is stepped implicitly. What such a step loses is booked.
+/// The shear of the ground under tires that slip sideways is stepped implicitly. The loss of such a step is recorded.
 TEST(Accounts, energy_closes_in_a_turn_on_rigid_wheels) {
   const EnergyAccount coarse = turned(2e-4, 0.7), fine = turned(1e-4, 0.7);
   EXPECT_GT(coarse.lost.sliding + coarse.lost.tangential_damping + coarse.lost.opening, 0.1 * coarse.turnover());
@@ -139,7 +139,7 @@ TEST(Accounts, energy_closes_on_grains) {
                           << a.tire_residual << ", rig " << a.rig_residual;
 }
 
-/// A single entry that is 10 % wrong is noticed if it is a third of what is turned over, or more.
+/// An error of 10 % in a single entry is noticed if the entry is at least a third of the turnover.
 TEST(Accounts, an_entry_that_is_wrong_is_noticed) {
   const Accounts accounts = rolled(flexible_tire_on_plane(), 1e-4, 0.15);
   const Books &start = accounts.start(), &now = accounts.now();
@@ -149,7 +149,7 @@ TEST(Accounts, an_entry_that_is_wrong_is_noticed) {
   wrong.rig.damper_loss += 0.1 * 0.35 * accounts.energy().turnover();
   EXPECT_FALSE(energy_account(start, wrong).closes());
   wrong = now;
-  wrong.tires[0].rim_work *= 1.1;  // shows up as a lag of the rim as well, so only in the tire's own residual
+  wrong.tires[0].rim_work *= 1.1;  // also appears as a lag of the rim, so only in the tire's own residual
   EXPECT_GT(std::abs(energy_account(start, wrong).tire_residual), 10.0 * std::abs(accounts.energy().tire_residual));
   wrong = now;
   wrong.rig.guide_impulse *= 1.0 + 1e-4;

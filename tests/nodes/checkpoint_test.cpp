@@ -120,7 +120,7 @@ TEST(Checkpoint, one_of_another_format_is_refused_by_its_version) {
   }
 }
 
-/// Puts a value into the manifest of the run's only checkpoint, and the checksum that fits. @returns its folder
+/// Puts a value into the manifest of the run's only checkpoint, with a valid checksum. @returns its folder
 fs::path forge(const fs::path& run, const std::string& pointer, const Json& value) {
   const fs::path checkpoint = checkpoint::list_checkpoints(run).at(0), file = checkpoint / "manifest.json";
   Json manifest = Json::parse(read_whole_file(file));
@@ -182,7 +182,7 @@ TEST(FrameClock, numbers_stay_when_steps_are_counted_in_parts) {
   for (std::int64_t step = 10; step < 60; ++step) EXPECT_EQ(thirds.index(3 * step), whole.index(step)) << step;
 }
 
-/// A run of a minute has a checkpoint; one of an hour has no more of them than it asked for.
+/// A run of a minute has a checkpoint; a run of an hour has no more than requested.
 TEST(WallSchedule, begins_early_and_slows_down_to_its_interval) {
   const auto times = [](double interval, double until) {
     checkpoint::WallSchedule schedule{interval, 100.0};

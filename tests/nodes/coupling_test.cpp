@@ -1,4 +1,4 @@
-// Whole co-simulations in one process: what crosses the interfaces is conserved, and a restored run continues.
+// Whole co-simulations in one process: the interfaces conserve momentum, and a restored run continues.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -42,7 +42,7 @@ TEST(Coupling, restored_flexible_tire_continues_bit_for_bit) {
   expect_same_bits_after_restore(scenario.made(), 60, 120);
 }
 
-/// The series of a wheel as the rig's node has it now; means are sums since the last line.
+/// The present series of a wheel in the rig's node; means are sums since the last line.
 output::SeriesBuilder series_now(const testing::InProcessRun& run, int wheel = 0) {
   const Archive rig = run.save().front();
   output::SeriesBuilder builder(0.4673, 0.0, 1e-4);
@@ -88,7 +88,7 @@ TEST(Coupling, contact_tangents_continue_bit_for_bit_for_any_number_of_threads) 
   EXPECT_EQ(hashes_after(scenario, 350, 1), hashes_after(scenario, 350, 2));
 }
 
-/// Σ impulses on the tire − Σ impulses by the grains = what the ledger holds.
+/// Σ impulses on the tire − Σ impulses by the grains = the ledger's impulse.
 TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
   const scenario::Scenario scenario = flexible_tire_on_grains_with_tangents().made();
   testing::InProcessRun run(scenario);
@@ -106,7 +106,7 @@ TEST(Coupling, the_ledger_holds_the_difference_of_the_impulses) {
   EXPECT_LT(saved[1].get_double("ledger/largest"), 0.05 * builder.impulse_sent_abs());
 }
 
-/// Added mass: a lagged wrench that held the tire's own inertia would blow up from a ratio of one on.
+/// Added mass: a lagged wrench with the tire's own inertia would be unstable from a ratio of one on.
 TEST(Coupling, spin_up_and_drop_with_a_tire_three_times_as_heavy_as_its_rim) {
   for (const bool rigid : {true, false}) {
     OneWheel scenario = rigid_wheel_on_plane();

@@ -1,4 +1,4 @@
-// A program built for a richer processor says so before anything else, and ends with code 2.
+// A program built for a processor with more features reports this first, and ends with code 2.
 #include "nodes/launch/cpu_check.hpp"
 #include "tests/refusal.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 TEST(CpuCheck, this_build_runs_here) { EXPECT_EQ(launch::missing_instruction_set(), nullptr); }
 
-// cpu_check_elsewhere is linked with the same check, made for a processor that has everything.
+// cpu_check_elsewhere is linked with the same check, built for a processor with all features.
 TEST(CpuCheck, a_program_for_another_processor_says_what_it_lacks) {
   FILE* pipe = popen("'" CPU_CHECK_ELSEWHERE "' 2>&1", "r");
   char text[512] = {};

@@ -17,7 +17,7 @@ TEST(ImpulseLedger, holds_what_acted_less_what_was_reported) {
     ledger.settle(forces, 1e-4);
     EXPECT_LE((ledger.sum() - (on_tire - on_terrain)).norm(), 1e-15 * n);
     ledger.hand_back(forces, 1e-4);
-    for (Vec3& f : forces.force) f *= 1.0 + 0.1 * (n % 3);  // what the tire makes of it
+    for (Vec3& f : forces.force) f *= 1.0 + 0.1 * (n % 3);  // change by the tire
     for (const Vec3& f : forces.force) on_tire += 1e-4 * f;
     ledger.book(forces, 1e-4);
   }
@@ -25,7 +25,7 @@ TEST(ImpulseLedger, holds_what_acted_less_what_was_reported) {
   EXPECT_LT(ledger.largest(), 0.1);  // of the 2 N s that were exchanged
 }
 
-/// With forces predicted exactly L falls by the share β each interval.
+/// With exactly predicted forces, L falls by the share β in each interval.
 TEST(ImpulseLedger, hands_back_a_tenth_each_interval) {
   ranks::ImpulseLedger ledger(1);
   ledger.book(one_force(0, Vec3(0, 0, 2.0)), 1e-4);

@@ -50,7 +50,7 @@ class InProcessRun {
   ranks::Node& node(std::size_t i) { return *nodes_[i]; }
 
  private:
-  /// Runs `work` on every node in a thread of its own; the first error of any is thrown here.
+  /// Runs `work` on every node in its own thread, and throws the first error of any.
   void on_all(const std::function<void(std::size_t)>& work) {
     std::vector<std::exception_ptr> errors(transports_.size());
     std::vector<std::thread> threads;

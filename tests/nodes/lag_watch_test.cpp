@@ -1,4 +1,4 @@
-// What late forces make, judged by hand-made works.
+// The energy from late forces, judged with invented works.
 #include "nodes/output/lag_watch.hpp"
 
 #include <gtest/gtest.h>

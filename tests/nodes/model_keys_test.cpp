@@ -1,4 +1,4 @@
-// The sections `terrain` and `rig`: whose key is whose.
+// The sections `terrain` and `rig`: which model has which key.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -147,7 +147,7 @@ TEST(TerrainKeys, an_engine_chosen_on_the_command_line_sets_keys_of_others_aside
   EXPECT_TRUE(section.contains("ground_stiffness"));
 }
 
-/// A key may move from one engine to another; runs that have it continue.
+/// A key may move from one engine to another; runs with this key continue.
 TEST(TerrainKeys, completed_scenarios_of_runs_say_so_and_may_hold_keys_of_other_engines) {
   json document = json::parse(ScenarioFile(testing::kSmallest).load({{"terrain.engine", "rigid"}}).completed);
   EXPECT_TRUE(document["completed_by"].get<std::string>().starts_with("furrow "));
@@ -157,7 +157,7 @@ TEST(TerrainKeys, completed_scenarios_of_runs_say_so_and_may_hold_keys_of_other_
   EXPECT_TRUE(holds(ScenarioFile(document.dump()).complaint(), "key 'terrain.length'"));
 }
 
-/// As if the drawbar rig took all but `slip`, which is a trolley's, and both took `speed`.
+/// As if the drawbar rig had all keys except `slip`, which is a trolley's, and both had `speed`.
 std::vector<std::string> two_kinds(const std::string& key) {
   if (key == "slip") return {"trolley"};
   if (key == "speed") return {"drawbar", "trolley"};

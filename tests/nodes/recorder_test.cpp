@@ -1,4 +1,4 @@
-// Frames and their index: what is written is what was given.
+// Frames and their index: files contain the given values.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// Regressions of traction against numbers worked by hand from their formulas. One wheel serves all: d 1 m, b 0.3 m,
-// h 0.2 m, δ 0.04 m, W 3 kN on soil with a cone index of 200 kPa, so C_n = 20, b/d = 0.3, δ/h = 0.2; at slip 0.2.
+// Regressions of traction against numbers computed by hand from their formulas. All use one wheel: d 1 m, b 0.3 m, h
+// 0.2 m, δ 0.04 m, W 3 kN on soil with a cone index of 200 kPa, so C_n = 20, b/d = 0.3, δ/h = 0.2; at slip 0.2.
 #include <gtest/gtest.h>
 
 #include <cmath>

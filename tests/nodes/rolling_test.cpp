@@ -1,5 +1,5 @@
 // Flexible tires rolling on hard ground: impulses balance in every interval, ten revolutions gain no energy, mirrored
-// angles give mirrored forces. FURROW_ROLLING_MESH=60x12 rolls the ten revolutions on another mesh than 30x6,
+// angles give mirrored forces. FURROW_ROLLING_MESH=60x12 rolls the ten revolutions on this mesh instead of 30x6;
 // FURROW_ROLLING_CSV names a file that receives their energies (tests/studies/revolutions.csv).
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ tire::Field consistent_weight(const tire::AncfTire& tire) {
   return weight;
 }
 
-/// Of the ground on the tire over the last interval, about the world's origin.
+/// Wrench of the ground on the tire over the last interval, about the world's origin.
 Wrench acted(const RollingTire& rolling) {
   return {sum(rolling.on_tire), 0.5 * (moment_about(Vec3::Zero(), rolling.on_tire, rolling.before) +
                                        moment_about(Vec3::Zero(), rolling.on_tire, rolling.after))};
@@ -126,7 +126,7 @@ TEST(Rolling, ten_revolutions_gain_no_energy) {
       angle -= 2.0 * std::numbers::pi, sum = 0.0, most = -1e300, count = 0;
     }
     write_energies(name, columns, width, mean, highest);
-    // The first revolution holds touch-down and start; the bounce that they leave dies out.
+    // The first revolution contains touch-down and start; their bounce dies out.
     const double kinetic = 0.5 * rolling.tire.mass_properties().mass * 64.0;
     double first = 0.0, second = 0.0;
     for (std::size_t k = 1; k <= 5; ++k) first += mean[k] / 5, second += mean[k + 5] / 5;

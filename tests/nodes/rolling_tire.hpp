@@ -1,5 +1,5 @@
-// A flexible tire on the drawbar rig over hard ground, coupled as the nodes couple them, in one thread and open to
-// view.
+// A flexible tire on the drawbar rig over hard ground, coupled as in the nodes, but in one thread and with access to
+// all parts.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace furrow::test {
 
-/// With friction that sets in at lower sliding speeds than the default one.
+/// Ground whose friction starts at lower sliding speeds than by default.
 inline terrain::GroundOptions hard_ground(double step) {
   terrain::GroundOptions options = rigs::hard_ground(step);
   options.friction_velocity_scale = 200.0;
@@ -45,7 +45,7 @@ class RollingTire {
     ground->attach(tire.mesh(), tire.material(), after);
   }
 
-  /// One interval. @throws Error(physics) when a part of it fails
+  /// Runs one interval. @throws Error(physics) when a part of it fails
   void step() {
     on_tire = forces_;
     before = after;

@@ -1,5 +1,5 @@
-// The folder of a run: one run at a time has it, nothing but what furrow wrote is ever removed from it, and results to
-// be overwritten survive a run that never started.
+// The folder of a run. One run at a time has it; only files written by furrow are removed from it; old results survive
+// a run that never started.
 #include "nodes/launch/run_directory.hpp"
 
 #include <sys/wait.h>
@@ -47,7 +47,7 @@ std::set<std::string> files_in(const fs::path& folder) {
 
 class RunFolderTest : public ::testing::Test {
  protected:
-  /// As a run does: names first, then files.
+  /// Writes results as in a run: names first, then files.
   static void write_results(const RunDirectory& run, const std::string& text) {
     run.add({"scenario.json", "summary.json", "frames/", "frames/tire%1d_%06d.h5"});
     for (const char* name : {"scenario.json", "summary.json"}) write(run.path() / name, text);
@@ -141,7 +141,7 @@ TEST_F(RunFolderTest, one_run_at_a_time_has_it_until_its_last_process_ends) {
   const pid_t child = [&] {
     RunDirectory first("test", run_, false);
     write_results(first, "first");
-    const pid_t process = fork();  // as mpirun: it holds the folder when the supervisor is gone
+    const pid_t process = fork();  // like mpirun: it holds the folder after the supervisor has ended
     if (process == 0) {
       first.lock().share();
       pause();
@@ -253,7 +253,7 @@ TEST_F(RunFolderTest, results_come_back_when_a_run_is_killed_before_it_came_to_b
     const RunDirectory second("test", run_, true, run_ / "scenario.json");
     second.add({"run.log"});
     write(run_ / "run.log", "second");
-    _exit(0);  // nothing is tidied up
+    _exit(0);  // without cleaning up
   }
   waitpid(child, nullptr, 0);
   EXPECT_FALSE(fs::exists(run_ / "summary.json"));

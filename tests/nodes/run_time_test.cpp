@@ -1,4 +1,4 @@
-// The wall time of a run by the speed of a machine.
+// The wall time of a run from the speed of a machine.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -30,8 +30,8 @@ scenario::RunTime time_of(const char* name, Settings settings = {}, scenario::Ma
   return scenario::run_time(s, machine);
 }
 
-/// By hand: 25,000 steps; the tire 1.2 × 2 ms and 0.08 ms for its messages, the terrain less, together less than two
-/// cores' time of that.
+/// By hand: 25,000 steps. The tire takes 1.2 × 2 ms and 0.08 ms for its messages; the terrain takes less. Together they
+/// take less than two cores have in that time.
 TEST(RunTime, the_slowest_node_decides_where_there_are_cores_for_all) {
   const scenario::RunTime t = time_of("drawbar_pull_small_report_soil.json");
   EXPECT_NEAR(t.tire, 2.48e-3, 1e-9);
@@ -120,7 +120,7 @@ TEST(RunTime, ranks_of_one_core_share_the_grains_and_step_copies_of_their_neighb
   EXPECT_GT(four.step, 0.5 * one.terrain);  // on the machine's two cores
 }
 
-/// Within a factor of three of what runs had: 0.76 of the time in hmmwv_straight, 0.28 in hmmwv_small, 0.21 in
+/// Within a factor of three of measured runs: 0.76 of the time in hmmwv_straight, 0.28 in hmmwv_small, 0.21 in
 /// rover_small, none in drawbar_pull_small_report_soil.
 TEST(RunTime, hard_contacts_take_more_steps) {
   const auto between = [](double value, double low, double high) { return value >= low && value <= high; };
@@ -134,7 +134,7 @@ TEST(RunTime, hard_contacts_take_more_steps) {
   EXPECT_GT(straight.terrain, 0.6 * whole);
 }
 
-/// Runs with the moduli of 25 and 6 MPa ended after 1.6 and 0.2 s, those as shipped did not.
+/// Runs with moduli of 25 and 6 MPa ended after 1.6 and 0.2 s; with the shipped moduli they did not.
 TEST(GrainLoads, overlaps_that_end_a_run_are_foreseen_with_the_key_that_moves_them) {
   const auto bound = [](const char* name, Settings settings) {
     const scenario::Scenario s = scenario::load_scenario(data_folder() / "rigs" / name, settings);
@@ -160,7 +160,7 @@ TEST(RunTime, a_report_tells_it_where_it_is_known) {
   EXPECT_TRUE(holds(scenario::validation_text(s, &t), "\ntime         about "));
 }
 
-/// What was kept is taken, whatever it says; what is damaged is measured again and kept.
+/// A kept speed is used as it is; a damaged one is measured again and kept.
 TEST(MachineSpeed, is_kept_and_measured_again_when_damaged) {
   const testing::TemporaryFolder folder;
   const char* const set = std::getenv("XDG_CACHE_HOME");

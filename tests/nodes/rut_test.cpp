@@ -81,7 +81,7 @@ TEST(Rut, one_raised_row_of_cells_inside_the_rut_is_not_its_edge) {
   EXPECT_NEAR(rut.width, kTread, 0.02);
 }
 
-/// The error of its depth is that of these rows: one bed's own waves along the track.
+/// The error of its depth follows from these rows, the waves of one bed along the track.
 TEST(Rut, depth_is_the_mean_of_the_rows_along_the_track) {
   const HeightField before = flat(2.65, 0.02);
   const terrain::Rut rut = terrain::measure_rut(before, pressed(before, 0.5, 2.0, 0.01), forward());
@@ -114,13 +114,13 @@ TEST(Rut, is_not_measured_without_grains_or_before_the_wheel_has_left_one) {
   EXPECT_EQ(terrain::measure_rut(before, before, options).missing,
             "the axle travelled 0.5 m, and the rut is measured 0.3 to 0.55 m behind it");
   options = forward();
-  options.lateral = 10.0;  // where there are no cells
+  options.lateral = 10.0;  // outside the cells
   EXPECT_EQ(terrain::measure_rut(before, pressed(before, 0.5, 2.0), options).missing,
             "there are no grains where the tread went");
   EXPECT_EQ(terrain::measure_rut(before, before, options).missing, "the ground keeps no rut");
 }
 
-/// The rut of a wheel of 58 mm was looked for 0.3 m behind its axle, where it never went.
+/// Regression: the rut of a wheel of 58 mm was measured 0.3 m behind its axle, where the wheel never was.
 TEST(Rut, of_a_small_wheel_is_measured_close_behind_it) {
   const HeightField before = flat(2.65, 0.005);
   const HeightField after = pressed(before, 1.0, 1.15);

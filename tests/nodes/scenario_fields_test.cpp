@@ -1,4 +1,4 @@
-// Keys arrive in the fields of their names, and which of them count for the digest of a scenario.
+// Keys set the fields of their names; some count for the digest of a scenario.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The field's value after reading `given` in place of its default.
+/// The field's value after reading `given` instead of its default.
 template <class T>
 T read_one(const std::string& name, const json& given) {
   T values;
@@ -34,7 +34,7 @@ TEST(ScenarioFields, a_value_in_place_of_the_default_arrives_in_its_field) {
   EXPECT_EQ(read_one<tire::TireOptions>("friction", nullptr).friction, -1.0);
 }
 
-/// A key that a later version adds changes no digest of scenarios that do not state it, and no run that lacks it.
+/// A key of a later version does not change the digest of scenarios without it, or runs without it.
 TEST(ScenarioFields, a_key_that_is_the_default_counts_like_one_that_is_missing) {
   const testing::ScenarioFile file(testing::kSmallest);
   const scenario::Scenario s = file.load();

@@ -1,4 +1,4 @@
-// Scenario files on disk, for tests of what reads them.
+// Scenario files on disk, for tests of their readers.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ class ScenarioFile {
                           scenario::Purpose purpose = scenario::Purpose::run) const {
     return scenario::load_scenario(path_, settings, purpose);
   }
-  /// What load() complains of, without the name of the file complained of (this one); empty when it does not.
+  /// The error of load(), without the name of the file (this one); empty if there is none.
   std::string complaint(const std::vector<std::pair<std::string, std::string>>& settings = {},
                         const std::filesystem::path& file = {}) const {
     try {

@@ -1,4 +1,4 @@
-// The supervisor's two ears: lines of the ranks, and mpirun's own words.
+// The supervisor's two inputs: lines of the ranks, and mpirun's own messages.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -119,7 +119,7 @@ TEST(Progress, tells_time_pull_sinkage_speed_and_what_is_left) {
             "t 0.500 of 2 s   1:23 left   pull 1432 N   sinkage 31.2 mm   1.40 m/s");
   EXPECT_EQ(launch::progress_text({"running", 0.0001, 0.0, 2.0, 0.0, 0.0, 0.0, 9e9}),
             "t 0.000 of 2 s   pull 0 N   sinkage 0 mm   0 m/s");
-  // A wheel of a laboratory pulls with newtons and creeps.
+  // A laboratory's wheel pulls with a few newtons and moves slowly.
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, 2.534, 0.00712, 0.0141, -1.0}),
             "t 0.500 of 2 s   pull 2.53 N   sinkage 7.12 mm   0.0141 m/s");
   EXPECT_EQ(launch::progress_text({"running", 0.25, 0.5, 2.0, NAN, 0.00712, 1.4, 83.0, "gear 2"}),

@@ -1,4 +1,4 @@
-// What the loader makes of a scenario: defaults from the schema, settings, digests, starting places.
+// Loading of scenarios: defaults from the schema, settings, digests, starting places.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class Smallest : public ::testing::Test {
   const ScenarioFile file_{kSmallest};
 };
 
-/// The options as their structs default them; the schema must say the same. Those of rig, tire and run:
+/// The defaults of the options' structs must equal the schema's. Those of rig, tire and run are tested in
 /// scenario_fields_test.cpp.
 TEST(Scenario, defaults_of_the_schema_are_those_of_the_options) {
   const scenario::Scenario s = testing::ScenarioFile(testing::kSmallest).load();
@@ -89,7 +89,8 @@ TEST(Scenario, completed_text_is_a_scenario_that_gives_the_same_digest) {
   EXPECT_EQ(again.completed, s.completed);
 }
 
-/// The default of a ground's friction is none to a tire whose file has its own: what is stated decides, and is kept.
+/// A tire whose file has its own friction ignores the ground's default friction; a stated friction applies, and is
+/// kept.
 TEST(Scenario, friction_of_the_ground_counts_for_a_handling_tire_where_it_is_stated) {
   const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_handling.json"}, "terrain": {"engine": "rigid"}})");
   const scenario::Scenario open = file.load(), stated = file.load({{"terrain.friction", "0.9"}});
@@ -133,7 +134,7 @@ TEST_F(Smallest, a_load_in_newtons_is_the_load_of_the_wheel_and_stays_the_way_it
             ": key 'rig.load': is given beside 'rig.carrier_mass', expected one of the two");
 }
 
-/// A rim of 15 kg and a carrier of 450 kg stood on whatever wheel there was.
+/// Regression: every wheel got a rim of 15 kg and a carrier of 450 kg.
 TEST(Scenario, a_tire_file_without_a_rim_leaves_the_masses_to_the_scenario) {
   nlohmann::json tire = load_json(data_folder() / "tire" / "data" / "hmmwv_layered.json", "a tire");
   tire.erase("rim");
@@ -235,7 +236,7 @@ TEST(Scenario, soil_file_gives_values_that_the_scenario_may_replace) {
   EXPECT_EQ(s.terrain->grains()->friction, 0.7);
   EXPECT_EQ(s.terrain->grains()->size_spread, 0.2);
   EXPECT_EQ(testing::ScenarioFile(s.completed).load().digest, s.digest);
-  // On the command line what comes later wins.
+  // On the command line the later setting applies.
   const std::string quoted = '"' + name + '"';
   const testing::ScenarioFile own(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"friction": 0.7}})");
   EXPECT_EQ(own.load({{"terrain.material", quoted}}).terrain->grains()->friction, 0.4);
@@ -316,7 +317,7 @@ TEST(Scenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
   const testing::ScenarioFile grains(testing::kSmallest);
   const std::string name = '"' + soil.path().string() + '"';
   for (const std::string engine : {"dem", "scm"}) {
-    // Wherever the engine is chosen among the settings.
+    // The engine may be chosen at any place among the settings.
     for (const bool first : {true, false}) {
       std::vector<std::pair<std::string, std::string>> settings{{"terrain.material", name}};
       settings.insert(first ? settings.begin() : settings.end(), {"terrain.engine", engine});

@@ -16,7 +16,7 @@ inline std::filesystem::path tire_file(const std::string& name) {
   return std::filesystem::path(FURROW_SOURCE_FOLDER) / "tire" / "data" / name;
 }
 
-/// A scenario of one wheel whose rig and tire are open to change until it is made.
+/// A scenario of one wheel; its rig and tire can be changed until it is made.
 struct OneWheel : scenario::Scenario {
   rigs::DrawbarRigOptions wheel_rig = testing::reference_options();
   tire::TireOptions wheel_tire;

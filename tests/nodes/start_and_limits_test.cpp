@@ -1,4 +1,4 @@
-// Ranks that do not come, launchers that do not end, and limits of the system.
+// Ranks that do not start, launchers that do not end, and limits of the system.
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -106,7 +106,7 @@ TEST(EndWatch, knows_the_first_code_that_is_none_of_success) {
   EXPECT_EQ(watch.code(), ExitCode::stopped);
 }
 
-/// A process with a child that ends, and one that lives on where that is wanted; it takes notice of neither.
+/// A process with a child that ends and, on request, one that stays alive; it waits for neither.
 class Launcher {
  public:
   explicit Launcher(bool one_lives) : process_(fork()) {

@@ -36,7 +36,7 @@ TEST(Statistics, the_true_mean_lies_within_two_standard_errors_nineteen_times_in
     const auto s = output::statistics(autoregressive(0.9, 5.0, 900, 100 + i));
     inside += std::abs(s.mean - 5.0) <= 1.96 * s.sem;
   }
-  // 95 % of 400, less what an estimated standard error of about 47 independent samples loses
+  // 95 % of 400, less the loss from a standard error estimated with about 47 independent samples
   EXPECT_GE(inside, 360);
   EXPECT_LE(inside, 396);
 }

@@ -1,5 +1,5 @@
-// Rates of errors of what nodes/output says of a series, on many synthetic ones, as CSV: how often a drift is found in
-// stationary series, how often one that is there, and how far the standard error is from the true one.
+// Prints error rates of the statistics in nodes/output for many synthetic series, as CSV: how often a drift is found in
+// stationary and in drifting series, and how far the standard error is from the true one.
 //
 // usage: steadiness_rates [TRIALS]
 #include <algorithm>

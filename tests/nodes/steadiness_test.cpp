@@ -62,8 +62,7 @@ TEST(Steadiness, the_bounce_period_follows_from_what_tire_and_soil_give_under_th
   EXPECT_TRUE(output::unsteady_because({}, {}, small).empty());
 }
 
-/// On hard ground everything decays smoothly towards its limit: what is left at the end is found, but matters to
-/// nobody.
+/// On hard ground everything decays smoothly towards its limit: the rest at the end is found, but does not matter.
 TEST(Steadiness, small_drifts_and_few_samples_of_a_pull_that_hardly_varies_count_for_nothing) {
   output::SeriesStatistics pull, sinkage;
   pull.drift.found = sinkage.drift.found = true;

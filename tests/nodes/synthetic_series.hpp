@@ -1,8 +1,8 @@
-// Stationary series of known correlation, and what the tests of statistics make of many of them.
+// Stationary series of known correlation, and statistics of many of them.
 //
 //   autoregressive  x(i) = φ x(i−1) + ε: τ = (1 + φ)/(1 − φ) (Box & Jenkins, Time Series Analysis, chapter 3)
 //   moving average  x(i) = Σ ε over the last τ steps
-//   bouncing        x(i) = 2 a cos ω x(i−1) − a² x(i−2) + ε, a wheel on its tire: swings of a period, damped
+//   bouncing x(i) = 2 a cos ω x(i−1) − a² x(i−2) + ε, a wheel on its tire: damped oscillations
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace furrow::testing {
 
 using Series = std::vector<double>;
 
-/// Stationary from its first sample on, as all of them.
+/// Stationary from its first sample on, like all these series.
 inline Series autoregressive(double phi, std::size_t count, std::mt19937_64& engine) {
   std::normal_distribution<double> noise;
   double x = noise(engine) / std::sqrt(1.0 - phi * phi);
@@ -59,7 +59,7 @@ inline Series bouncing(double period, double damping, std::size_t count, std::mt
 /// A kind of series with n_eff independent samples among n.
 struct Process {
   const char* name;
-  double n_eff;  // nominal; 0: not known in closed form
+  double n_eff;  // nominal; 0: no closed form
   std::function<Series(std::mt19937_64&)> make;
 };
 
@@ -72,13 +72,13 @@ inline Process moving_average_of(double n_eff, std::size_t n) {
   return {"moving_average", n_eff, [=](std::mt19937_64& e) { return moving_average(length, n, e); }};
 }
 
-/// Ways to drift.
+/// Shapes of a drift.
 enum class Drift { line, step, decay };  // a decay falls to 1/e in a quarter of the window
 
 /// Adds a drift whose halves differ by `change`.
 inline void add_drift(Drift drift, double change, Series& samples) {
   const auto n = static_cast<double>(samples.size());
-  const double of_decay = 0.25 * std::pow(1.0 - std::exp(-2.0), 2);  // first half less second, each a mean, over 2
+  const double of_decay = 0.25 * std::pow(1.0 - std::exp(-2.0), 2);  // half the difference of the halves' means
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double at = (static_cast<double>(i) + 0.5) / n;
     samples[i] += change * (drift == Drift::line   ? 2.0 * at
@@ -87,7 +87,7 @@ inline void add_drift(Drift drift, double change, Series& samples) {
   }
 }
 
-/// What many series of one kind give.
+/// Statistics of many series of one kind.
 struct Trials {
   double true_sem = 0.0;  // standard deviation of their means
   std::vector<output::SeriesStatistics> each;
@@ -106,14 +106,14 @@ inline Trials run_trials(const Process& process, int trials, std::uint64_t seed)
   return result;
 }
 
-/// The test that was made before the one for drifts: halves within 2√2 standard errors of the whole window.
+/// The earlier test for drifts: halves within 2√2 standard errors of the whole window.
 inline bool halves_apart(const output::SeriesStatistics& s) {
   return std::abs(s.drift.change) > 2.0 * std::sqrt(2.0) * s.sem;
 }
 inline bool drift_found(const output::SeriesStatistics& s) { return s.drift.found; }
 
-/// Share of series in which a test finds the drift that was added to them, whose halves differ by `sigmas` times
-/// 2 · true_sem, the standard deviation of the difference of the halves.
+/// Share of series in which a test finds an added drift. Its halves differ by `sigmas` times 2 · true_sem, the standard
+/// deviation of the difference of the halves.
 template <class Test>
 double share_found(const Process& process, Drift drift, double true_sem, double sigmas, int trials, Test test) {
   std::mt19937_64 engine(2);

@@ -1,5 +1,5 @@
-// Tables of results: from one list of columns follow means, files, saved state and the way back; the rig adds columns
-// and subjects without any of these knowing of it.
+// Tables of results. Means, files, saved state and reading follow from one list of columns. The rig adds columns and
+// subjects without changes to these.
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -30,7 +30,7 @@
 
 namespace furrow {
 
-/// What a rig of these tests measures of its wheel and of itself.
+/// Measurements of these tests' rig, of its wheel and of itself.
 struct SpringRow {
   double spring_force = 0.0;  // N
   double heave = 0.0;         // m
@@ -149,8 +149,8 @@ TEST(ColumnLabels, are_units_and_words_for_readers_of_netcdf) {
   EXPECT_EQ(output::cell_methods(column::derived("heave_m", "m")), "");
 }
 
-/// Of reports in which no number is zero, every column of a line must be a number other than zero: one that
-/// SeriesBuilder forgets is not a number, or stays at zero.
+/// For reports in which no number is zero, every column of a line must be a number other than zero: a column that
+/// SeriesBuilder forgets is NaN or zero.
 TEST(WheelRow, every_column_is_measured_in_every_interval) {
   output::SeriesBuilder builder(0.5, 0.0, 1e-3);
   for (int n = 1; n <= 2; ++n) {
@@ -215,7 +215,7 @@ TEST(Table, a_full_disk_is_an_input_output_error_naming_the_file) {
   });
 }
 
-/// The limit on the size of a file stands for a disk that is full.
+/// A limit on the size of files imitates a full disk.
 TEST(Table, a_file_that_cannot_be_written_again_stays) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "timeseries.csv";
@@ -274,7 +274,7 @@ TEST(Table, goes_on_at_its_mark_bit_for_bit) {
   EXPECT_EQ(open_files(), before);
 }
 
-/// Over several blocks, the last of them not whole.
+/// Over several blocks, the last of them incomplete.
 TEST(KeptLines, give_back_lines_and_columns_bit_for_bit_and_leave_no_file) {
   const TemporaryFolder folder;
   constexpr std::size_t kLines = 3 * output::KeptLines::kBlock + 5, kColumns = 7;
@@ -333,7 +333,7 @@ TEST(LineBuilder, restores_by_name_what_another_order_of_columns_has_saved) {
   EXPECT_THROW(more.restore(archive, "x/"), Error);
 }
 
-/// A wheel and a vehicle as the rig's rank has them.
+/// A wheel and a vehicle as in the rig's rank.
 struct Series {
   explicit Series(const rigs::Rig& rig)
       : wheel(rig.subjects()[0], output::SeriesBuilder(0.5, 0.0, 1e-3)), vehicle(rig.subjects()[1]) {}

@@ -62,7 +62,7 @@ TEST(TerrainRanks, each_has_its_name_in_the_table_of_ranks) {
   EXPECT_EQ(scenario::rank_table(wheel_on_mat(1)).back().node, "terrain");
 }
 
-/// Runs `work` on each rank of a terrain of three, beside a rig and a tire that do nothing.
+/// Runs `work` on each rank of a terrain of three, with a rig and a tire that do nothing.
 std::vector<std::string> play(const std::function<void(Transport&, RankGroup&)>& work) {
   auto transports = make_in_process_transports(1, 3);
   std::vector<std::string> ends(3);
@@ -98,7 +98,7 @@ TEST(TerrainRanks, one_that_falls_silent_is_named) {
     group.gather({});
     group.broadcast({});
   });
-  // Either of the others may lose patience first: it has waited for the silent one, or for the one that waits for it.
+  // Either of the others may time out first: it has waited for the silent rank, or for the rank that waits for it.
   EXPECT_TRUE(holds(ends[0], "terrain 2 does not answer; raise run.peer_"));
 }
 

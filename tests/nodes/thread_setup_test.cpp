@@ -1,4 +1,4 @@
-// Who gets which cores: the plan is a pure function of the machine; applying it is checked on this machine.
+// Assignment of cores: the plan is a pure function of the machine; applying it is checked on this machine.
 #include "nodes/launch/thread_setup.hpp"
 #include "nodes/scenario/terrain_threads.hpp"
 #include "tests/refusal.hpp"
@@ -20,7 +20,7 @@
 namespace furrow {
 namespace {
 
-/// Rig, tires and one terrain that may all use the cores 0 … n − 1 of a machine with as many.
+/// Rig, tires and one terrain that may all use the cores 0 … n − 1 of a machine with n cores.
 launch::HostView machine(int cores, int tires = 1) {
   launch::HostView host;
   host.machine_cores = cores;
@@ -71,7 +71,7 @@ TEST(ThreadPlan, a_terrain_of_many_grains_shares_the_cores_of_many_tires) {
   EXPECT_EQ(plan_all(host).back().threads, 1);
   host.grains = 1'140'000;
   EXPECT_EQ(plan_all(host).back().threads, 2);
-  EXPECT_EQ(plan_all(host, 1).back().threads, 1);  // what the user wants
+  EXPECT_EQ(plan_all(host, 1).back().threads, 1);  // the user's choice
   host = machine(2, 1);
   host.grains = 1'140'000;
   EXPECT_EQ(plan_all(host).back().threads, 1);  // the tire leaves it half
@@ -152,11 +152,11 @@ TEST(ThreadPlan, a_run_on_the_one_core_that_it_was_started_on_hears_nothing_of_t
   for (HostNode& node : host.nodes) node.cores = {3};
   for (const launch::ThreadPlan& plan : plan_all(host)) EXPECT_EQ(plan.note, "");
   EXPECT_TRUE(holds(plan_all(host, 4)[2].note, "terrain runs 4 threads on 1 cores; fewer are faster"));
-  host.nodes = {host.nodes.back()};  // alone on its machine: srun gave it that core
+  host.nodes = {host.nodes.back()};  // alone on its machine: srun gave it this core
   EXPECT_TRUE(holds(plan_all(host)[0].note, "--cpus-per-task"));
 }
 
-// In a thread of its own: OpenMP gives it a team of its own, and this test's settings go with it.
+// In a separate thread: OpenMP gives it its own team, and this test's settings end with it.
 TEST(Apply, every_thread_flushes_denormals_and_is_bound) {
   std::thread([] {
     const std::vector<int> cores = allowed_cores();
@@ -191,7 +191,7 @@ TEST(Apply, a_plan_without_cores_leaves_the_process_where_it_may_run) {
   }).join();
 }
 
-// Run by the next test, in a process of its own.
+// The next test runs it in its own process.
 TEST(WaitPassively, DISABLED_child) {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> words;

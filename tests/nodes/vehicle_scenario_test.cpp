@@ -1,4 +1,4 @@
-// Scenarios of vehicles: whose tires they have, what decides their results, and what is refused.
+// Scenarios of vehicles: their tires, the keys and files that decide their results, and refusals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string complaint(const json& document, const Settings& settings = {}) {
 
 json vehicle_text(const char* name) { return json::parse(std::ifstream(data_folder() / "vehicle" / "data" / name)); }
 
-/// A scenario beside the file of its vehicle, mine.json.
+/// A scenario in the folder of its vehicle's file, mine.json.
 class OwnVehicle : public ScenarioFile {
  public:
   OwnVehicle(json scenario, const json& vehicle) : ScenarioFile(named(std::move(scenario))) { write(vehicle); }
@@ -101,7 +101,8 @@ TEST(VehicleScenario, completed_text_is_a_scenario_that_gives_the_same_digest_fr
   EXPECT_NE(load(document).digest, s.digest);
 }
 
-/// Files count by what they hold: the driver's is in the completed scenario, the vehicle's is named in full.
+/// Files count by their contents. The completed scenario contains the driver's file, and the full name of the vehicle's
+/// file.
 TEST(VehicleScenario, files_beside_the_scenario_are_found_and_decide_the_results) {
   json document = hmmwv();
   document["rig"]["driver"] = "mine.csv";
@@ -141,7 +142,7 @@ TEST(VehicleScenario, starts_clear_of_the_wall_and_says_when_the_bin_is_too_shor
     return warning.find("'run.end': the run will end before 1.5 s, where a tire is 0.4673 m") != std::string::npos;
   }));
   expect_complaint(": key 'terrain.width': is 1.5 m, expected at ", document, {{"terrain.width", "1.5"}});
-  // Places are those of the key, the vehicle's origin, not those of a wheel.
+  // Places in messages are those of the key, the vehicle's origin, and not of a wheel.
   expect_complaint(": key 'rig.start': is 1 m, expected 2.120 to 5.884 m: the tire of rear_left with radius ", document,
                    {{"rig.start", "1"}});
   EXPECT_EQ(complaint(document, {{"terrain.length", "3"}}),
@@ -198,7 +199,7 @@ TEST(VehicleScenario, locks_need_a_differential_that_has_one) {
             "with a lock_torque");
 }
 
-// Motors turn backward in gear -1 without a gearbox; without either nothing does.
+// In gear -1, motors turn backward without a gearbox; a gearbox needs a reverse gear.
 TEST(VehicleScenario, gear_minus_one_needs_motors_or_a_reverse_gear) {
   json document = hmmwv();
   document["rig"]["driver"] = {{"inputs", {{"gear", -1}}}};
@@ -287,7 +288,7 @@ TEST(VehicleScenario, wheels_of_one_vehicle_in_each_other_are_its_file_s_fault) 
             "or 0.05 m between their mid-planes");
 }
 
-/// A driver must not ask for what the vehicle lacks: it would be ignored.
+/// A driver must not use parts that the vehicle lacks: they would be ignored.
 TEST(VehicleScenario, pedals_and_steering_without_effect_are_refused) {
   const auto complains = [&](const json& car, const char* input) {
     json with = hmmwv();
@@ -307,7 +308,7 @@ TEST(VehicleScenario, pedals_and_steering_without_effect_are_refused) {
             "steering");
 }
 
-/// They are followed as well as it can be done, which is seldom what was meant.
+/// Such paths are followed as well as possible, which is rarely intended.
 TEST(VehicleScenario, paths_that_the_vehicle_cannot_follow_are_warned_of) {
   const auto warning = [](const json& path) {
     json document = hmmwv();
@@ -334,7 +335,7 @@ TEST(VehicleScenario, paths_that_the_vehicle_cannot_follow_are_warned_of) {
             "0.00 m");
 }
 
-/// What the vehicle's own file gets wrong is said with its name.
+/// Errors of the vehicle's own file are reported with its name.
 TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
   const OwnVehicle file(hmmwv(), {});
   const auto complains = [&](const char* pointer, const json& value) {
@@ -347,7 +348,7 @@ TEST(VehicleScenario, faults_of_the_vehicle_s_file_are_told_with_its_name) {
                   .starts_with(": key 'axles[0].wheel.tire': 'none.json' does not exist, expected a file at one of: "));
   EXPECT_EQ(complains("/driveline/gearbox/ratios/0", 0.0),
             ": key 'driveline.gearbox.ratios[0]': is 0, expected a number above zero");
-  // It cannot stand on wheels that all are in front of its centre of mass.
+  // It cannot stand if all wheels are in front of its centre of mass.
   const std::string falls = complains("/chassis/center_of_mass/0", -9.0);
   EXPECT_TRUE(holds(falls, "key 'rig.vehicle': is " + file.vehicle().string() + ", which cannot be used: "));
 }

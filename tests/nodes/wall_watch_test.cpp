@@ -1,4 +1,4 @@
-// A run ends before a wall: which wheels are near which wall.
+// A run ends before a wall: wheels near each wall.
 #include "nodes/ranks/wall_watch.hpp"
 
 #include <gtest/gtest.h>

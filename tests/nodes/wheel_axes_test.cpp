@@ -1,4 +1,4 @@
-// The tire's axes on the ground (ISO-W) against their closed forms, and the series' columns that are made with them.
+// The tire's axes on the ground (ISO-W) against their closed forms, and the series' columns in these axes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,10 +118,10 @@ TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_int
     // A force 30 mm behind the point under the axle: pneumatic trail.
     r.tire.contact.force = force;
     r.tire.contact.moment = Vec3(-0.03 * std::cos(toe), -0.03 * std::sin(toe), -0.46 - 1e-4).cross(force);
-    // What the terrain computes in the meantime, elsewhere, is no part of it.
+    // The terrain's later forces, at another place, do not count.
     r.contact.force = 2.0 * force;
     builder.add(r);
-    if (n == 1) builder.take();  // nothing came before it: its middle is not known
+    if (n == 1) builder.take();  // it has no predecessor, so its middle is not known
   }
   const output::WheelRow row = builder.take();
   const double c = std::cos(toe), s = std::sin(toe);

@@ -2,7 +2,7 @@
 //
 // Runs a deck through LIGGGHTS's library, one rank. Its `fix pull all external pf/callback 1 1` gets F_c along the line
 // of centres for every pair nearer than a diameter, added after the contact forces: the Coulomb limit is taken from the
-// elastic force, as with the engine's cohesion. LIGGGHTS's own cohesion models have no such law.
+// elastic force, as with the engine's cohesion. LIGGGHTS's own cohesion models do not have this law.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

@@ -41,7 +41,7 @@ terrain::dem::SolverCoefficients coefficients_of(const Job& job, const terrain::
     static_cast<terrain::dem::OwnLaw::Coefficients<double>&>(c) = mixed.of<terrain::dem::OwnLaw>();
     if (wall) c.cohesion_force = 0.0, c.friction = job.at("wall_friction");
     c.switches = job.at("switches").get<int>();
-    // m* in place of 2/7 m*.
+    // m* instead of 2/7 m*.
     if (job.at("damper_mass") == "full") c.shear_damping *= std::sqrt(3.5);
     return terrain::dem::ContactCoefficients(c);
   };
@@ -73,7 +73,7 @@ PeerBed::PeerBed(const Job& job)
   }
   if (at.empty()) throw io_error(file, "no grains could be read");
   solver_.place(at);
-  // The peers' velocity Verlet stands at whole steps: half a step of free fall lies between.
+  // The peers' velocity Verlet has velocities at whole steps: the difference is half a step of free fall.
   if (job.at("half_step_start"))
     for (int g = 0; g < solver_.grains().count; ++g)
       if (kind_[solver_.grains().id[g]] == kFree) solver_.grains().velocity[g].z = 0.5 * step_ * kStandardGravity;

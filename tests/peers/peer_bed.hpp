@@ -1,5 +1,5 @@
-// A bed of grains for comparisons with another program: the engine's solver as a job file describes it, and groups of
-// grains whose motion is imposed, which serve as rough plates.
+// A bed of grains for comparisons with another program: the engine's solver with the settings of a job file, and groups
+// of grains with imposed motion, which serve as rough plates.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ namespace furrow::peers {
 
 using Job = nlohmann::json;
 
-/// What the first column of the start positions says of a grain.
+/// The first column of the start positions: the kind of a grain.
 enum Kind : int { kFree = 0, kBase = 1, kLid = 2 };
 
 /// Grains that move as one rigid body without turning.
 struct Plate {
   int grains = 0;
-  Vec3 velocity = Vec3::Zero();  // of the coming step, m/s
+  Vec3 velocity = Vec3::Zero();  // of the next step, m/s
   Vec3 force = Vec3::Zero();     // of the other grains on it, last step, N
 };
 
@@ -33,7 +33,7 @@ class PeerBed {
   /// switches and damper_mass ("sliding": 2/7 m*, or "full": m*) of the law. Walls have no cohesion.
   explicit PeerBed(const Job& job);
 
-  /// One step; then `drive` may change the plates' velocities, from their forces, for this step's motion.
+  /// Makes one step. After the forces, `drive` may change the plates' velocities for this step's motion.
   /// @throws Error(physics) when a grain is lost
   void step(const std::function<void()>& drive = {});
 
@@ -42,7 +42,7 @@ class PeerBed {
   terrain::dem::GrainSolver& solver() { return solver_; }
   const terrain::dem::SolverCoefficients& coefficients() const { return solver_.coefficients(); }
   Plate& plate(Kind kind) { return plates_[kind]; }
-  /// x y z per grain in the order of the start file, appended to `out`, m.
+  /// Appends x y z of each grain in the order of the start file to `out`, m.
   void positions(std::vector<double>& out) const;
 
  private:

@@ -1,8 +1,8 @@
-// The engine's law `mindlin` with each of its differences from LIGGGHTS's `hertz` + `tangential history` on a switch.
+// The engine's law `mindlin` with a switch for each difference from LIGGGHTS's `hertz` + `tangential history`.
 //
-// Included ahead of the engine's own sources when they are compiled for the comparison (CMakeLists.txt): there it
-// is in the place of MindlinLaw, all else is the engine as it is. Its coefficients hold the sum of the switches in
-// addition; 0 is the engine's law itself, kAll that of LIGGGHTS 3.8.
+// For the comparison, it is included before the engine's own sources (CMakeLists.txt) and replaces MindlinLaw; the rest
+// of the engine is unchanged. Its coefficients also contain the sum of the switches; 0 is the engine's law, kAll the
+// law of LIGGGHTS 3.8.
 #pragma once
 
 #include "terrain/dem/contact/mindlin_law.hpp"
@@ -23,7 +23,7 @@ struct SwitchedLaw : MindlinLaw {
     kRescaleOnLoading = 1,  // spring = 8 G* √(R*δ) × displacement: rescaled by √(δ/δ_old) on loading too
     kPlainProjection = 2,   // turned by projection only, which shortens it
     kNoSpin = 4,            // not turned with the spin about the normal
-    kDamperApart = 8,       // the spring alone is cut at the limit, and where it is there is no damper
+    kDamperApart = 8,       // only the spring is cut at the limit, and if it is, there is no damper
     kLimitOfSize = 16,      // limit μ |F_e|: friction also while the damper pulls
     kAll = 31
   };

@@ -1,4 +1,4 @@
-// Structs in a saved state: by the names of their fields, never by position.
+// Structs in a saved state are restored by the names of their fields, not by position.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -54,7 +54,7 @@ void visit_fields(FieldsOf<Sample> auto& s, auto&& visit) {
   visit(s.path, Field{"path"});
 }
 
-/// The same as Point with its fields the other way round.
+/// Point with its fields in reverse order.
 struct LaterPoint {
   double y = 0.0, x = 0.0;
 };

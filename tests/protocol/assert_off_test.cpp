@@ -1,4 +1,4 @@
-// FURROW_ASSERT where assertions are off, whatever the build says. assert_test.cpp is its counterpart.
+// FURROW_ASSERT with assertions off in every build. assert_test.cpp is its counterpart.
 #ifndef NDEBUG
 #define NDEBUG
 #endif

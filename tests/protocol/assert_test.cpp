@@ -1,4 +1,4 @@
-// FURROW_ASSERT where assertions are on, whatever the build says. assert_off_test.cpp is its counterpart.
+// FURROW_ASSERT with assertions on in every build. assert_off_test.cpp is its counterpart.
 #ifdef NDEBUG
 #undef NDEBUG
 #endif

@@ -1,5 +1,4 @@
-// What tests ask of structs with a list of fields: whether no member was forgotten, and values that tell every number
-// from every other.
+// Checks of structs with a list of fields: that no member was forgotten, and values in which all numbers differ.
 #pragma once
 
 #include <string>
@@ -11,7 +10,7 @@
 
 namespace furrow::testing {
 
-/// Stands for a member of any type.
+/// Converts to a member of any type.
 struct Anything {
   template <class T>
   operator T() const;
@@ -41,7 +40,7 @@ std::vector<std::string> names_of() {
   return names;
 }
 
-/// Gives every number of a value another one, counting on from `next`; vectors get two elements.
+/// Gives every number in a value a different number, counting on from `next`; vectors get two elements.
 template <class T>
 void fill(T& value, int& next) {
   if constexpr (HasFields<T>) {
@@ -71,7 +70,7 @@ T filled() {
   return value;
 }
 
-/// All that a value holds, by name.
+/// Names and values of all numbers in a value.
 template <class T>
 Archive numbers_of(const T& value) {
   Archive archive;

@@ -1,4 +1,4 @@
-// The transport's promises, over the wire between threads.
+// The guarantees of the transport, over the wire between threads.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -17,7 +17,7 @@ constexpr Address kRig{Role::rig, 0}, kTire{Role::tire, 0}, kTerrain{Role::terra
 double wall_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 void sleep_for(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-/// Runs `work` on all nodes; what each ended with, as "4: text", empty when it ended well.
+/// Runs `work` on all nodes. @returns each node's error as "4: text", empty if there is none
 std::vector<std::string> play(int tires, const std::function<void(Transport&)>& work) {
   auto transports = make_in_process_transports(tires);
   std::vector<std::string> ends(transports.size());
@@ -161,13 +161,13 @@ TEST(TimeOut, says_who_waited_for_whom) {
   EXPECT_LT(wall_s() - start, 2.0);
 }
 
-// The rig waits for the terrain, which waits for the tire that says nothing: the tire is named.
+// The rig waits for the terrain, which waits for the silent tire: the error names the tire.
 TEST(TimeOut, names_the_node_at_the_end_of_a_chain_of_waiting) {
   const auto ends = play(1, [](Transport& t) {
     t.set_peer_timeout(t.self() == kRig ? 0.6 : 3.0);
     if (t.self() == kTerrain) receive<SurfaceMotion>(t, kTire);
     if (t.self() == kRig) {
-      sleep_for(1.0);  // by now the terrain has told that it waits
+      sleep_for(1.0);  // by now the terrain has reported that it waits
       receive<TerrainReport>(t, kTerrain);
     }
   });

@@ -1,5 +1,5 @@
-// The ranks of mpi_test.cpp: one program, one scene per first argument. Every rank prints what it saw to stdout and
-// ends with the code that a node of a real run would end with.
+// The ranks of mpi_test.cpp: one program, one scene per first argument. Every rank prints its observations to stdout
+// and ends with the exit code of a node in a real run.
 #include <dlfcn.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -55,7 +55,7 @@ SurfaceMotion motion_of(std::int64_t step, std::size_t vertices) {
   return motion;
 }
 
-/// What a run does at every synchronization: all send, all receive, all flush.
+/// The exchange of a run at every synchronization: all send, all receive, all flush.
 void exchange(Transport& t, std::int64_t step, std::size_t vertices) {
   const StepHeader header{step, 1e-4 * static_cast<double>(step)};
   if (t.self() == kRig) {
@@ -102,7 +102,7 @@ void ping(Transport& t) {
       t.role_communicator().value_or(0) > 0 ? "made" : "missing");
 }
 
-/// What Open MPI was begun with, and what it does in steps.
+/// Prints Open MPI's setting at the start, and its setting in steps.
 void yielding(Transport& t) {
   exchange(t, 0, 400);
   const auto* now = static_cast<const bool*>(dlsym(RTLD_DEFAULT, "opal_progress_yield_when_idle"));
@@ -131,8 +131,8 @@ bool is_stopped(int process) {
   throw Error(ExitCode::rank_lost, "test: process " + std::to_string(process) + " is gone");
 }
 
-/// After each exchange the tire stops, and the terrain wakes it when it has all of that exchange itself: if the tire's
-/// message moved only while the tire is in MPI, the terrain would wait for it until its time is out.
+/// After each exchange the tire stops, and the terrain wakes it once it has received the whole exchange. If the tire's
+/// message moved only while the tire is in MPI, the terrain would wait for it until the time-out.
 void sender_leaves(Transport& t) {
   t.set_peer_timeout(10.0);
   NodeCard card;
@@ -157,7 +157,7 @@ void one_fails(Transport& t) {
   exchange(t, 10, 4000);
 }
 
-/// The tire stops without a word.
+/// The tire stops without a message.
 void one_stops(Transport& t) {
   t.set_peer_timeout(2.0);
   exchange(t, 0, 4000);
@@ -165,7 +165,7 @@ void one_stops(Transport& t) {
   exchange(t, 1, 4000);
 }
 
-/// The tire stops, and the terrain fails: the rig must not wait for the tire on its way out.
+/// The tire stops, and the terrain fails: the rig must not wait for the tire when it ends.
 void one_fails_one_stops(Transport& t) {
   t.set_peer_timeout(3.0);
   exchange(t, 0, 400);

@@ -1,4 +1,4 @@
-// Ranks under mpirun: order and contents, failures, lost ranks, and how politely they wait. Starts mpirun itself.
+// Ranks under mpirun: order and contents, failures, lost ranks, and processor time while waiting. Starts mpirun itself.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -44,8 +44,8 @@ Outcome start_once(const std::string& scene, int ranks, const std::string& envir
   while (const std::size_t length = fread(piece, 1, sizeof piece, pipe)) outcome.output.append(piece, length);
   const int status = pclose(pipe);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  // Open MPI 4.1's mpirun itself at times dies of a signal on its way out, after it has said what the first rank to
-  // fail returned: that is what is tested.
+  // Open MPI 4.1's mpirun itself sometimes dies of a signal at its end, after it has reported the exit code of the
+  // first rank that failed. This report is tested.
   const std::size_t crash = outcome.output.find("PMIx_server_finalize");
   const std::size_t told = outcome.output.find("Exit code:");
   if (crash != std::string::npos && told < crash) outcome.exit_code = std::atoi(outcome.output.c_str() + told + 10);
@@ -53,8 +53,8 @@ Outcome start_once(const std::string& scene, int ranks, const std::string& envir
   return outcome;
 }
 
-/// Open MPI 4.1's mpirun at times hangs on its way out instead, after a rank has ended otherwise than with 0
-/// (nodes/launch/end_watch.hpp): that try does not count, once.
+/// Open MPI 4.1's mpirun sometimes hangs at its end instead, after a rank has ended with a code other than 0
+/// (nodes/launch/end_watch.hpp). Such a try is repeated once.
 Outcome start(const std::string& scene, int ranks = 3, const std::string& environment = "") {
   constexpr int kTimedOut = 124, kKilled = 137;  // what `timeout` returns
   const Outcome outcome = start_once(scene, ranks, environment);
@@ -132,7 +132,7 @@ TEST(Mpi, a_waiting_rank_leaves_its_core_alone) {
   EXPECT_LE(outcome.value("terrain", "wait_share"), 0.35);
 }
 
-/// What the user chose stays. 66 ranks on two cores took 50 s to begin where none yielded (start_of_ranks.csv).
+/// The user's choice is kept. 66 ranks on two cores took 50 s to start if none yielded (start_of_ranks.csv).
 TEST(Mpi, ranks_yield_while_they_are_set_up_and_not_in_steps) {
   const std::string variable = "OMPI_MCA_mpi_yield_when_idle=";
   const Outcome ours = start("yielding");
@@ -150,7 +150,7 @@ TEST(Mpi, long_waits_cost_next_to_nothing) {
   for (const char* rank : {"rig", "tire 0"}) EXPECT_LE(outcome.value(rank, "cpu_share"), 0.10) << outcome.output;
 }
 
-// Where processes may not read each other's memory a message moves only while both ends are in MPI. Without flush the
+// If processes may not read each other's memory, a message moves only while both ends are in MPI. Without flush the
 // terrain would wait for a tire that computes: their steps would add up (`flush` in protocol/README.md).
 TEST(Mpi, steps_overlap_even_where_senders_must_push) {
   const Outcome outcome = start("sender_leaves", 3, "OMPI_MCA_btl_vader_single_copy_mechanism=none");

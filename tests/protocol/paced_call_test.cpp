@@ -1,4 +1,4 @@
-// Progress of loops is told at once, then a few times a second, however short their rounds are.
+// Progress of loops is reported at once, then a few times a second, however short their rounds are.
 #include "protocol/core/paced_call.hpp"
 
 #include <gtest/gtest.h>

@@ -92,7 +92,7 @@ void expect_round_trip(const M& message) {
   EXPECT_NE(pack(M{}), bytes);
 }
 
-/// A message whose every number is another one arrives with each where it belongs.
+/// A message in which all numbers differ arrives with each number in its field.
 template <class M>
 void expect_every_field_arrives() {
   const auto message = testing::filled<M>();
@@ -158,7 +158,7 @@ TEST(Pack, no_list_forgets_a_member_of_its_struct) {
                      MassProperties, ContactMaterial, ContactSums, TerrainState, HeightField, TireDiagnostics>();
 }
 
-/// The report of a tire lists what its model says of itself in place of the struct that holds it.
+/// The report of a tire lists the model's own values instead of the struct that contains them.
 TEST(Pack, report_of_a_tire_lists_all_that_its_model_says) {
   const std::vector<std::string> names = testing::names_of<SpindleReport>();
   EXPECT_EQ(names.size(), testing::member_count<SpindleReport>() - 1 + testing::member_count<TireDiagnostics>());
@@ -212,7 +212,7 @@ std::size_t bytes_of(const T& value) {
   }
 }
 
-/// Nothing else crosses than the fields of the struct.
+/// Only the fields of the struct are sent.
 template <class M>
 void expect_fields_alone(const M& message) {
   EXPECT_EQ(pack(message).size(), bytes_of(message));

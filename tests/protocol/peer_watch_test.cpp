@@ -1,4 +1,4 @@
-// Who is named when a node does not answer, where messages arrive in an unfavourable order.
+// The node named in the error when a node does not answer and messages arrive in an unfavourable order.
 #include <deque>
 #include <memory>
 #include <utility>
@@ -71,8 +71,8 @@ class PeerWatches : public ::testing::Test {
   std::vector<std::unique_ptr<PeerWatch>> watches_;
 };
 
-// Both tires wait for the silent rig, the terrain waits for tire 0. Tire 1 loses patience; tire 0 hears of it and
-// leaves before the terrain does: the terrain must still know whom tire 0 waited for.
+// Both tires wait for the silent rig, the terrain waits for tire 0. Tire 1 times out; tire 0 is informed and ends
+// before the terrain. The terrain must still have the information that tire 0 waited for the rig.
 TEST_F(PeerWatches, WhoLeavesBecauseOfAFailureDoesNotHideWhomItWaitedFor) {
   waits(kTire0, kRig);
   waits(kTerrain, kTire0);

@@ -1,5 +1,5 @@
-// The tire's rigid-body mass rides on the rim, so that a wrench which arrives late holds no inertia: with a
-// tire of three times the rim's inertia, free spin-up and drop stay exact.
+// The rim carries the tire's rigid-body mass, so a wrench that arrives late contains no inertia. With a tire of three
+// times the rim's inertia, free spin-up and drop stay exact.
 #include <gtest/gtest.h>
 
 #include "protocol/core/constants.hpp"
@@ -19,8 +19,7 @@ TEST(AddedMass, free_spin_up_and_drop_are_exact_with_three_times_the_rims_inerti
                            .asDiagonal()
                            .toDenseMatrix();
   const auto rig = placed_rig(options, tire);
-  // A rigid tire in the air hands over its whole wrench less its own inertia and weight: nothing but the
-  // moment that somebody else applies to it.
+  // A rigid tire in the air exerts its whole wrench minus its own inertia and weight: only the external moment on it.
   const double moment = 5.0, total = 4.0 * options.rim_spin_inertia;
   for (int i = 1; i <= 2000; ++i) {
     advance(*rig, wrench(Vec3::Zero(), Vec3(0, moment, 0)), 1);
@@ -44,9 +43,8 @@ TEST(AddedMass, wheel_falls_along_its_slider_and_the_drive_holds_it_on_a_slope) 
   EXPECT_EQ(rig->report(0).gravity, options.gravity);
 }
 
-// The same with a tire that lags: it computes its complete wrench from the rim motion of the interval before
-// and subtracts its rigid-body part of the same interval, as the exchange does. The difference vanishes for a
-// rigid tire.
+// A lagging tire computes its complete wrench from the rim motion of the previous interval and subtracts its rigid-body
+// part of the same interval, as in the exchange. The difference vanishes for a rigid tire.
 TEST(AddedMass, a_lagged_complete_wrench_less_its_inertia_is_stable) {
   rigs::DrawbarRigOptions options = steady_options();
   options.mode = "free_rolling";

@@ -1,5 +1,5 @@
-// What holds for every rig: accounts close to the error of the step, a restored rig continues bit for bit, and what it
-// cannot use is refused by name.
+// Properties of every rig: accounts close to the error of the step, a restored rig continues bit for bit, and unusable
+// values are refused with their names.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 using namespace furrow::testing;
 using rigs::Rig;
 
-/// A ramp, a toe step, a camber and a damper: everything that the rig has, at once.
+/// A rig with all its parts: a ramp, a toe step, a camber and a damper.
 std::unique_ptr<Rig> drawbar(const std::string& mode, double move_from = 0.0) {
   rigs::DrawbarRigOptions options = reference_options();
   options.mode = mode;
@@ -97,8 +97,8 @@ class AllRigs : public ::testing::TestWithParam<RigCase> {
 };
 
 struct Ride {
-  double energy = 0.0, turnover = 0.0;  // left over; turned over, J
-  double momentum = 0.0;                // left over, of the tires' impulse
+  double energy = 0.0, turnover = 0.0;  // residual; turnover, J
+  double momentum = 0.0;                // residual, over the tires' impulse
   Ride(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
     energy = energy_residual(start, end);
     turnover = std::abs(end.tow_work) + std::abs(end.tire_work) + end.damper_loss;

@@ -139,7 +139,7 @@ TEST(Travel, mirrored_travel_mirrors_everything) {
   EXPECT_NEAR(measured(*forward, "drawbar_pull_N"), measured(*backward, "drawbar_pull_N"), 1e-6);
   EXPECT_NEAR(measured(*forward, "drawbar_pull_raw_N"), measured(*backward, "drawbar_pull_raw_N"), 1e-6);
   EXPECT_NEAR(f.drive_torque, b.drive_torque, 1e-7);
-  EXPECT_NEAR(f.lateral_force, -b.lateral_force, 1e-12);  // l lies on the other side
+  EXPECT_NEAR(f.lateral_force, -b.lateral_force, 1e-12);  // l is on the other side
   EXPECT_NEAR(f.slip, b.slip, 1e-9);
   EXPECT_NEAR(f.speed, b.speed, 1e-9);
   EXPECT_NEAR(f.spin, b.spin, 1e-9);
@@ -223,7 +223,7 @@ TEST(Steering, wheel_runs_straight_until_its_time_then_turns_smoothly_to_the_toe
   EXPECT_LT(rig->report(0).joint_drift, 1e-12);
 }
 
-/// As in a laboratory: the wheel is let down and stands until it moves, and moves as it would have from t = 0.
+/// As in a laboratory, the wheel is lowered and stands still until `move_from`, then moves as it would from t = 0.
 TEST(Phases, a_wheel_stands_until_move_from_and_moves_as_from_zero_after_it) {
   rigs::DrawbarRigOptions options = reference_options(), late = options;
   const int wait = 500, moving = 1000;

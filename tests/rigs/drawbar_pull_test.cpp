@@ -1,4 +1,4 @@
-// What the rig reports against the wrench it was given: pull, torque, lateral force.
+// The rig's report against its given wrench: pull, torque, lateral force.
 #include <gtest/gtest.h>
 
 #include <algorithm>

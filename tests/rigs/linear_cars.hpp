@@ -1,7 +1,7 @@
-// The linear cars for ride in closed form, which quarter car and half car are compared with.
+// Linear cars for ride in closed form, for comparison with quarter car and half car.
 //
-// Quarter car: body (b) and wheel (w) over each other on a spring and damper each, the road r under the wheel. Heights
-// count from rest on a level road:
+// Quarter car: body (b) above wheel (w), each on a spring and damper, with the road r under the wheel. Heights are
+// relative to rest on a level road:
 //   m_b ÿ_b = k (y_w − y_b) + c (ẏ_w − ẏ_b)
 //   m_w ÿ_w = −k (y_w − y_b) − c (ẏ_w − ẏ_b) + k_t (r − y_w) + c_t (ṙ − ẏ_w)                                 (1)
 // For r = Re(R e^{iωt}), with Z = k + iωc and Z_t = k_t + iωc_t,
@@ -11,9 +11,9 @@
 // with the nose down, front axle a ahead of the centre, rear axle b behind it; y_f = y − aθ, y_r = y + bθ:
 //   m ÿ = F_f + F_r,   J θ̈ = −a F_f + b F_r,   F_i = k_i (w_i − y_i) + c_i (ẇ_i − ẏ_i)
 //   m_i ẅ_i = −F_i + k_ti (r_i − w_i) + c_ti (ṙ_i − ẇ_i)                                                       (3)
-// as M q̈ + C q̇ + K q = (0, 0, Z_tf r_f, Z_tr r_r), q = (y, θ, w_f, w_r). Both wheels follow one road at the speed
-// v, so that r_r(t) = r_f(t − (a + b)/v): R_r = R_f e^{−iω(a + b)/v}. Where J = m a b, nothing couples y_f with y_r:
-// the half car is two quarter cars, of the bodies m b/(a + b) and m a/(a + b).
+// as M q̈ + C q̇ + K q = (0, 0, Z_tf r_f, Z_tr r_r), q = (y, θ, w_f, w_r). Both wheels follow one road at the speed v,
+// so that r_r(t) = r_f(t − (a + b)/v): R_r = R_f e^{−iω(a + b)/v}. If J = m a b, y_f and y_r are not coupled: the half
+// car is two quarter cars, with the bodies m b/(a + b) and m a/(a + b).
 //
 // M. Mitschke, H. Wallentowitz, Dynamik der Kraftfahrzeuge, Springer 2014, ch. 13 and 14,
 // doi:10.1007/978-3-658-05068-9.
@@ -32,7 +32,7 @@ struct QuarterCarParams {
   double tire_stiffness = 0.0, tire_damping = 0.0;  // N/m, N s/m
 };
 
-/// Of a road of amplitude 1, as complex factors.
+/// Response to a road of amplitude 1, as complex factors.
 struct QuarterCarResponse {
   std::complex<double> body, wheel;
 };
@@ -45,7 +45,7 @@ inline QuarterCarResponse quarter_car_response(const QuarterCarParams& car, doub
   return {tire * z / d, tire * body / d};
 }
 
-/// Wheel of a half car with what carries the body on it.
+/// Wheel of a half car with its suspension.
 struct HalfCarAxle {
   double distance = 0.0;                            // from the body's centre, a or b, m
   double wheel_mass = 0.0;                          // kg
@@ -59,7 +59,7 @@ struct HalfCarParams {
   HalfCarAxle front, rear;
 };
 
-/// Of (3): kg and kg m²; N s/m and N m s; N/m and N m.
+/// Matrices of (3): kg and kg m²; N s/m and N m s; N/m and N m.
 struct HalfCarMatrices {
   Eigen::Matrix4d mass, damping, stiffness;
 };
@@ -78,7 +78,7 @@ inline HalfCarMatrices half_car_matrices(const HalfCarParams& car) {
   return m;
 }
 
-/// Of a road of amplitude 1 under the front wheel, as complex factors.
+/// Response to a road of amplitude 1 under the front wheel, as complex factors.
 struct HalfCarResponse {
   std::complex<double> body;                   // at the centre
   std::complex<double> pitch;                  // rad/m

@@ -1,4 +1,4 @@
-// The masses and the damper of the rig of the 2016 SBEL report, for tests that need some rig.
+// The masses and the damper of the rig of the 2016 SBEL report, for tests that need a rig.
 #pragma once
 
 #include "rigs/drawbar_rig.hpp"

@@ -1,5 +1,5 @@
 // Quarter car and half car: the closed forms against each other and their limits, the rigs against the closed forms on
-// sines and on the heights of a road, what comes from the tires' files.
+// sines and on the heights of a road, values from the tires' files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Options standing_car() {
 
 QuarterCarOptions quarter() { return standing_car<QuarterCarOptions>(); }
 
-/// Unlike at front and rear, and coupled.
+/// A car with different front and rear, and coupled.
 HalfCarOptions half() {
   auto o = standing_car<HalfCarOptions>();
   o.wheelbase = 2.6, o.front_share = 0.55;
@@ -101,7 +101,8 @@ TEST(LinearHalfCar, follows_a_slow_road_and_filters_by_its_wheelbase) {
   const HalfCarResponse slow = half_car_response(kHalf, 1e-4, 0.0);
   EXPECT_LT(std::abs(slow.body - 1.0), 1e-6);
   EXPECT_LT(std::abs(slow.pitch), 1e-6);
-  // Alike at front and rear: half a wave between the axles does not heave the body, a whole one does not pitch it.
+  // With equal front and rear, half a wave between the axles does not heave the body, and a whole wave does not pitch
+  // it.
   HalfCarParams car = kHalf;
   car.rear = car.front;
   const double omega = 2.0 * pi * 3.0;
@@ -110,7 +111,7 @@ TEST(LinearHalfCar, follows_a_slow_road_and_filters_by_its_wheelbase) {
   EXPECT_GT(std::abs(half_car_response(car, omega, pi / omega).pitch), 0.01);
 }
 
-/// A step on linear tires that know of the road only its height and its rate under the wheels' centres.
+/// A step on linear tires that depend only on the road's height and its rate under the wheels' centres.
 using Road = std::function<std::array<double, 2>(double time)>;
 void step_on_springs(Rig& rig, const std::vector<HalfCarAxle>& axles, const Road& front, double delay, double t,
                      double h) {
@@ -125,7 +126,7 @@ void step_on_springs(Rig& rig, const std::vector<HalfCarAxle>& axles, const Road
   ASSERT_TRUE(rig.advance(wrenches, h, 1).ok);
 }
 
-/// Amplitude and phase of what is read, on a sine after the free motion has died out, by Fourier's integral over a
+/// Amplitude and phase of the readings on a sine, after the free motion has died out, by Fourier's integral over a
 /// period.
 template <std::size_t n>
 std::array<std::complex<double>, n> driven(Rig& rig, const std::vector<HalfCarAxle>& axles, double hertz, double delay,
@@ -181,7 +182,7 @@ TEST(HalfCar, follows_the_transfer_function_of_the_linear_half_car) {
   }
 }
 
-/// (3) of linear_cars.hpp by Runge and Kutta's rule on the heights of a road: what the rig must do on the same heights.
+/// (3) of linear_cars.hpp by the Runge–Kutta method on the heights of a road; the rig must agree on the same heights.
 TEST(HalfCar, on_the_heights_of_a_road_does_what_the_linear_equations_do) {
   const HalfCarParams car = kHalf;
   const double delay = 0.21, h = 4e-4;
@@ -272,7 +273,7 @@ MountedTire tire() {
   return t;
 }
 
-/// What both cars leave to their tires, on `count` of them.
+/// Parameters that both cars take from their `count` tires.
 template <class Options, class Mount>
 void expect_filled_in(int count, const Mount& mount) {
   const Options full = mount(Options(), tire());

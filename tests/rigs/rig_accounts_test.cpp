@@ -32,7 +32,7 @@ TEST(RigAccounts, of_an_axle_that_is_held_close_and_its_rail_bears_what_the_tire
   EXPECT_NEAR(rig->rim(0).position.z(), height, 1e-12);
   EXPECT_NEAR(rig->report(0).vertical_speed, 0.0, 1e-12);
   const rigs::RigAccounts end = rig->accounts();
-  // At rest in z, guide and tire carry the weight together; what the guide gave while the axle fell is before that.
+  // At rest in z, guide and tire carry the weight together; the guide's impulse during the fall was before that.
   EXPECT_NEAR((end.guide_impulse + end.gravity_impulse + end.tire_impulse - held.guide_impulse - held.gravity_impulse -
                held.tire_impulse)
                   .z(),

@@ -1,4 +1,4 @@
-// A drawbar rig with a tire's mass on it, placed at half a metre.
+// A drawbar rig with a tire's mass, placed at a height of half a metre.
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ inline void advance(rigs::Rig& rig, const Wrench& wrench, int count, double step
 
 inline Wrench wrench(const Vec3& force, const Vec3& moment = Vec3::Zero()) { return {force, moment}; }
 
-/// Full speed from the start, no touch-down damper.
+/// Options with full speed from the start and no touch-down damper.
 inline rigs::DrawbarRigOptions steady_options() {
   rigs::DrawbarRigOptions options = reference_options();
   options.ramp = 0.0;

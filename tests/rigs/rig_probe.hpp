@@ -1,4 +1,4 @@
-// What tests ask of a rig, whatever its kind.
+// Values of any rig, for tests.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace furrow::testing {
 
-/// What a rig measures of a subject beside the report of every wheel, by the name of its column.
+/// A rig's measurement of a subject, in addition to the report of every wheel, by the name of its column.
 inline double measured(const rigs::Rig& rig, int subject, std::string_view column) {
   const rigs::Subject of = rig.subjects().at(subject);
   std::vector<double> values(of.columns.size());
@@ -18,12 +18,12 @@ inline double measured(const rigs::Rig& rig, int subject, std::string_view colum
 }
 inline double measured(const rigs::Rig& rig, std::string_view column) { return measured(rig, 0, column); }
 
-/// What the accounts leave over between two reports, J.
+/// Residual of the energy accounts between two reports, J.
 inline double energy_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
   return end.drive_work + end.tow_work + end.guide_work + end.tire_work - (end.stored() - start.stored()) -
          end.damper_loss;
 }
-/// The same of momentum, N s.
+/// Residual of the momentum accounts between two reports, N s.
 inline Vec3 momentum_residual(const rigs::RigAccounts& start, const rigs::RigAccounts& end) {
   return end.momentum - start.momentum - end.gravity_impulse - end.guide_impulse - end.tire_impulse;
 }

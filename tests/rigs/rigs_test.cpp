@@ -1,4 +1,4 @@
-// The table of rigs: what reads a section, and that descriptions are true of the rigs that are made.
+// The table of rigs: readers of sections, and agreement of descriptions with the rigs made.
 #include "rigs/rigs.hpp"
 
 #include <gtest/gtest.h>
@@ -24,10 +24,10 @@ constexpr double kTireMass = 4.0;  // kg
 constexpr double kGravity = 9.81;  // m/s²
 
 rigs::MountedTire bare_tire() { return {kRadius, kTireMass, {}, "tire.json"}; }
-/// Of a file that says everything of its rim.
+/// A tire whose file states all properties of its rim.
 rigs::MountedTire tire_on_rim() { return {kRadius, kTireMass, {15.0, 0.7, 0.4, 450.0}, "tire.json"}; }
 
-/// The rig on tires that are all alike.
+/// The rig on equal tires.
 std::unique_ptr<rigs::RigSpec> mounted_rig(const json& section, const rigs::MountedTire& tire = tire_on_rim()) {
   auto rig = rigs::read_rig(section, kContext);
   rig->mount(std::vector<rigs::MountedTire>(rig->wheel_count(), tire));
@@ -131,7 +131,7 @@ TEST(Rigs, a_wheel_takes_the_room_of_a_disc_that_turns_and_leans) {
     EXPECT_EQ(d.toe_angle, sign * toe);
     EXPECT_EQ(d.camber_angle, sign * camber);
   }
-  // Turned sideways later, it still stands straight at first.
+  // It is turned sideways later, but straight at first.
   EXPECT_EQ(only_wheel({{"toe_angle", 1.4}, {"toe_time", 1.0}}).along, kRadius);
 }
 
@@ -174,7 +174,7 @@ TEST(Masses, a_load_below_the_weight_of_rim_and_tire_says_the_least) {
   EXPECT_TRUE(told.starts_with("test.json: key 'rig.load': is 24.5 N, expected above 186.39 N: ")) << told;
 }
 
-/// A car's masses under a wheel of a laboratory were silent before.
+/// Regression: a laboratory's wheel got a car's masses without a message.
 TEST(Masses, what_neither_scenario_nor_tire_file_says_is_asked_for_by_its_keys) {
   std::string told = complaint({{"slip", 0.1}}, bare_tire());
   EXPECT_TRUE(

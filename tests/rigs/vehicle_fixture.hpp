@@ -1,4 +1,4 @@
-// Vehicle rigs on simple tires: a linear spring and damper upward, and along the ground a force that follows the slip.
+// Vehicle rigs on simple tires: a linear spring and damper upward, and a force along the ground that follows the slip.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,8 @@ inline vehicle::VehicleSpec shipped_vehicle(const std::string& name) {
   return vehicle::read_vehicle(data_folder() / "vehicle" / "data" / name);
 }
 
-/// Let down at 0.39 m/s for 0.35 s unless `lowering` says otherwise. @param driver as in a driver's file, null: parked
+/// A plan in which the vehicle is lowered at 0.39 m/s for 0.35 s, or as in `lowering`. @param driver as in a driver's
+/// file, null: parked
 inline rigs::VehicleRigPlan vehicle_plan(const std::string& file, nlohmann::json driver = nullptr,
                                          double lowering = 0.39) {
   rigs::VehicleRigPlan plan;

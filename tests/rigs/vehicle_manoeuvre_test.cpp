@@ -1,4 +1,4 @@
-// Vehicles that start at speed, follow paths as cars do, and lose the ground.
+// Vehicles that start at speed, follow paths, and lift wheels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,7 +66,7 @@ TEST(StartAtSpeed, a_rover_with_motors_rolls_in_any_order_of_wheels) {
   for (int k = 0; k < rig->wheel_count(); ++k) EXPECT_NEAR(rig->rim(k).angular_velocity.y(), 0.2 / 0.058, 1e-6) << k;
 }
 
-// Margins are what is left beside the vehicle in lanes that are 1.1 to 1.3 of its width and 25 cm wide.
+// Margins are the space beside the vehicle in lanes of 1.1 to 1.3 of its width plus 25 cm.
 TEST(LaneChange, preview_stays_in_its_lanes_where_pure_pursuit_leaves_them) {
   const auto drive = [](const json& steering) {
     const Track track = road();
@@ -83,8 +83,8 @@ TEST(LaneChange, preview_stays_in_its_lanes_where_pure_pursuit_leaves_them) {
   EXPECT_LT(figure(*pursuit, "lane_margin_least_m"), -0.1);
 }
 
-// With the higher centre of mass it leans until wheels on the inner side carry nothing; what was found continues after
-// a restart.
+// With the higher centre of mass it leans until wheels on the inner side carry no load; the event is kept after a
+// restart.
 TEST(WheelLift, is_noticed_and_kept) {
   const json driver = {{"inputs", {{"steering", json::array({{0, 0}, {0.5, 0}, {0.8, 1}})}, {"gear", 2}}}};
   rigs::VehicleRigPlan plan = vehicle_plan("hmmwv_tr.json", driver);

@@ -15,7 +15,7 @@ struct Case {
   const char* name;
   json driver;
   double time = 0.0;        // of the save, s
-  const char* column = "";  // of the vehicle, that tells that it is so
+  const char* column = "";  // of the vehicle, that shows this state
   double least = 0.0, most = 0.0;
 };
 
@@ -78,7 +78,7 @@ TEST(RutTrace, is_found_within_half_its_width_and_survives_a_round_trip) {
 TEST(RutTrace, a_wheel_that_follows_is_measured_against_the_rut_before_it) {
   Track track;
   const auto rig = track.rig(vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.5}}}}));
-  // Every tire stands 30 mm deep; the rear ones meet the front ones' rut after 3.3 m.
+  // Every tire is 30 mm deep; the rear tires reach the front tires' rut after 3.3 m.
   const auto deep = [&] {
     for (int k = 0; k < 4; ++k) rig->observe(k, k < 2 ? -0.03 : -0.036, 0.0);
   };

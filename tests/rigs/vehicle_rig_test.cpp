@@ -1,4 +1,4 @@
-// A vehicle as a rig: it stands as its trim says, stays where it is braked, and drives as its engine can.
+// A vehicle as a rig: it stands in its trim, stays in place when braked, and accelerates according to its engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,8 +71,9 @@ TEST(VehicleRig, parked_settles_to_the_loads_of_its_trim_and_stays) {
   }
 }
 
-// In the lowest gear: T = T_t/i is what the turbine gives the wheels through the ratio i of wheel to turbine, T_t the
-// converter's torque at the speeds of crank and wheels. It accelerates the mass and what turns with the wheels:
+// In the lowest gear: T = T_t/i is the turbine's torque on the wheels through the ratio i of wheel to turbine, T_t the
+// converter's torque at the speeds of crank and wheels. It accelerates the mass and the parts that turn with the
+// wheels:
 //   T = m a r + J α,  r the radius under load.
 TEST(VehicleRig, accelerates_as_engine_and_converter_say) {
   rigs::VehicleRigPlan plan = vehicle_plan("hmmwv.json", {{"inputs", {{"throttle", 0.4}, {"gear", 1}}}});
@@ -132,8 +133,8 @@ TEST(VehicleRig, shifts_by_itself_and_holds_the_gear_that_its_driver_asks_for) {
   EXPECT_NEAR(held->live().speed, of_vehicle(*held, "speed_m_s"), 0.0);
 }
 
-// The rear right wheel stands on ice. Without a lock it spins; locked, both outputs turn alike, or the clutch between
-// them slips and moves its torque from one to the other.
+// The rear right wheel stands on ice. Without a lock it spins. With a lock both outputs turn equally, or the clutch
+// between them slips and moves its torque from one to the other.
 TEST(VehicleRig, locks_its_differentials_while_its_driver_says_so) {
   Track road, ice;
   ice.friction = 0.02;
@@ -171,8 +172,8 @@ TEST(VehicleRig, locks_its_differentials_while_its_driver_says_so) {
   EXPECT_NEAR(torque, 2.0 * 100.0, 10.0);
 }
 
-// The brakes hold the wheels that the locks hold together: what each takes of the torque follows from the locks' creep.
-// A lock that is too weak slips and carries its torque across.
+// The brakes hold wheels that are locked together: the locks' creep determines each brake's share of the torque. A lock
+// that is too weak slips and transmits its torque.
 TEST(VehicleRig, locked_axles_turn_alike_when_they_are_braked_on_two_frictions_until_they_stand) {
   Track grip, ice;
   ice.friction = 0.2;
@@ -250,13 +251,13 @@ TEST(VehicleRig, a_braked_wheel_slips_and_the_vehicle_stops) {
   EXPECT_GT(speed, 3.0);
   track.drive(*rig, 0.3);
   EXPECT_LT(measured(*rig, 0, "brake_torque_Nm"), -1000.0);
-  EXPECT_LT(rig->report(0).slip, slip - 0.02);  // against the undeformed radius it is not zero at rolling
+  EXPECT_LT(rig->report(0).slip, slip - 0.02);  // relative to the undeformed radius, it is not zero in rolling
   track.drive(*rig, 4.0);
   EXPECT_LT(std::abs(of_vehicle(*rig, "speed_m_s")), 0.02);
   EXPECT_GT(of_vehicle(*rig, "brake_heat_J"), 0.3 * 2441.9 * speed * speed / 2.0);
 }
 
-// The tires' inertia is the rig's: in the air, everything falls together.
+// The rig has the tires' inertia: in the air, everything falls together.
 TEST(VehicleRig, falls_freely_with_its_tires_masses) {
   const Track track;
   const auto rig = track.rig(vehicle_plan("hmmwv.json", nullptr, 0.0), 2.0);
@@ -292,7 +293,7 @@ TEST(VehicleRig, rover_drives_on_its_motors_on_six_rigid_wheels) {
   EXPECT_GT(of_vehicle(*rig, "drive_work_J"), 0.0);
 }
 
-// The engine's work is in the vehicle's motion, in what the driveline, brakes and shocks took, and in the tires.
+// The engine's work goes into the vehicle's motion, the losses of driveline, brakes and shocks, and the tires.
 TEST(VehicleRig, accounts_of_energy_and_momentum_close) {
   const json driver = {{"inputs",
                         {{"throttle", json::array({{0, 0}, {0.5, 1}, {4, 1}, {4.01, 0}})},

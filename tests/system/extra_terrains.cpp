@@ -1,4 +1,4 @@
-// furrow_faults has one terrain more than furrow: the mat of several ranks. It takes the place of
+// furrow_faults has one terrain more than furrow: the mat of several ranks. This file replaces
 // terrain/extra_terrains.cpp.
 #include "terrain/extra_terrains.hpp"
 

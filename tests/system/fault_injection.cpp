@@ -50,7 +50,7 @@ void fire(const std::string& action) {
   for (int i = 0; action == "wait" && i < 6000 && access(mark, F_OK) == 0; ++i) usleep(10000);
 }
 
-/// The action that is due now, done; or nothing.
+/// Performs the action that is due now, if there is one.
 std::string come_to(const char* name) {
   static Fault fault;
   if (!(fault.count > 0 && fault.point == name && --fault.count == 0)) return {};

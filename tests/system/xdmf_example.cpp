@@ -1,4 +1,4 @@
-// Writes frames of known contents and their index into the folder given: what xdmf_vtk_test.py reads back.
+// Writes frames of known contents and their index into the given folder, for xdmf_vtk_test.py to read.
 //   3 instants; tire 0: 12 vertices, 20 triangles (an icosahedron that rolls); terrain: 30 grains
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Grains that sleep: nothing wakes late, and what wakes moves as if it had never slept.
+// Grains that sleep: none wakes late, and a woken grain moves as if it had never slept.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -137,7 +137,7 @@ TEST(Activity, mean_contact_force_has_the_same_bits_after_a_restart_between_two_
   EXPECT_EQ(hash_of(solver), hash_of(again));
 }
 
-// Strips that sleep beside sleepers are not evaluated: what they count must be in the saved state.
+// Sleeping strips between sleeping strips are not evaluated, so their sums must be in the saved state.
 TEST(Activity, sums_have_the_same_bits_after_a_restart_of_a_bed_that_sleeps) {
   const DemOptions options = bed_options(5e3);
   GrainSolver solver = solver_of(options, settled_bed(options), true);

@@ -1,4 +1,4 @@
-// Beds of a few hundred grains, each test with a cache of its own.
+// Beds of a few hundred grains; each test has its own cache.
 #pragma once
 
 #include <gtest/gtest.h>

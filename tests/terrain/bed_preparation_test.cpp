@@ -1,4 +1,4 @@
-// Beds by generator, from a user's positions, compacted; and what is said of them.
+// Beds from the generator, from a user's positions, and compacted, with their messages.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,8 +53,8 @@ TEST(BedStatistics, two_touching_spheres_by_hand) {
   EXPECT_NEAR(s.solid_fraction * 0.2 * 0.1 * s.depth, 3.0 * sphere - lens_volume(r, r, d), 1e-12);
 }
 
-/// The middle of this bed (1 m deep) is 0.5 × 0.5 × 0.5 m, at x = 0.25 to 0.75: a grain in it counts whole, one on its
-/// side by half, two that overlap once.
+/// The middle of this bed (1 m deep) is 0.5 × 0.5 × 0.5 m, at x = 0.25 to 0.75: a grain in it counts fully, a grain on
+/// its boundary by half, and the overlap of two grains once.
 TEST(BedStatistics, the_middle_counts_what_of_a_grain_is_in_it) {
   const double r = 0.04, sphere = 4.0 / 3.0 * std::numbers::pi * r * r * r;
   const Bin bin{1.0, 1.0, false, false};
@@ -189,7 +189,7 @@ TEST_F(Beds, have_the_solid_fraction_that_is_asked_for_with_the_friction_of_the_
     solver.restore(bed.bed);
     const DemOptions same = level(options_);
     EXPECT_LT(std::abs(solid_fraction_under_weight(solver, same, {}) - found.solid_fraction_bulk), 0.005);
-    // As found, it is had at once.
+    // With the settings found before, the same bed results at once.
     const auto& laid = bed.bed.get<double>("bed/packing", 3);
     DemOptions as = options_;
     as.settling_friction = laid[0], as.settling_cohesion = laid[1], as.settling_drag = laid[2];
@@ -204,7 +204,7 @@ TEST_F(Beds, have_the_solid_fraction_that_is_asked_for_with_the_friction_of_the_
   EXPECT_TRUE(holds(refusal(), "terrain.compaction_pressure"));
 }
 
-/// At rest by forces and energy, whatever the number of contacts.
+/// At rest by forces and energy, for any number of contacts.
 TEST_F(Beds, one_grain_a_row_and_columns_come_to_rest) {
   options_.cache = false;
   options_.cohesion = 0.0;
@@ -223,7 +223,7 @@ TEST_F(Beds, one_grain_a_row_and_columns_come_to_rest) {
   EXPECT_TRUE(settled(columns).settled);
 }
 
-/// A grain in the air is not at rest, though it stands still: nothing holds it.
+/// A motionless grain in the air is not at rest: nothing holds it.
 TEST_F(Beds, falling_grains_are_not_at_rest) {
   options_.cache = false;
   options_.bed = write("high.csv", "x_m,y_m,z_m\n0.15,0,0.3\n");
@@ -232,7 +232,7 @@ TEST_F(Beds, falling_grains_are_not_at_rest) {
   EXPECT_FALSE(settle(solver, options_, {}, 0.1).settled);
 }
 
-/// No side is left: grains lean on those that stand at the other side, as if the bed continued.
+/// There are no sides: grains lean on grains at the other side, as if the bed continued.
 TEST_F(Beds, periodic_sides_hold_each_other) {
   const PreparedBed walled = prepare_bed(options_, {});
   const BedStatistics between_walls = statistics_of(walled);
@@ -313,7 +313,7 @@ TEST_F(Beds, positions_of_a_file_are_settled_and_kept) {
   EXPECT_TRUE(first.settled.settled);
   EXPECT_EQ(statistics_of(first).grains, 4 * 13 * 8);
   EXPECT_EQ(estimate_dem_terrain(options_).grains, 4 * 13 * 8);
-  // Another file of that name is another bed.
+  // A file with the same name and other contents is another bed.
   const std::string digest = bed_digest(options_);
   write("mine.csv", text + "0.15,0,0.12\n");
   EXPECT_NE(bed_digest(options_), digest);
@@ -336,7 +336,7 @@ TEST_F(Beds, bad_positions_are_refused_by_line) {
   }
   options_.bed = write("bad.csv", "x,y,z\n0.1,0,0.05\n");
   EXPECT_TRUE(holds(refusal(), "expected the header x_m,y_m,z_m"));
-  // Of a file that is no bed only the beginning is shown.
+  // Of a file that is not a bed, only the beginning is shown.
   options_.bed = write("bad.csv", "root:x:0:0:root:/root:/bin/bash and more that is nobody's business\n");
   EXPECT_TRUE(holds(refusal(), "line 1': 'root:x:0:0:root:/root:/bin/…', expected"));
   for (const std::string& text : {"x_m,y_m,z_m\n0.1,0," + std::string(5000, '0') + "1\n", std::string(1 << 20, 'x')}) {
@@ -349,7 +349,7 @@ TEST_F(Beds, bad_positions_are_refused_by_line) {
   EXPECT_TRUE(holds(refusal(), "is empty"));
 }
 
-/// One upon the other, and high above a floor that is far away.
+/// Grains on top of each other, high above the floor.
 TEST_F(Beds, grains_may_stand_high_when_others_stand_below) {
   std::string text = "x_m,y_m,z_m";
   for (int k = 0; k < 200; ++k) text += "\n0.1,0," + std::to_string(0.02 + 0.02 * k);
@@ -361,7 +361,7 @@ TEST_F(Beds, grains_may_stand_high_when_others_stand_below) {
   EXPECT_THROW(check_positions(options_, file, grains), Error);
 }
 
-/// A bed whose checksum fits, but whose lists name grains that there are not.
+/// A bed with a valid checksum whose lists contain grains that do not exist.
 TEST_F(Beds, a_bed_that_does_not_hold_together_is_refused_by_file_and_array) {
   options_.bed = write("mine.csv", "x_m,y_m,z_m\n0.05,0,0.02\n0.1,0,0.02\n0.15,0,0.02\n");
   const Archive bed = prepare_bed(options_, {}).bed;
@@ -383,7 +383,7 @@ TEST_F(Beds, a_bed_that_does_not_hold_together_is_refused_by_file_and_array) {
   EXPECT_TRUE(holds(told(forged), "holds a tire besides its grains"));
 }
 
-/// The same in the cache, where the next run settles it anew: with a warning, and with the same result.
+/// Such a bed in the cache: the next run prints a warning and settles the bed again, with the same result.
 TEST_F(Beds, a_cached_bed_that_does_not_hold_together_is_settled_anew_and_replaced) {
   const auto load = [&](bool refused) {
     std::string warnings;

@@ -1,4 +1,4 @@
-// Beds put together of copies of a settled piece.
+// Beds assembled from copies of a settled piece.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,7 +98,7 @@ class Tiled : public SmallBeds {
     solver.restore(bed.bed);
     return positions_by_id(solver);
   }
-  /// Those of the piece that the bed is put together of.
+  /// Grains of the piece from which the bed is assembled.
   std::vector<Quad> piece() const { return positions(prepare_bed(piece_of(options_), {}), piece_of(options_)); }
   BedStatistics statistics(const std::vector<Quad>& grains, const DemOptions& o) const {
     return bed_statistics(grains, solver_params(o).bin, o.radius);
@@ -118,7 +118,7 @@ TEST_F(Tiled, bed_rests_and_is_as_dense_as_one_settled_whole) {
   EXPECT_NEAR(a.solid_fraction_bulk, b.solid_fraction_bulk, 0.03 * b.solid_fraction_bulk);
   EXPECT_NEAR(a.coordination, b.coordination, 0.05 * b.coordination);
   EXPECT_LE(a.max_overlap, 1.1 * b.max_overlap);
-  // Around the seam stand as many grains as elsewhere.
+  // There are as many grains around the seam as elsewhere.
   const auto within = [&](double from, double to) {
     return static_cast<double>(
         std::count_if(grains.begin(), grains.end(), [&](const Quad& p) { return p.x >= from && p.x < to; }));
@@ -134,15 +134,15 @@ TEST_F(Tiled, nobody_is_squeezed_in_where_pieces_are_joined_or_cut) {
     const std::vector<Quad> grains = tiled_positions(settled_piece, options_);
     EXPECT_GT(settled.max_overlap, 0.0);
     EXPECT_LE(statistics(grains, options_).max_overlap, settled.max_overlap * (1.0 + 1e-9));
-    // The side walls that a piece was settled between press on it; all others are new to it.
+    // The side walls between which a piece was settled press on it; all other walls are new.
     for (const Quad& p : grains)
       for (int wall = 0; wall < kFloor; ++wall)
         EXPECT_GE(solver_params(options_).bin.distance(wall, p), (width < 0.5 && wall >= 2 ? 0.9 : 1.0) * p.w);
   }
 }
 
-/// Columns are no copies of each other that a wheel would meet again; only in the band of a seam may one continue.
-/// Between walls they are mirrored or turned, elsewhere moved across too.
+/// A wheel must not meet copies of one column again; only in the band of a seam may a column continue. Between walls
+/// columns are mirrored or turned; otherwise they are also moved across.
 TEST_F(Tiled, no_column_is_one_before_it_again) {
   options_.length = 1.8;
   for (const char* sides : {"walls", "periodic"}) {
@@ -166,7 +166,7 @@ TEST_F(Tiled, periodic_sides_and_pieces_across_leave_no_joint_across) {
   options_.width = 0.84;
   const std::vector<Quad> one = piece(), grains = tiled_positions(one, options_);
   EXPECT_EQ(tiling_of(options_).across, 2);
-  // Away from the seam and the end walls each grain of the piece stands there twice.
+  // Away from the seam and the end walls, the bed contains each grain of the piece twice.
   const auto middle = [](const std::vector<Quad>& all, double from, double to) {
     return std::count_if(all.begin(), all.end(), [&](const Quad& p) { return p.x > from && p.x < to; });
   };

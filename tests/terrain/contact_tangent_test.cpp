@@ -1,4 +1,4 @@
-// Contact tangents: what the terrains say of how their forces change, against differences of these forces.
+// Contact tangents of the terrains against differences of their forces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using testing::Surface;
 
 constexpr double kStep = 1e-5;  // of an interval, s
 
-/// A square in the plane z = height that looks down. @param cells along each edge
+/// A square in the plane z = height, outside down. @param cells along each edge
 testing::Surface plate(double size, double height, int cells = 1) {
   testing::Surface s =
       testing::sheet(-0.5 * size, -0.5 * size, size / cells, cells, cells, [=](double, double) { return height; });
@@ -27,7 +27,7 @@ SurfaceState moved(const testing::Surface& surface, const Vec3& shift) {
   return {surface.vertex, std::vector<Vec3>(surface.vertex.size(), shift / kStep)};
 }
 
-/// A surface that stood still and of which one vertex, or where it is −1 all, is then moved by `shift`, m.
+/// A surface at rest whose vertex (−1: all vertices) is then moved by `shift`, m.
 struct Move {
   Vec3 shift = Vec3::Zero();
   int vertex = -1;
@@ -39,7 +39,7 @@ struct Move {
   }
 };
 
-/// Sums of forces and of what the tangents expect, both of the whole surface, whose vertices move alike.
+/// Sums of forces and of the tangents' predictions over the whole surface, whose vertices all move equally.
 struct Answer {
   Vec3 force = Vec3::Zero();
   ContactTangent tangent;
@@ -56,13 +56,13 @@ Answer sum(const NodalForces& forces) {
   return a;
 }
 
-/// Means of the motion of vertex 0 less where it began.
+/// Means of the motion of vertex 0, relative to its start.
 std::pair<Vec3, Vec3> motion(const NodalForces& forces, const testing::Surface& surface) {
   return {forces.tangent[0].position - surface.vertex[forces.vertex[0]], forces.tangent[0].velocity};
 }
 
-/// The force that a surface gets which stood still and is then moved by `shift`, less the force standing still; and
-/// what the tangents of standing still make of it.
+/// Change of the force on a surface at rest when it is moved by `shift`, and the change predicted by the tangents at
+/// rest.
 template <class Push>
 void expect_difference(const testing::Surface& surface, const Vec3& shift, double tolerance, Push push) {
   const NodalForces still = push(Vec3::Zero()), after = push(shift);
@@ -84,7 +84,7 @@ struct Grain {
   double density = 1e9;                             // kg/m³; of a heavy one dampers outweigh springs
 };
 
-/// A grain that is put back after every substep, 0.3 mm deep in a plate above it.
+/// A grain, 0.3 mm deep in a plate above it, that returns to its place after every substep.
 NodalForces push_grain(const testing::Surface& surface, const Move& move, const Grain& grain) {
   terrain::dem::FewGrains few;
   few.options.law = grain.law;
@@ -138,8 +138,8 @@ TEST(ContactTangent, of_a_grain_without_friction_is_normal_to_the_surface) {
 /// A light grain that resists rolling.
 Grain rough(const char* law) { return {law, 100.0, 0.3, 2500.0}; }
 
-/// What rolling friction adds to the force on a vertex that moves alone, and what it adds to the tangent of that vertex
-/// makes of its motion. The hit is the same with and without it.
+/// Compares the part of rolling friction in the force on a single moving vertex with its part in the tangent, times the
+/// motion. The hit is the same with and without rolling friction.
 void expect_couple_difference(const testing::Surface& surface, const char* law, int vertex, const Vec3& shift) {
   Grain smooth = rough(law);
   smooth.rolling_friction = 0.0;
@@ -163,7 +163,8 @@ void expect_couple_difference(const testing::Surface& surface, const char* law, 
 
 TEST(ContactTangent, of_the_rolling_couple_is_the_difference_of_its_forces) {
   const Vec3 shift(2e-10, 1e-10, 3e-10);
-  // The couple acts on the vertices of a large facet, and on more than those of one smaller than the grain.
+  // The couple acts on the vertices of a large facet, and on more than one facet's vertices if facets are smaller than
+  // the grain.
   for (const auto& [cells, least] : {std::pair{1, 3U}, {50, 20U}})
     for (const char* law : {"mindlin", "hertz_tanh"}) {
       const testing::Surface surface = plate(0.1, 0.0, cells);
@@ -174,7 +175,7 @@ TEST(ContactTangent, of_the_rolling_couple_is_the_difference_of_its_forces) {
     }
 }
 
-/// A plate that has stood 0.4 mm deep in hard ground.
+/// A plate that was at rest 0.4 mm deep in hard ground.
 NodalForces push_ground(const testing::Surface& surface, const Vec3& shift) {
   GroundOptions options;
   options.contact_tangents = true;

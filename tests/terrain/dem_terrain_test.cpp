@@ -100,7 +100,7 @@ TEST_F(DemTerrain, damaged_cache_is_made_anew) {
     EXPECT_EQ(entry.path().extension(), ".h5");
 }
 
-/// Files of a cache that somebody has renamed.
+/// Files of a cache that were renamed.
 TEST_F(DemTerrain, a_bed_under_the_name_of_another_is_made_anew) {
   dem::DemOptions other = options_;
   other.seed = 2;
@@ -111,7 +111,7 @@ TEST_F(DemTerrain, a_bed_under_the_name_of_another_is_made_anew) {
   EXPECT_EQ(hash_of(*first), hash_of(*second));
 }
 
-/// Something else than the value.
+/// Changes the value.
 void change(std::string& value) { value = value == "walls" ? "periodic" : value + "_other"; }
 void change(bool& value) { value = !value; }
 void change(int& value) { value += 1; }
@@ -156,7 +156,7 @@ TEST_F(DemTerrain, digest_does_not_know_of_keys_that_are_the_default) {
   EXPECT_NE(with.value(), plain.value());
 }
 
-/// Grains would fall through such a surface without a force.
+/// Grains would fall through such a surface, as there is no force.
 TEST_F(DemTerrain, refuses_a_material_that_its_law_cannot_use_by_name) {
   const auto complaint = [&](const char* law, const ContactMaterial& material) {
     options_.law = law;
@@ -202,8 +202,8 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
                         after.momenta.wall_impulse + Vec3(0, 0, mass * 9.81 * 1000 * dt);
     EXPECT_LT(change.norm(), 1e-10 * mass * 9.81 * 1000 * dt) << law;
 
-    // The plate's work on the grains is what they hold more and what they lost, up to the error of the step and of the
-    // samples.
+    // The plate's work on the grains equals the increase of their energy plus their losses, up to the errors of step
+    // and samples.
     const TerrainEnergies &from = before.energies, &to = after.energies;
     EXPECT_NEAR(to.surface_work, -press.work, 1e-12 * std::abs(press.work));
     EXPECT_NEAR(to.elastic_normal + to.cohesion, after.elastic_energy, 1e-12 * std::abs(to.cohesion));
@@ -234,7 +234,7 @@ TEST_F(DemTerrain, impulses_are_the_momentum_and_what_sleep_took) {
   const auto given = [](const TerrainState& s) -> Vec3 {
     return s.momenta.wall_impulse + s.momenta.surface_impulse + s.momenta.sleep_impulse - s.momenta.grains;
   };
-  // Forces on sleeping strips that nobody evaluates are those of the step in which they fell asleep.
+  // Sleeping strips that are not evaluated keep the forces of the step in which they fell asleep.
   EXPECT_LT((given(after) - given(before) + weight).norm(), 1e-3 * weight.norm());
 
   const TerrainEnergies &from = before.energies, &to = after.energies;

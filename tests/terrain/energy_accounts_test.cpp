@@ -1,4 +1,4 @@
-// Energy by mechanism: each loss against a closed form, and what all of them leave over.
+// Energy by mechanism: each loss against a closed form, and the residual of all of them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -246,7 +246,7 @@ TEST(EnergyAccounts, residual_of_a_crowd_shrinks_with_the_step) {
   }
 }
 
-/// Evidence that can fail: an account of one mechanism that is a tenth too large leaves a residual that none may leave.
+/// The check can fail: an error of a tenth in one mechanism's account leaves a residual above the limit.
 TEST(EnergyAccounts, a_mechanism_that_is_wrong_by_a_tenth_is_seen) {
   for (const char* law : {"mindlin", "hertz_tanh"}) {
     const Balance right = balance({law, Precision::mixed, false, 0.0}, 5e-6, 0.12);
@@ -299,7 +299,7 @@ TEST(EnergyAccounts, same_bits_for_any_threads_and_after_a_restart) {
   }
 }
 
-/// Accounts that begin on a loaded bed know what its springs hold.
+/// Accounts that begin on a loaded bed contain the energy of its springs.
 TEST(EnergyAccounts, begin_with_what_contacts_hold) {
   for (const Crowd& which : {Crowd{"mindlin", Precision::mixed}, Crowd{"mindlin", Precision::full, false, 20e3, 0.2},
                              Crowd{"hertz_tanh", Precision::mixed}}) {

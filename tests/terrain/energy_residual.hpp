@@ -1,4 +1,4 @@
-// What a terrain's accounts of energy leave over.
+// Residual of a terrain's energy accounts.
 #pragma once
 
 #include "protocol/core/terrain_state.hpp"

@@ -1,4 +1,4 @@
-// A handful of grains in a bin, for tests of laws and solver.
+// A few grains in a bin, for tests of laws and solver.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ struct FewGrains {
   /// Height of the centre at which the floor carries a grain's weight, m.
   double resting_height() const { return options.radius - resting_overlap(); }
   double resting_overlap() const { return std::pow(mass() * gravity * std::cos(slope) / floor_stiffness(), 2.0 / 3.0); }
-  /// The same as the law itself takes them. @pre options.law is its name
+  /// Coefficients in the form that the law uses. @pre options.law is its name
   template <class Law>
   typename Law::template Coefficients<double> pair() const {
     return coefficients().pair.template of<Law>();
@@ -83,7 +83,7 @@ inline std::uint64_t hash_of(const GrainSolver& s) {
   return hash.value();
 }
 
-/// Even numbers from −1 to 1.
+/// Uniformly distributed numbers from −1 to 1.
 class Uniform {
  public:
   explicit Uniform(std::uint64_t seed) : bits_(seed) {}
@@ -96,7 +96,7 @@ class Uniform {
 inline void run(GrainSolver& s, double step, std::int64_t count) {
   for (std::int64_t k = 0; k < count; ++k) ASSERT_EQ(s.step(step), -1) << k;
 }
-/// A solver that continues from what `s` saves.
+/// A solver that continues from the saved state of `s`.
 inline GrainSolver restored(const GrainSolver& s, int threads = 1) {
   Archive archive;
   s.save(archive);
@@ -107,7 +107,7 @@ inline GrainSolver restored(const GrainSolver& s, int threads = 1) {
   again.restore(archive);
   return again;
 }
-/// One thread and two take the same steps, and so does a solver restored half-way.
+/// Checks that one thread, two threads and a solver restored half-way make the same steps.
 template <class Make>
 void expect_same_bits(Make make, double step, int steps) {
   GrainSolver one = make(), two = make();
@@ -124,7 +124,7 @@ void expect_same_bits(Make make, double step, int steps) {
   EXPECT_EQ(hash_of(one), hash_of(again));
   EXPECT_EQ(one.accounts().contact_work, again.accounts().contact_work);
 }
-/// Momentum changes by what the walls give, and the account of energy closes, from new accounts on.
+/// Checks that momentum changes by the walls' impulse and that the energy account closes. @pre the accounts are new
 inline void expect_books_close(GrainSolver& s, double step, int steps, double tolerance) {
   const Vec3 p0 = s.accounts().velocity;
   const double k0 = s.accounts().kinetic, m = s.params().grain.mass;

@@ -127,8 +127,8 @@ TEST(GrainSizes, restitution_of_unequal_spheres_is_the_one_asked_for) {
   }
 }
 
-/// Rigid bodies that slide throughout: friction impulse P = μ (1 + e) m* u, spins 5/2 P/(m r). Stiff, so that the line
-/// of centres hardly turns meanwhile.
+/// Rigid bodies that slide throughout: friction impulse P = μ (1 + e) m* u, spins 5/2 P/(m r). They are stiff, so that
+/// the line of centres hardly turns.
 TEST(GrainSizes, sliding_impact_of_unequal_spheres_gives_both_their_spin) {
   Unequal u;
   u.few.options.young_modulus = 2.5e12;
@@ -182,7 +182,7 @@ TEST(GrainSizes, oblique_impact_keeps_momentum_and_angular_momentum) {
     }
 }
 
-/// Two that touch hold together up to F_c = π min(r)² c_t.
+/// Two touching grains hold together up to F_c = π min(r)² c_t.
 TEST(GrainSizes, pull_off_is_that_of_the_smaller) {
   Unequal u;
   u.few.options.cohesion = 80e3;
@@ -244,9 +244,9 @@ TEST(GrainSizes, frictionless_elastic_crowd_of_one_or_many_sizes_keeps_its_energ
   }
 }
 
-/// Stiffness or damping of a contact of a small grain with one `ratio` times as large, over that with its like, as it
-/// acts on the small grain in its fastest mode: k (1/m + 1/√(m M)) over 2 k/m, Gershgorin's bound in mass-weighted
-/// coordinates.
+/// Stiffness or damping of a contact between a small grain and one `ratio` times as large, relative to the contact of
+/// two small grains, in the small grain's fastest mode: k (1/m + 1/√(m M)) over 2 k/m, Gershgorin's bound in
+/// mass-weighted coordinates.
 double row_of_bound(double coefficient, double like, double ratio) {
   return coefficient / like * 0.5 * (1.0 + std::pow(ratio, -1.5));
 }
@@ -263,8 +263,8 @@ TEST(GrainSizes, contacts_with_larger_grains_are_stiffer_and_yet_no_less_stable_
   }
 }
 
-/// Largest distance from rest of a pair of cohesive grains, `ratio` between their radii, that starts a little off it,
-/// after many steps; over that at the start.
+/// Growth of a small deviation from equilibrium over many steps, for a pair of cohesive grains with `ratio` between
+/// their radii: the largest distance from rest over the initial one.
 double growth_of_pair(double ratio, double share_of_limit) {
   FewGrains few;
   few.options.restitution = 0.999;
@@ -346,7 +346,7 @@ TEST(GrainSizes, drawn_radii_have_the_stated_mean_volume) {
   EXPECT_NEAR(mean_volume_ratio(uniform), 1.25, 1e-15);
 }
 
-/// Of uniform radii from a to b the mass up to r is as r⁴ − a⁴, so the median is ((a⁴ + b⁴)/2)^¼.
+/// For uniform radii from a to b, the mass up to r is proportional to r⁴ − a⁴, so the median is ((a⁴ + b⁴)/2)^¼.
 TEST(GrainSizes, median_by_mass_is_that_of_the_drawn_grains) {
   for (const char* distribution : {"uniform", "normal"}) {
     DemOptions o;

@@ -178,7 +178,7 @@ TEST(GrainSolver, same_bits_for_one_and_two_threads_and_after_a_restart) {
   }
 }
 
-/// Springs included: those of pairs that touch across a side must outlive the making of lists.
+/// This includes springs: springs of pairs that touch across a side must be kept when lists are made again.
 TEST(GrainSolver, a_bed_shifted_along_periodic_sides_moves_the_same) {
   for (const Vec3& shift : {Vec3(0.15, 0, 0), Vec3(0, 0.12, 0), Vec3(0.07, 0.1, 0)}) {
     FewGrains few;

@@ -1,4 +1,4 @@
-// Hard ground with a height map: closed forms of its contact with a box, the energy that it says, and its files.
+// Hard ground with a height map: closed forms of its contact with a box, its energy, and its files.
 #include "terrain/rigid/ground_map.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 namespace furrow::terrain {
 namespace {
 
-/// Nodes `apart` from one another over 4 m by 2 m about the origin.
+/// A map of 4 m by 2 m about the origin with nodes `apart` from each other.
 template <class Height>
 HeightMap map_of(double apart, const Height& height) {
   HeightMap map;
@@ -115,7 +115,7 @@ TEST(GroundMap, friction_lies_in_the_plane_of_the_ground) {
     for (Vec3& x : now.position) x += 1e-4 * now.velocity[0];
   }
   EXPECT_NEAR(one.sums.force.dot(along) / one.sums.force.dot(normal), -0.5, 5e-3);  // μ tanh(c v)
-  // The box's edges are pushed by its sides too, by other shares on either side of the diagonals of its faces.
+  // The box's sides also push its edges, with different shares on both sides of the diagonals of its faces.
   EXPECT_NEAR(one.sums.force.x() / one.sums.force.norm(), 0.0, 1e-4);
 }
 

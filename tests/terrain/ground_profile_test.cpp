@@ -1,5 +1,5 @@
-// Hard ground with a profile: closed forms of depth and column, the plane's forces on level parts, and that its contact
-// has the energy that it says.
+// Hard ground with a profile: closed forms of depth and column, the plane's forces on level parts, and the energy of
+// its contact.
 #include "terrain/rigid/ground_profile.hpp"
 
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST(GroundProfile, level_everywhere_is_the_plane) {
   }
 }
 
-/// A block whose lower right edge is led around the curb's edge and back.
+/// A block whose lower right edge moves around the curb's edge and back.
 TEST(GroundProfile, contact_without_friction_and_damping_gives_back_what_it_took) {
   GroundOptions options;
   options.profile = kCurb;

@@ -1,4 +1,4 @@
-// What hard ground does to a surface within one interval.
+// The force of hard ground on a surface within one interval.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ inline std::unique_ptr<Terrain> ground_under(const testing::Surface& surface, co
   return ground;
 }
 
-/// One interval of a surface that moves with constant velocity and begins at `start`.
+/// Result of one interval of a surface that begins at `start` and moves with constant velocity.
 inline Push push(Terrain& ground, const SurfaceState& start, double duration = 1e-6, int substeps = 1) {
   Push result;
   const Outcome status = ground.advance({&start, 1}, duration, substeps, {&result.forces, 1}, {&result.sums, 1});

@@ -1,4 +1,4 @@
-// What every contact law keeps: tests over a list of laws, so that a law is tested by being listed. Each law is tried
+// Properties of every contact law: tests over a list of laws. A law is tested once it is in the list. Each law is tried
 // in the same random contacts, stiff enough to press and slide.
 #pragma once
 
@@ -155,7 +155,7 @@ TYPED_TEST_P(LawPromises, mixing_and_sizes_are_symmetric_to_the_last_bit) {
   }
 }
 
-/// The work that pressing slowly takes, by Simpson's rule over √δ, in which the force of Hertz is smooth.
+/// The work of slow pressing, by Simpson's rule over √δ, in which Hertz's force is smooth.
 TYPED_TEST_P(LawPromises, energy_is_the_work_of_the_normal_force_at_rest) {
   using Law = TypeParam;
   const auto c = coefficients_of<Law>();
@@ -235,7 +235,7 @@ TYPED_TEST_P(LawPromises, tangent_is_the_difference_of_the_force) {
   EXPECT_NEAR(share * (at(deep, {0, 0, 0}, step).first.normal - at(-deep, {0, 0, 0}, step).first.normal) / (2.0 * deep),
               t.k_n, 1e-4 * t.k_n);
   EXPECT_NEAR(-share * (at(0.0, {speed, 0, 0}, step).first.normal - rest.normal) / speed, t.c_n, 1e-4 * t.c_n + 1e-9);
-  // Over a step dt the way is v dt: the force that a dashpot leaves as dt → 0, and what a spring adds to it.
+  // Over a step dt the displacement is v dt: a dashpot's force remains as dt → 0, and a spring adds to it.
   const double shortly = -share * at(0.0, {0, speed, 0}, 0.0).first.tangential.y / speed;
   const double longer = -share * at(0.0, {0, speed, 0}, 1e-3).first.tangential.y / speed;
   EXPECT_NEAR(shortly, t.c_t, 1e-4 * t.c_t + 1e-9);

@@ -1,4 +1,4 @@
-// Every law of the table keeps what laws promise; and the table is what keys and messages say.
+// Every law of the table has the properties of law_promises.hpp, and keys and messages agree with the table.
 #include "terrain/dem/contact/laws.hpp"
 
 // The laws are plain scalar code: none of their headers includes simd.hpp, whose Float8 would be found here.

@@ -1,4 +1,4 @@
-// Sleep across the bed: a wide strip sleeps in parcels, and that changes nothing but the time that a step takes.
+// Sleep across the bed: a wide strip sleeps in parcels, which changes only the time of a step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,8 +78,8 @@ TEST(Parcels, narrow_strips_are_whole_and_wide_ones_are_cut) {
 }
 
 TEST(Parcels, awake_bed_has_the_bits_that_it_has_uncut) {
-  // A plate that hovers over all of it keeps every parcel awake: calm ones are evaluated alone whenever they might fall
-  // asleep.
+  // A plate above the whole bed keeps every parcel awake. Calm parcels are evaluated separately whenever they might
+  // fall asleep.
   GrainSolver cut = bed(true), whole = bed(false);
   Plate over_cut = plate_over(cut, 0.01, 0.29, -0.64, 0.64, cut.top() + 1e-3);
   Plate over_whole = plate_over(whole, 0.01, 0.29, -0.64, 0.64, whole.top() + 1e-3);
@@ -93,7 +93,7 @@ TEST(Parcels, awake_bed_has_the_bits_that_it_has_uncut) {
   EXPECT_GT(over_cut.work * over_cut.work, 0.0);
   EXPECT_EQ(over_cut.work, over_whole.work);
   EXPECT_EQ(hash_of(cut), hash_of(whole));
-  // Sums are rounded otherwise: those over some contacts are of single precision.
+  // Rounding differs: sums over some contacts are in single precision.
   EXPECT_NEAR(cut.accounts().elastic / whole.accounts().elastic, 1.0, 1e-8);
   EXPECT_NEAR(cut.accounts().kinetic / whole.accounts().kinetic, 1.0, 1e-12);
   EXPECT_EQ(cut.accounts().contacts, whole.accounts().contacts);
@@ -131,7 +131,7 @@ TEST(Parcels, disturbance_wakes_across_one_parcel_per_step) {
     for (int p = 0; p <= last; ++p)
       if (awake_after[p] < 0 && asleep(p) < solver.strips().count()) awake_after[p] = k;
   }
-  // How far it comes is a matter of damping.
+  // Its range depends on damping.
   EXPECT_GT(awake_after[4], 0);
   for (int p = 1; p <= last && awake_after[p] >= 0; ++p) EXPECT_GE(awake_after[p], awake_after[p - 1]) << p;
 }
@@ -212,7 +212,7 @@ TEST(Parcels, grain_that_is_sorted_into_another_sleeping_parcel_is_counted_once)
   const int columns = static_cast<int>(few.options.width / (2.6 * radius)), across = parcels_across(columns);
   ASSERT_GT(across, 1);
   const double side = -0.5 * few.options.width + few.options.width / columns * (3 * columns / across);
-  // One drifts over the side of its parcel by less than what makes a list again, another will be thrown.
+  // One drifts over the side of its parcel by less than the distance that renews the lists; another will be thrown.
   GrainSolver s = few.make({{0.3, side - 3e-7, z, 0.0}, {0.3, 1.0, z, 0.0}});
   const double speed = 0.4 * kSleepMeanSpeed * std::sqrt(kStandardGravity * radius);
   set_velocity(s, 0, Vec3(0.0, speed, 0.0));
@@ -247,7 +247,7 @@ TEST(Parcels, bed_that_slept_by_other_parcels_wakes_and_a_run_is_refused) {
   EXPECT_EQ(hash_of(never), hash_of(asleep));
   rest(never, 1);
   EXPECT_EQ(never.accounts().active, never.grains().count);
-  // Sums of those asleep were kept from their last evaluation, a step before they stopped.
+  // Sums of sleeping grains are those of their last evaluation, one step before they stopped.
   EXPECT_NEAR(never.accounts().elastic / asleep.accounts().elastic, 1.0, 1e-3);
   EXPECT_NEAR(static_cast<double>(never.accounts().contacts) / static_cast<double>(asleep.accounts().contacts), 1.0,
               2e-3);

@@ -1,4 +1,4 @@
-// A settled bed in a solver, and a plate that is moved on it.
+// A settled bed in a solver, and a plate that moves on it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ inline GrainSolver solver_of(const DemOptions& options, const Archive& bed, bool
   return solver;
 }
 
-/// A horizontal plate, its lower side rough as rubber.
+/// A horizontal plate with a lower side as rough as rubber.
 class Plate {
  public:
   Plate(GrainSolver& solver, DemOptions options, const testing::Surface& shape)
@@ -42,13 +42,13 @@ class Plate {
     solver.surfaces().attach(shape.mesh, rubber, mixed(rubber), state_);
     restrict();
   }
-  /// That of a solver which was saved, in the one that was restored from it.
+  /// The plate of a saved solver, in the solver that was restored from it.
   Plate(GrainSolver& restored, const Plate& saved) : solver_(restored), options_(saved.options_), state_(saved.state_) {
     restored.surfaces().set_coefficients(0, mixed(restored.surfaces().material(0)));
     restrict();
   }
 
-  /// Steps with the plate moving; the mean force on it, N.
+  /// Steps while the plate moves. @returns the mean force on it, N
   Vec3 move(const Vec3& velocity, int steps) {
     const double dt = options_.step;
     std::vector<NodalForces> nodal(1);
@@ -81,8 +81,8 @@ class Plate {
   SurfaceState state_;
 };
 
-/// The largest difference of the vertical forces on two plates that go down at 0.1 m/s in 20 stretches of 100 steps,
-/// and the largest force on the second, N.
+/// Largest difference of the vertical forces on two plates that move down at 0.1 m/s in 20 stretches of 100 steps, and
+/// the largest force on the second, N.
 inline std::pair<double, double> difference_pressed(Plate& one, Plate& other) {
   double error = 0.0, most = 0.0;
   for (int n = 0; n < 20; ++n) {

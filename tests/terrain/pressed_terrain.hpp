@@ -1,4 +1,4 @@
-// A surface that is moved on a terrain, and what that gives it.
+// A surface that moves on a terrain, with the work and impulse on it.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -22,7 +22,7 @@ using testing::wheel;
 
 const testing::Surface kBlock = testing::box({-0.1, -0.05, 0.0}, {0.1, 0.05, 0.1});
 
-/// The push on a surface that has slid with constant velocity for as long as the layer's shear takes to settle.
+/// The push on a surface that has slid at constant velocity until the layer's shear is steady.
 Push slide_steadily(Terrain& ground, SurfaceState state, double duration = 5e-3, int intervals = 500) {
   Push result;
   for (int i = 0; i < intervals; ++i) {
@@ -54,7 +54,7 @@ TEST(RigidGround, presses_a_tilted_block_with_the_integral_of_its_depth) {
   const Push one = push(*ground, start);
   const double expected = options.ground_stiffness * 0.1 * 0.5 * depth * length;
   EXPECT_NEAR(one.sums.force.z() / expected, 1.0,
-              1e-3);  // the vertical back face adds what it covers: sin² tilt
+              1e-3);  // the vertical back face adds its area: sin² tilt
   EXPECT_NEAR(-test::moment_about(Vec3::Zero(), one.forces, start).y() / one.sums.force.z() / (length / 3.0), 1.0,
               1e-3);
 }
@@ -68,7 +68,7 @@ TEST(RigidGround, does_not_depend_on_how_a_flat_face_is_cut) {
   const SurfaceState b = placed(fine, {0.0, 0.0, -1e-4}, velocity, tilt);
   const auto coarse_ground = ground_under(coarse, a), fine_ground = ground_under(fine, b);
   const Push from_coarse = slide_steadily(*coarse_ground, a), from_fine = slide_steadily(*fine_ground, b);
-  // Exact but for the rounding of velocities, which come from differences of positions.
+  // Exact except for the rounding of velocities, which are differences of positions.
   EXPECT_LT((from_coarse.sums.force - from_fine.sums.force).norm() / from_fine.sums.force.norm(), 1e-10);
   const Vec3 of_coarse = test::moment_about(Vec3::Zero(), from_coarse.forces, a),
              of_fine = test::moment_about(Vec3::Zero(), from_fine.forces, b);
@@ -110,8 +110,8 @@ TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
 }
 
 TEST(RigidGround, shears_what_it_touches_from_then_on) {
-  // A sheet rolls out along x with the speed c while it drifts sideways with v: what touches at x has been sheared by
-  // v (t − x/c), so F = ½ κ_t W c v t² with its centre at x = c t/3, on any mesh.
+  // A sheet rolls out along x with the speed c while it drifts sideways with v: contact at x has been sheared by v (t −
+  // x/c), so F = ½ κ_t W c v t² with its centre at x = c t/3, on any mesh.
   GroundOptions options;
   options.ground_damping = 0.0;
   options.friction_velocity_scale = 1e6;
@@ -294,7 +294,7 @@ TEST(RigidGround, damps_bouncing_as_a_linear_oscillator_would) {
 
 TEST(RigidGround, holds_a_light_vertex_at_the_usual_step) {
   // A tread vertex of 2.8 g that carries 10 cm² at 240 kPa, without any damping of its own: the force that comes one
-  // interval late acts as −k H, the ground's damping has to outweigh it. (Larger steps lean on the tire's damping.)
+  // interval late acts as −k H, and the ground's damping must exceed this. (Larger steps rely on the tire's damping.)
   for (double h : {1e-5, 2e-5, 4e-5}) {
     Faller vertex;
     vertex.surface = testing::box({-0.01, -0.025, 0.0}, {0.01, 0.025, 0.01});
@@ -340,7 +340,7 @@ TEST(RigidGround, books_each_loss_where_it_belongs) {
   EXPECT_NEAR(end.elastic_normal, 0.5 * options.ground_stiffness * 0.02 * 1.6e-7, 1e-12);
   EXPECT_NEAR(end.elastic_tangential, 0.5 * friction * friction / (options.ground_shear_stiffness * 0.02), 1e-9);
   EXPECT_LT(std::abs(residual(start, end)), 2e-3 * end.losses());
-  // Lifted off, the layer lets its shear go.
+  // When it is lifted off, the layer releases its shear.
   for (Vec3& x : state.position) x += Vec3(1000 * 1e-4 * speed, 0.0, 0.0);
   for (Vec3& v : state.velocity) v = Vec3(0.0, 0.0, 1.0);
   push(*ground, state, 1e-3, 100);

@@ -1,4 +1,4 @@
-// The rolling couple between grains and triangulated surfaces: what vertices receive, and what a grain does.
+// The rolling couple between grains and triangulated surfaces: loads on vertices, and a grain's motion.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(SurfacePatches, facet_smaller_than_the_grain_takes_its_neighbours_along) {
 namespace few {
 using namespace dem;
 
-/// A grain on a sheet that falls along x by `slope`, rolling friction of its own on the sheet.
+/// A grain on a sheet that falls along x by `slope`; the sheet has its own rolling friction.
 struct Slope {
   static constexpr double kLevel = 0.2;  // of the sheet, m
 

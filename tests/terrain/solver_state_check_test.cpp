@@ -1,4 +1,4 @@
-// Saved states whose checksums fit but whose numbers do not: refused by the array, never followed.
+// Saved states with valid checksums and invalid numbers: they are refused with the array's name, and never used.
 #include "terrain/dem/solver_state_check.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ FewGrains rough_grains() {
   return few;
 }
 
-/// Of two layers of grains that touch one another and the floor, with histories.
+/// Saves two layers of grains that touch each other and the floor, with histories.
 Archive saved() {
   std::vector<Quad> positions;
   for (int i = 0; i < 10; ++i)
@@ -37,7 +37,7 @@ Archive saved() {
   return archive;
 }
 
-/// Of a row of grains across a bed that is cut into parcels, asleep but for one.
+/// A row of grains across a bed that is cut into parcels; all but one sleep.
 FewGrains wide_grains() {
   FewGrains few = rough_grains();
   few.options.width = 2.6;
@@ -62,7 +62,7 @@ Archive saved_asleep() {
   return archive;
 }
 
-/// What restoring complains of; empty when it does not, and the state can be stepped.
+/// The error of restoring; empty if there is none, and the state can then be stepped.
 std::string complaint(const Archive& archive, const FewGrains& few = rough_grains()) {
   GrainSolver solver = few.make({});
   return refusal(ExitCode::io, [&] {
@@ -126,9 +126,8 @@ TEST(SolverState, every_index_that_is_wild_is_refused_by_its_array) {
   refused(archive, "mean_contact_force");
 }
 
-/// Numbers anywhere, changed to anything, and arrays cut short: a message, or a state that can be stepped. More of
-/// them:
-/// --gtest_shuffle --gtest_repeat=1000.
+/// Changes any numbers to any values and cuts arrays short: restoring must end in a message, or in a state that can be
+/// stepped. For more cases: --gtest_shuffle --gtest_repeat=1000.
 void change_at_random(const Archive& good, const FewGrains& few) {
   std::mt19937_64 random(static_cast<unsigned>(::testing::UnitTest::GetInstance()->random_seed()));
   std::vector<std::string> names;

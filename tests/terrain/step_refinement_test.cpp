@@ -1,4 +1,4 @@
-// Hard contacts: the bed is stepped in parts for as long as they need it, and only then.
+// Hard contacts: the bed makes smaller steps while they need them, and only then.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,8 +61,8 @@ struct Collision {
 };
 
 /// Elastic spheres part as fast as they met [Johnson 1985, §11.4]; their deepest overlap is
-/// (15/16 m* v_rel²/(E* √R*))^{2/5} with the whole E* √R* of the pair. What is lost is the second order of the whole
-/// step, at which the collision begins; had forces acted for each part's own dt, energy would be gained (rms 8 %).
+/// (15/16 m* v_rel²/(E* √R*))^{2/5} with the whole E* √R* of the pair. The loss is of second order in the whole step,
+/// at which the collision begins. If forces acted for each part's own dt, energy would grow (rms 8 %).
 TEST(StepRefinement, collisions_above_the_stable_step_gain_no_energy_and_lose_little) {
   Collision c;
   const dem::DemOptions& o = c.few.options;
@@ -121,7 +121,7 @@ TEST(StepRefinement, limits_are_where_the_parts_are_just_stable) {
 
 const ContactMaterial kSteel{2e11, 0.3, 0.5, 0.2, 1e9, 10.0, 0.0};
 
-/// Grains pressed ever harder by a plate, then let go.
+/// Grains under a plate that presses harder and harder, then releases them.
 class Pressed : public dem::SmallBeds {
  protected:
   Pressed() {
@@ -180,7 +180,7 @@ TEST_F(Pressed, hard_contacts_are_survived_alike_for_any_threads_and_after_a_res
   ASSERT_TRUE(press(*a, plate, -0.2, 200).ok);
   EXPECT_EQ(a->gather_state().substeps_added, added);
 
-  // What was given and taken is the momentum, to round-off, whatever the steps were.
+  // The impulses equal the change of momentum to round-off, for any steps.
   const TerrainState after = a->gather_state();
   const double mass = 2500 * 4.0 / 3.0 * M_PI * 1e-6 * static_cast<double>(a->size());
   const Vec3 weight = mass * plate.elapsed * standard_gravity();

@@ -1,4 +1,4 @@
-// Sphere against surface: single on flat cuts, double in corners, continuous in between.
+// Sphere against surface: one contact on flat cuts, two in corners, continuous in between.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using testing::Surface;
 constexpr double kRadius = 6e-3;  // m
 constexpr double kDegree = M_PI / 180.0;
 
-/// A jump survives bisection, a slope does not: the intervals of a sampling where the force changes most are halved
-/// until they are a millionth of their length, always keeping the half that changes more.
+/// Bisection separates jumps from slopes: a jump keeps its size. The sampling intervals with the largest change of
+/// force are halved to a millionth of their length, always keeping the half with more change.
 void expect_continuous(const SurfaceCollider& surface, const Vec3& from, const Vec3& to, double overlap,
                        const std::string& what) {
   constexpr int kSamples = 1000, kSuspects = 4;
@@ -314,7 +314,7 @@ TEST(SurfaceContact, inside_a_box_is_the_same_when_restricted_to_it) {
   std::array<SurfaceHit, kMaxSurfaceHits> a, b;
   std::vector<Vec3> end = round.vertex;
   for (int step = 0; step < 50; ++step) {
-    // The bed's top drifts a little, as it does in a run: that must not cost a grid each time.
+    // The bed's top drifts a little, as in a run. This must not make a new grid each time.
     part.restrict_to({Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1.0, -0.08 + 1e-4 * std::sin(step))});
     part.set_motion(round.vertex, end, 1.0);
     for (int i = 0; i < 100; ++i) {

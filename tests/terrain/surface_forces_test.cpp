@@ -1,4 +1,4 @@
-// Contact forces on vertices: force, moment and work are handed over to round-off.
+// Contact forces on vertices transmit force, moment and work to round-off.
 #include "terrain/surface/surface_forces.hpp"
 
 #include <gtest/gtest.h>

@@ -24,7 +24,7 @@ struct Surface {
   }
 };
 
-/// A rigid surface at a place (m) that turns (rad, rad/s) about +y there.
+/// State of a rigid surface at a place (m), turned about +y (rad) and turning (rad/s).
 inline SurfaceState placed(const Surface& surface, const Vec3& shift, const Vec3& velocity, double turn = 0.0,
                            double spin = 0.0) {
   const Quat orientation(Eigen::AngleAxisd(turn, Vec3::UnitY()));
@@ -62,13 +62,13 @@ inline Surface sheet(double x0, double y0, double h, int nx, int ny,
   return s;
 }
 
-/// The same with its outside down.
+/// The surface with its outside down.
 inline Surface turned_down(Surface s) {
   for (auto& t : s.mesh.triangles) std::swap(t[1], t[2]);
   return s;
 }
 
-/// A rectangle at a height that looks down.
+/// A rectangle at a height, outside down.
 inline Surface under_side(double x0, double x1, double y0, double y1, double z) {
   Surface s;
   s.vertex = {{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}};
@@ -134,7 +134,7 @@ inline Surface wheel(double radius, double width, int facets, int across) {
   return s;
 }
 
-/// Σ share · overlap^1.5 · normal: what a Hertz law of unit stiffness makes of the hits.
+/// Σ share · overlap^1.5 · normal: force of a Hertz law of unit stiffness from the hits.
 inline Vec3 hertz_force(const terrain::SurfaceCollider& surface, const Vec3& centre, double radius) {
   std::array<terrain::SurfaceHit, terrain::kMaxSurfaceHits> hit;
   const int count = surface.hits(centre, radius, hit);

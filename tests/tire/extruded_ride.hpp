@@ -1,5 +1,4 @@
-// What the tests of tires that are drawn out over their width have in common: a ride on a rim that speeds up and
-// shifts.
+// Common parts of the tests of extruded tires: a ride on a rim that accelerates and shifts sideways.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@
 
 namespace furrow::tire {
 
-inline constexpr double kLow = 0.45;  // below the axle: what the forces of a ride act on, m
+inline constexpr double kLow = 0.45;  // below the axle: the forces of a ride act there, m
 
 inline RimState rim_at(double t, double toe = 0.0) {
   RimState rim;
@@ -29,7 +28,7 @@ inline RimState rim_at(double t, double toe = 0.0) {
   return rim;
 }
 
-/// Forces that come and go on the lower half of the tread, on both sides unlike, and on the middle of a side.
+/// Forces that vary in time on the lower half of the tread, different on both sides, and on the middle of a side.
 inline NodalForces loads(const SurfaceState& surface, const RimState& rim, double t) {
   NodalForces f;
   const int last = static_cast<int>(surface.position.size()) - 2;
@@ -108,7 +107,7 @@ inline void expect_exact_continuation(const TireOptions& options, double step) {
     EXPECT_EQ(figure.value, other->figures().of(figure.name)) << figure.name;
 }
 
-/// What it says of itself before it is made is what it is.
+/// Checks that a tire agrees with its description, made before it.
 inline void expect_described_shape(TireOptions options, bool rigid = false) {
   options.rigid = rigid;
   const auto spec = read_tire(options);
@@ -129,7 +128,8 @@ inline void expect_described_shape(TireOptions options, bool rigid = false) {
   EXPECT_TRUE(rigid || tire->material().area_density > 0.1);
 }
 
-/// A force that is not finite is refused, and one that drives the tire to its rim ends with these words.
+/// Checks that a force that is not finite is refused, and that a force that presses the tire to its rim fails with
+/// these words.
 inline void expect_limits_are_told(const TireOptions& options, double step, const NodalForces& too_much,
                                    const std::string& words) {
   const auto tire = make_tire(options);

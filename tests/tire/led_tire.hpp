@@ -1,4 +1,4 @@
-// A tire whose rim is led, for the tests of whole tires.
+// A tire with an imposed rim motion, for the tests of whole tires.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ struct Led {
     const Outcome outcome = advance(rim, h, forces, substeps);
     ASSERT_TRUE(outcome.ok) << outcome.message("tire");
   }
-  /// Intervals with the rim where it is.
+  /// Runs intervals without moving the rim.
   void hold(int steps, double h, const NodalForces& forces = {}) {
     for (int n = 0; n < steps; ++n) go(path.end(), h, forces);
   }
@@ -43,13 +43,13 @@ struct Led {
   }
 };
 
-/// What the rim has put into a tire over the last interval, J.
+/// Work of the rim on a tire over the last interval, J.
 inline double rim_work(const tire::Tire& tire, const tire::RimTrajectory& path) {
   const Wrench w = tire.spindle_wrench();
   return -(w.force.dot(path.end().position - path.start().position) +
            w.moment.dot(mean_turn(path.start().orientation, path.end().orientation)));
 }
-/// The same of forces on the surface between its ends.
+/// Work of forces on the surface over an interval, from its state before and after, J.
 inline double surface_work(const NodalForces& f, const SurfaceState& before, const SurfaceState& after) {
   double work = 0.0;
   for (std::size_t k = 0; k < f.vertex.size(); ++k)

@@ -1,4 +1,4 @@
-// Press curves: those of the static test, kept and read again; none of a rigid tire.
+// Press curves: they agree with the static test, are kept and read again; a rigid tire has none.
 #include "tire/press/press_curve.hpp"
 #include "tests/refusal.hpp"
 

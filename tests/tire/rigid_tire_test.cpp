@@ -72,7 +72,7 @@ TEST(RigidTire, contact_forces_reach_the_spindle_with_their_arm) {
   EXPECT_LT((tire.spindle_wrench().moment - moment).norm(), 1e-10);
 }
 
-/// Work of rim and forces less what the tire holds and lost, over 200 intervals of a rim that is moved at will.
+/// Work of rim and forces minus the tire's energy and losses, over 200 intervals of an arbitrary rim motion.
 double energy_left_over(double h, double& turnover) {
   const auto rim_at = [](double t) {
     RimState rim;
@@ -107,8 +107,8 @@ TEST(RigidTire, energy_closes_to_round_off_whatever_the_rim_does) {
   EXPECT_LT(std::abs(left), 1e-10 * turnover);
 }
 
-/// The rim's motion reaches the tire extrapolated: with a constant acceleration a every interval's way is a H² longer
-/// than the mean of its velocities says, and m a · a H² is lost.
+/// The tire gets an extrapolated rim motion. With a constant acceleration a, the displacement in every interval is a H²
+/// longer than the mean velocity times H, and m a · a H² is lost.
 TEST(RigidTire, numerical_loss_of_a_constant_acceleration_is_m_a2_h2_in_every_interval) {
   Led wheel = led({}, Vec3::Zero());
   const RigidTire& tire = wheel.tire;

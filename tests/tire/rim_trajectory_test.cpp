@@ -47,8 +47,8 @@ TEST(RimTrajectory, position_and_velocity_are_continuous_across_intervals_when_t
   }
 }
 
-/// The largest of |x| over the last tenth of 10^4 steps of a mass on a spring, ω H = h, let go at x = 1: the spring's
-/// force is that of the trajectory's mean and acts over its interval.
+/// The largest |x| over the last tenth of 10^4 steps of a mass on a spring, ω H = h, released at x = 1. The spring's
+/// force is taken at the trajectory's mean and acts over its interval.
 double amplitude_after(double h, bool accelerated) {
   RimState rim;
   rim.position.x() = 1.0;

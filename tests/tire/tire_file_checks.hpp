@@ -1,4 +1,4 @@
-// What the tests of tires that are read from a file and pressed have in common.
+// Common checks of tires that are read from a file and pressed.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace furrow::tire {
 
 using ReadTire = std::unique_ptr<TireSpec>(const nlohmann::json& file, const TireOptions& options);
 
-/// What a reader says against a file called tire.json; "no error" where it takes it.
+/// A reader's error for a file called tire.json; "no error" if it accepts the file.
 inline std::string complaint_of(ReadTire& read, const nlohmann::json& file, TireOptions options) {
   options.file = "tire.json";
   const std::string text = refusal(ExitCode::bad_input, [&] { read(file, options); });
@@ -32,7 +32,8 @@ struct WrongValues {
   const char* words = "";  // in the message
 };
 
-/// A good file is taken, also without the keys that are optional; wrong values and missing keys are refused by name.
+/// Checks that a good file is accepted, also without optional keys, and that wrong values and missing keys are refused
+/// with their names.
 inline void expect_keys_are_checked(ReadTire& read, const nlohmann::json& good, const std::vector<WrongValues>& wrong,
                                     const std::vector<const char*>& required,
                                     const std::vector<const char*>& optional) {
@@ -66,7 +67,8 @@ inline TireOptions options_of(const std::filesystem::path& file, int around) {
   return o;
 }
 
-/// Unloading retraces loading, and the footprint carries the load. @param retrace share of the largest force
+/// Checks that unloading retraces loading, and that the footprint carries the load. @param retrace share of the largest
+/// force
 inline void expect_curve_and_footprint(const PressOptions& press, const PressResults& r, double retrace,
                                        double carried) {
   const auto points = static_cast<std::size_t>(press.points);

@@ -1,4 +1,4 @@
-// Tire files: what is read, and that every mistake names file, key and what is allowed.
+// Tire files: reading them, and errors with file, key and allowed values.
 #include "tests/refusal.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tire/read_tire_file.hpp"
@@ -25,7 +25,7 @@ class TireFileTest : public ::testing::Test {
     std::ofstream(file) << text;
     return file.string();
   }
-  /// The error that reading this text gives, without the file's name.
+  /// The error on reading this text, without the file's name.
   std::string complaint(const std::string& text) {
     const std::string file = write(text);
     return without_file(refusal(ExitCode::bad_input, [&] { read_tire_file(file); }), file);

@@ -1,4 +1,4 @@
-// The table of tire models: what reads a tire file, and that descriptions are true of the tires that are made.
+// The table of tire models: readers of tire files, and agreement of descriptions with the tires made.
 #include "tire/tires.hpp"
 #include "tests/refusal.hpp"
 #include "tests/temporary_folder.hpp"

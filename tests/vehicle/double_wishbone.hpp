@@ -1,6 +1,5 @@
-// The kinematics of a double wishbone on its own: five points of the upright, found by Newton's method from nothing but
-// distances. The wheel is lifted and the tie rod moved in small steps, so that the posture stays the drawn one's
-// neighbour.
+// Independent kinematics of a double wishbone: Newton's method finds five points of the upright from distances alone.
+// The wheel is lifted and the tie rod moved in small steps, so that the posture stays on the branch of the drawn one.
 #pragma once
 
 #include <Eigen/LU>
@@ -16,7 +15,7 @@ class DoubleWishbone {
   enum Point { kUpper, kLower, kRod, kCenter, kAxle, kCount };
   using Points = std::array<Vec3, kCount>;
 
-  /// Of one side, from its spec, in the vehicle's frame.
+  /// One side, from its spec, in the vehicle's frame.
   explicit DoubleWishbone(const vehicle::DoubleWishboneSpec& spec) : spec_(spec) {
     drawn_ = {spec.upper_arm.upright, spec.lower_arm.upright, spec.tie_rod.outer, spec.spindle.center,
               Vec3(spec.spindle.center + 0.2 * Vec3::UnitY())};

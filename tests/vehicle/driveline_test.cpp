@@ -1,4 +1,4 @@
-// Engine, converter and gearbox: closed forms, energies each on its own account, shifts, saved states.
+// Engine, converter and gearbox: closed forms, separate energy accounts, shifts, saved states.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -102,12 +102,12 @@ TEST(Converter, torques_are_continuous_through_speed_ratio_one_and_everywhere_el
       const vehicle::ConverterTorque now = vehicle::converter_torque(o, impeller, turbine);
       ASSERT_LT(std::abs(now.impeller - before.impeller), 0.7) << impeller << " " << turbine;
       ASSERT_LT(std::abs(now.turbine - before.turbine), 0.7) << impeller << " " << turbine;
-      // It never gives power.
+      // The converter never generates power.
       ASSERT_GE(now.impeller * impeller - now.turbine * turbine, -1e-9) << impeller << " " << turbine;
       before = now;
     }
   }
-  // Outside the blend the tables hold.
+  // Outside the blend the tables apply.
   EXPECT_NEAR(vehicle::converter_torque(o, 150.0, 75.0).turbine, 1.5 * 100.0, 1e-10);
   EXPECT_NEAR(vehicle::converter_torque(o, 75.0, 150.0).impeller, -100.0, 1e-10);
   EXPECT_EQ(vehicle::converter_torque(o, 100.0, 100.0).impeller, 0.0);
@@ -269,7 +269,7 @@ TEST(ShiftLogic, shifts_at_its_speeds_and_waits_for_its_latency) {
   EXPECT_EQ(logic.wanted(2, 3, 2600 * kRpm, 9.0), 2);  // no higher gear
 }
 
-// Engine, converter, gearbox, differential with a lock, brakes: every energy on its own account.
+// Engine, converter, gearbox, differential with a lock, brakes: with a separate account for every energy.
 TEST(Driveline, energies_of_engine_converter_shifts_and_brakes_add_up) {
   vehicle::System system;
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();

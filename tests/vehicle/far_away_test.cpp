@@ -1,5 +1,5 @@
-// Far from the origin positions are coarse: a vehicle must not stop there because its constraints or its dampers cannot
-// be met as finely as near to it.
+// Far from the origin positions are rounded more. A run must not end there because constraints or dampers cannot be
+// satisfied as exactly as near the origin.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Brakes and clutches: holding and slipping as a set, against closed forms, alike at every step.
+// Brakes and clutches: holding and slipping as a set-valued law, against closed forms, equal for every step.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(Brake, holds_a_weight_for_ten_seconds_without_creep_and_alike_at_two_steps)
 TEST(Brake, hold_that_is_resumed_continues_bit_for_bit) {
   HeldArm original(250.0), copy(250.0);
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(original.system.step(1e-3).ok);
-  copy.brake.engage(copy.system, 0.0);  // the saved state holds how far it is engaged
+  copy.brake.engage(copy.system, 0.0);  // the saved state contains the engagement
   copy.system.restore(saved(original.system));
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(original.system.step(1e-3).ok && copy.system.step(1e-3).ok);
   EXPECT_EQ(saved(copy.system).arrays(), saved(original.system).arrays());
@@ -152,7 +152,7 @@ TEST(Lock, creeps_with_its_share_of_the_torque_and_takes_nothing_where_brakes_ho
     lock.engage(system, 1.0);
     const int steps = static_cast<int>(std::lround(0.1 / h));
     for (int i = 0; i < steps; ++i) ASSERT_TRUE(system.step(h).ok);
-    // Both turn alike: J Ω̇ = −T + λ = −λ.
+    // Both turn equally: J Ω̇ = −T + λ = −λ.
     const double creep = -vehicle::kLockCreep * 0.5 * T / capacity;
     EXPECT_TRUE(lock.holds(system));
     EXPECT_NEAR(lock.torque(system), 0.5 * T, 1e-9 * T);
@@ -189,7 +189,7 @@ TEST(Brake, four_brakes_on_a_locked_chain_hold_together_and_share_the_load_evenl
 }
 
 TEST(Brake, works_between_an_upright_that_swings_and_its_wheel_without_turning_the_whole) {
-  // Two bodies free in space on a common bearing: the brake changes nothing of their angular momentum.
+  // Two bodies free in space on a common bearing: the brake does not change their angular momentum.
   vehicle::System system(Vec3::Zero());
   vehicle::BodyState state;
   state.angular_velocity = Vec3(0.4, 0.3, -0.2);

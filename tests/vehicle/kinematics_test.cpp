@@ -1,4 +1,4 @@
-// Kinematics of the suspensions against a solution of its own, and against geometry by hand.
+// Kinematics of the suspensions against an independent solution, and against geometry by hand.
 #include "vehicle/analysis/kinematics.hpp"
 #include "tests/refusal.hpp"
 
@@ -28,7 +28,7 @@ Vec3 touching(const DoubleWishbone::Points& p) {
   return p[DoubleWishbone::kCenter] + kRadius * (a.z() * a - Vec3::UnitZ()).normalized();
 }
 
-/// What the inner ends of the tie rods move by: arm and idler of equal length make a parallelogram.
+/// Motion of the tie rods' inner ends: arm and idler of equal length make a parallelogram.
 Vec3 link_motion(double steering) {
   const double angle = -30.0 * steering * std::numbers::pi / 180.0;
   const Quat pitch(Eigen::AngleAxisd(18.5 * std::numbers::pi / 180.0, Vec3::UnitY()));
@@ -132,7 +132,7 @@ TEST(Kinematics, positive_steering_turns_the_wheels_to_the_left_and_the_inner_on
   }
 }
 
-// A steering that asks for more than its linkage gives is told by demand, limit and the input at which it is reached.
+// If a steering demands more than its linkage allows, the message contains demand, limit and the input at the limit.
 TEST(Kinematics, a_rack_beyond_its_linkage_is_told_with_travel_limit_and_demand) {
   vehicle::VehicleSpec car = shipped("buggy.json");
   std::get<vehicle::RackSpec>(*car.axles[0].steering).left_travel = -0.5;
@@ -144,7 +144,7 @@ TEST(Kinematics, a_rack_beyond_its_linkage_is_told_with_travel_limit_and_demand)
                  [&] { vehicle::check_locks(car, radii); });
 }
 
-// Trailing arm by hand: the centre moves on a circle about the pivot; camber and toe stay as they are.
+// Trailing arm by hand: the centre moves on a circle about the pivot; camber and toe do not change.
 TEST(Kinematics, a_trailing_arm_moves_on_its_circle) {
   const vehicle::VehicleSpec spec = shipped("rover.json");
   for (const KinematicsRow& row : sweep(spec, 0.058, 0.02, 5)) {
@@ -156,7 +156,8 @@ TEST(Kinematics, a_trailing_arm_moves_on_its_circle) {
   }
 }
 
-// A rigid axle that rolls about a panhard rod on its middle: the roll centre is where the rod meets the middle plane.
+// A rigid axle that rolls about a panhard rod on its middle: the roll centre is the intersection of the rod with the
+// middle plane.
 TEST(Kinematics, the_roll_center_of_a_rigid_axle_lies_at_its_panhard_rod) {
   for (const KinematicsRow& row : sweep(shipped("buggy.json"), 0.3, 0.05, 3)) {
     if (!row.wheel.starts_with("rear") || row.motion != "opposite" || std::abs(row.travel) > 1e-9) continue;

@@ -91,8 +91,8 @@ TEST(SliderCrank, driven_crank_gives_exact_kinematics_and_power_balance) {
   EXPECT_NEAR(work, gained, 1e-4 * system.kinetic_energy());
 }
 
-// A platform on two parallel bars turns with neither: every point moves on a circle. Four hinges about
-// parallel axes hold the loop three times more often than needed.
+// A platform on two parallel bars does not turn: every point moves on a circle. Four hinges about parallel axes give
+// the loop three redundant rows.
 TEST(FourBar, parallelogram_motor_torque_matches_statics_and_redundancy_is_flagged) {
   const double l = 0.6, w = 1.0, theta = 0.5, platform_mass = 20.0, bar_mass = 3.0;
   const Vec3 arm(l * std::sin(theta), 0.0, -l * std::cos(theta));

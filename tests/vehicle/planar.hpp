@@ -1,4 +1,4 @@
-// Bodies and joints for mechanisms that move in the x–z plane, hinged about y.
+// Bodies and joints for mechanisms in the x–z plane, hinged about y.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace furrow::testing {
 
-/// A bar whose centre lies at `centre`, turned by `angle` about y; its own z axis runs along the bar.
+/// A bar with its centre at `centre`, turned by `angle` about y; its own z axis is along the bar.
 inline vehicle::BodyState bar_state(const Vec3& centre, double angle) {
   vehicle::BodyState state;
   state.position = centre;

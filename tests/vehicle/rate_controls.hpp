@@ -1,11 +1,11 @@
-// What the tests of shafts and drivelines share: how rows in speeds are controlled.
+// Controls of rows in speeds, for the tests of shafts and drivelines.
 #pragma once
 
 #include "vehicle/multibody/rate_row.hpp"
 
 namespace furrow::testing {
 
-/// A row that turns with `value`, N m.
+/// A row with the torque `value`, N m.
 inline vehicle::RateControl torque(double value) {
   vehicle::RateControl control;
   control.mode = vehicle::RateMode::torque;

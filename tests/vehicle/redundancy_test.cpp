@@ -1,4 +1,4 @@
-// More constraints than needed: unique motion, reactions of minimum norm, contradictions named.
+// More constraints than needed: unique motion, reactions of minimum norm, names of contradicting constraints.
 #include <gtest/gtest.h>
 
 #include "protocol/core/constants.hpp"
@@ -35,7 +35,7 @@ TEST(Redundancy, door_on_two_hinges_has_minimum_norm_reactions) {
   EXPECT_NEAR(world(lower).force.x(), b * c, 1e-6 * scale);
   EXPECT_NEAR(world(upper).moment.y(), -c, 1e-6 * scale);
   EXPECT_NEAR(world(lower).moment.y(), -c, 1e-6 * scale);
-  // Whatever the split, the sums are exact.
+  // The sums are exact for any split.
   EXPECT_NEAR(world(upper).force.z() + world(lower).force.z(), scale, 1e-10 * scale);
 }
 

@@ -23,7 +23,7 @@ vehicle::JointPlace rod(const Vec3& from, const Vec3& to, const Vec3& axis) {
 }  // namespace
 
 // A ball hung on a hinged rod swings in the plane across the hinge: a simple pendulum of the rod's length there, with
-// the quarter period √(l/g) K(sin θ₀/2), whatever the offset along the hinge.
+// the quarter period √(l/g) K(sin θ₀/2), for any offset along the hinge.
 TEST(RevoluteSpherical, ball_on_a_hinged_rod_is_a_plane_pendulum) {
   const double l = 0.8, angle = 1.4, offset = 0.3;
   const auto angle_after_quarter = [&](int steps) {

@@ -1,4 +1,4 @@
-// What a JSON schema says against a document: as much of draft 7 as the vehicle schema uses.
+// Checks a document with a JSON schema: the part of draft 7 that the vehicle schema uses.
 #pragma once
 
 #include <algorithm>

@@ -45,7 +45,8 @@ TEST(Shaft, law_of_the_speed_is_of_second_order_and_stable_when_far_stiffer_than
 }
 
 TEST(Gear, pair_accelerates_with_the_reduced_inertia_and_the_carrier_takes_the_difference) {
-  // T = (J₁ + g² J₂) Ω̇₁; the housing feels −T from the motor and what the teeth leave, in all −d/dt of the momenta.
+  // T = (J₁ + g² J₂) Ω̇₁; the motor's −T and the unbalanced torque of the teeth act on the housing, together −d/dt of
+  // the momenta.
   const double J1 = 0.3, J2 = 1.7, g = 0.2, T = 12.0, h = 1e-3;
   vehicle::System system(Vec3::Zero());
   const int housing = system.add_body("housing", 50.0, Vec3(4, 5, 6).asDiagonal(), {});

@@ -137,7 +137,7 @@ TEST(Spring, mass_that_bounces_between_the_stops_keeps_energy_to_second_order) {
       EXPECT_TRUE(strut.system.step(0.5 / steps).ok);
       worst = std::max(worst, std::abs(strut.energy() + strut.system.element_energy(strut.element).stored - start));
     }
-    // The elastic part's own work is what kinetic and gravity energy gained, and nothing is dissipated.
+    // The elastic part's work equals the gain of kinetic and gravity energy, and nothing is dissipated.
     const vehicle::ElementEnergy energy = strut.system.element_energy(strut.element);
     EXPECT_LT(std::abs(energy.dissipated), 1e-9);
     return worst;

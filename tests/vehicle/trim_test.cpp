@@ -63,7 +63,7 @@ TEST(Trim, hmmwv_stands_at_the_drawn_height_with_the_axle_loads_of_hand_statics)
     const double by_hand = mass * kStandardGravity * (x + 1652.965) / 3301.93;
     verification::verify(std::string(name) + " at rest", "load of the front axle, N", trim.axle_loads[0], by_hand, 2e-3,
                          "hand statics of the drawn points");
-    // In the posture itself: the sums are exact.
+    // In the posture itself the sums are exact.
     EXPECT_NEAR(trim.axle_loads[0] + trim.axle_loads[1], car.mass() * kStandardGravity, 1e-6);
     const double xf = car.rim(0).position.x(), xr = car.rim(2).position.x();
     EXPECT_NEAR(trim.axle_loads[0], car.mass() * kStandardGravity * (center_of_mass(car).x() - xr) / (xf - xr), 0.5)
@@ -88,7 +88,7 @@ TEST(Trim, struts_know_their_stops_and_the_vehicle_stays_where_it_was_put) {
     EXPECT_NEAR(wheel.load, 5e5 * wheel.deflection, 1e-3);
   }
   EXPECT_NEAR(trim.wheels[0].height, car.rim(0).position.z() - 0.3, 1e-12);
-  // At rest it stays: accelerations of the whole are zero with the trim's wheel loads.
+  // It stays at rest: accelerations of the whole vehicle are zero with the trim's wheel loads.
   for (int k = 0; k < 4; ++k) {
     const Vec3 axle = car.rim(k).orientation * Vec3::UnitY();
     const Vec3 arm = (car.rim(k).position.z() - 0.3) / (1.0 - axle.z() * axle.z()) * (axle.z() * axle - Vec3::UnitZ());
@@ -103,7 +103,8 @@ TEST(Trim, struts_know_their_stops_and_the_vehicle_stays_where_it_was_put) {
   EXPECT_LT((car.origin() - before).norm(), 1e-7);
 }
 
-// The pull along a slope acts in the centre of mass, what holds it where the tires touch: it moves load down the slope.
+// The pull along a slope acts at the centre of mass and the holding forces at the tires' contacts: this moves load down
+// the slope.
 TEST(Trim, on_a_slope_axles_and_sides_carry_what_hand_statics_say) {
   vehicle::VehicleSpec spec = shipped("hmmwv.json");
   spec.driveline = {};
@@ -134,7 +135,7 @@ TEST(Trim, on_a_slope_axles_and_sides_carry_what_hand_statics_say) {
 // A chassis on four wheels in fixed bearings is one rigid body on four springs k at x = a, −b and y = ±s, whose centre
 // of mass lies h above the wheels' centres and H above the ground:
 //   heave and pitch  M = diag(m, J_y), K = [2(k + k), −2k(a − b); ., 2k(a² + b²) − W h]
-//   roll             4 k s² − W H, since a wheel that leans goes down on its edge
+//   roll 4 k s² − W H, since a leaning wheel moves down on its edge
 TEST(Trim, modes_of_a_rigid_vehicle_on_four_springs_match_the_closed_form) {
   nlohmann::json text = shipped_text("rover.json");
   text.erase("driveline");
@@ -156,7 +157,7 @@ TEST(Trim, modes_of_a_rigid_vehicle_on_four_springs_match_the_closed_form) {
     J += body.R * body.inertia * body.R.transpose() +
          body.mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   }
-  // The chassis' own centre of mass is held in x and y: the whole one's moves sideways as it turns.
+  // The chassis' centre of mass is held in x and y, so the whole vehicle's moves sideways as it turns.
   const double arm = centre.z() - car.system().body(car.chassis()).state.position.z();
   J += m * arm * arm * Mat3::Identity();
   const double xf = car.rim(0).position.x() - centre.x(), xr = car.rim(2).position.x() - centre.x();
@@ -229,7 +230,7 @@ TEST(Trim, every_shipped_vehicle_stands_near_its_drawn_position) {
     }
     for (const vehicle::TrimMode& one : trim.modes) EXPECT_GT(one.frequency, 0.3) << name << " " << one.name;
   }
-  // Each wheel of the rover carries what a laboratory's single wheel does.
+  // Each wheel of the rover has the load of a laboratory's single wheel.
   Vehicle rover(shipped("rover.json"));
   for (const vehicle::WheelTrim& wheel : vehicle::trim(rover, linear_tires(6, 0.058, 1e6)).wheels)
     EXPECT_NEAR(wheel.load, 24.5, 0.1 * 24.5) << wheel.name;

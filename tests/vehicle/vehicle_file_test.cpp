@@ -1,4 +1,4 @@
-// Vehicle files: what is shipped follows the schema, and every mistake names file, key and what was expected.
+// Vehicle files: shipped files follow the schema, and every error names file, key and expected value.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -23,7 +23,7 @@ std::string complaint(const json& document) {
   return without_file(refusal(ExitCode::bad_input, [&] { vehicle::read_vehicle(document, "car.json"); }), "car.json");
 }
 
-/// The complaint about a shipped file with one value changed; null takes the key away.
+/// The error for a shipped file with one value changed; null removes the key.
 std::string changed(const std::string& file, const std::string& pointer, const json& value) {
   json document = shipped_text(file);
   const json::json_pointer at(pointer);
@@ -35,13 +35,13 @@ std::string changed(const std::string& file, const std::string& pointer, const j
   return complaint(document);
 }
 
-/// One value of a shipped file changed, and what is said against it; null takes the key away.
+/// One changed value of a shipped file and its error; null removes the key.
 struct Mistake {
   const char* file;
   std::string pointer;
   json value;
   const char* said;
-  std::string key = "";  // that is named; empty: the one of the pointer
+  std::string key = "";  // in the message; empty: the pointer's key
 };
 
 /// "/axles/0/wheel" as "axles[0].wheel".
@@ -81,7 +81,7 @@ TEST(VehicleFile, the_right_side_is_the_mirror_image_unless_the_file_says_otherw
   EXPECT_EQ(odd.axles[1].corners[0].wheel.tire, "hmmwv_layered.json");
   EXPECT_EQ(odd.axles[1].corners[1].wheel.tire, "other.json");
   EXPECT_FALSE(odd.axles[1].corners[1].brake.has_value());
-  // Products of inertia change their sign where y is one of the two axes.
+  // Products of inertia change their sign if y is one of the two axes.
   vehicle::BodySpec body;
   body.inertia << 3, 0.1, 0.2, 0.1, 3, 0.3, 0.2, 0.3, 3;
   const Mat3 image = vehicle::mirrored(body).inertia;
@@ -185,7 +185,7 @@ TEST(VehicleFile, mistakes_in_the_driveline_name_their_key) {
   });
 }
 
-// What is far beyond any vehicle is refused by the reader and by the schema, which editors use.
+// Values far beyond any vehicle are refused by the reader and by the schema, which editors use.
 TEST(VehicleFile, magnitudes_beyond_any_vehicle_are_refused_as_the_schema_says) {
   const json keys = shipped_text("vehicle.schema.json");
   const SchemaCheck schema(keys);
@@ -194,7 +194,7 @@ TEST(VehicleFile, magnitudes_beyond_any_vehicle_are_refused_as_the_schema_says) 
     const char* file;
     std::string pointer;
     json value;
-    const char *expected, *of_schema;  // of_schema empty: a schema cannot say it
+    const char *expected, *of_schema;  // of_schema empty: a schema cannot express it
   } kTable[] = {
       {"hmmwv.json", "/chassis/mass", 1e9, "key 'chassis.mass': is 1e9 kg, expected a number, above 0 up to 1e7 kg",
        "/chassis/mass: is out of range"},
@@ -266,7 +266,7 @@ TEST(VehicleFile, an_unknown_key_of_the_right_side_is_told_with_all_that_there_a
             "key 'axles[0].right.wheels': is unknown, expected 'wheel'?");
 }
 
-// Magnitudes that some vehicle may have, but not this one: each with what it would do.
+// Magnitudes that some vehicle may have, but not this one, each with its effect.
 TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do) {
   const std::string s = "/axles/0/suspension";
   const struct {
@@ -317,7 +317,7 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
     EXPECT_EQ(found, 1) << one.pointer << "\n" << said;
     EXPECT_EQ(said.find(".right."), std::string::npos) << "the mirrored side says it once:\n" << said;
   }
-  // Of the right side alone.
+  // On the right side alone.
   json document = shipped_text("hmmwv.json");
   document["axles"][0]["right"]["brake"]["torque"] = 4e6;
   const vehicle::VehicleSpec spec = vehicle::read_vehicle(document, "car.json");
@@ -352,7 +352,7 @@ TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->shift_time = 400.0; }),
             "driveline.gearbox.shift_time");
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gears[1].ratio *= -1.0; }), "driveline.gears");
-  // Final drives that are input over output.
+  // Final drives given as input over output.
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) {
               for (vehicle::GearSpec& gear : line.gears) gear.ratio = 1.0 / gear.ratio;
             }),

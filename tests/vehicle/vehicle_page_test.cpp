@@ -1,4 +1,4 @@
-// What is told of a vehicle before it drives: counts, masses, how it stands; vibrations on tires that do not deflect.
+// Properties of a vehicle before it drives: counts, masses, posture, and vibrations on tires that do not deflect.
 #include "vehicle/analysis/vehicle_page.hpp"
 #include "tests/refusal.hpp"
 
@@ -92,7 +92,7 @@ TEST(VehiclePage, of_the_hmmwv_has_its_distances_speeds_and_sense_of_steering) {
   EXPECT_EQ(page.full_steering[1], 0.0);
   EXPECT_TRUE(vehicle::steers_against(spec, page).empty());
   ASSERT_EQ(page.gear_speeds.size(), spec.driveline.gearbox->ratios.size());
-  // One speed of the engine: speeds are as the ratios are.
+  // At one speed of the engine, speeds are proportional to the ratios.
   for (std::size_t k = 1; k < page.gear_speeds.size(); ++k)
     EXPECT_NEAR(page.gear_speeds[k].speed / page.gear_speeds[0].speed,
                 spec.driveline.gearbox->ratios[k] / spec.driveline.gearbox->ratios[0], 1e-12);
@@ -105,7 +105,7 @@ TEST(VehiclePage, of_the_hmmwv_has_its_distances_speeds_and_sense_of_steering) {
   EXPECT_EQ(odd[0].first, "axles[0].steering.left_angle_deg");
 }
 
-// A rigid tire's vibration is that of the ground that was put under it: four times the stiffness, twice as high.
+// A rigid tire vibrates on the ground assumed under it: four times the stiffness doubles its frequency.
 TEST(VehiclePage, on_tires_that_do_not_deflect_tells_only_vibrations_of_the_vehicle_s_own_springs) {
   const VehiclePage page = vehicle::vehicle_page(shipped("buggy.json"), tires(4, 10.0, 0.3, 0.0));
   std::vector<std::string> names;
@@ -118,7 +118,7 @@ TEST(VehiclePage, on_tires_that_do_not_deflect_tells_only_vibrations_of_the_vehi
   for (const std::string& name : names) EXPECT_EQ(name.find("hop"), std::string::npos) << name;
 }
 
-// Each phase is told as it begins, whatever the machine's speed, and the call may stop any of them.
+// Each phase is reported as it begins, at any speed of the machine, and the call may stop each of them.
 TEST(VehiclePage, tells_its_progress_from_the_beginning_of_each_phase_and_can_be_stopped_in_any) {
   const vehicle::VehicleSpec spec = shipped("hmmwv.json");
   std::vector<std::string> phases;

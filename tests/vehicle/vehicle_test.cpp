@@ -119,8 +119,8 @@ TEST(Vehicle, drive_shift_steering_and_brakes_leave_momentum_and_angular_momentu
   }
 }
 
-// Over a step with constant wrenches, the step's own sums: ΔL = h Σ (x̄ × F + M), x̄ the mean of the positions before
-// and after. Gravity acts in each body's centre of mass.
+// Over a step with constant wrenches: ΔL = h Σ (x̄ × F + M), x̄ the mean of the positions before and after. Gravity
+// acts in each body's centre of mass.
 TEST(Vehicle, moments_of_the_whole_vehicle_about_the_ground_balance_at_every_step) {
   for (const char* name : {"hmmwv.json", "hmmwv_tr.json", "buggy.json"}) {
     Vehicle car(shipped(name));
@@ -156,7 +156,7 @@ TEST(Vehicle, moments_of_the_whole_vehicle_about_the_ground_balance_at_every_ste
   }
 }
 
-// Without driveline nothing moves once it has swayed: round-off is then that of the loads, no longer that of speeds.
+// Without a driveline nothing moves once it has swayed: round-off then comes from the loads and not from speeds.
 TEST(Vehicle, braked_on_a_slope_it_comes_to_rest_and_goes_on) {
   vehicle::VehicleSpec spec = shipped("hmmwv.json");
   spec.driveline = {};

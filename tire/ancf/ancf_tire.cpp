@@ -137,7 +137,7 @@ void AncfTire::acted(NodalForces& forces) const {
   for (const auto& [k, entry] : answering_) forces.force[k] = integrator_.contact().impulse(entry) / interval_;
 }
 
-/// The step from `from` to `to`, counted in substeps; in halves of it where the iteration does not converge.
+/// Makes the step from `from` to `to`, counted in substeps; in halves if the iteration does not converge.
 Outcome AncfTire::step(const RimTrajectory& rim, double from, double to, int substeps, int halvings) {
   FURROW_ASSERT(from < to && to <= substeps && halvings >= 0, from, to, substeps, halvings);
   const double share = (to - from) / substeps;

@@ -1,6 +1,6 @@
-// The layered ANCF shell tire: bead nodes follow the rim exactly, the rest is integrated implicitly.
-// The contact surface is the mid-surface (nodes), closed at each bead by a disc whose centre vertex moves
-// with the rim; forces on the disc centres go to the rim.
+// The layered ANCF shell tire. Bead nodes follow the rim exactly; the other nodes are integrated implicitly. The
+// contact surface is the mid-surface (nodes). A disc closes it at each bead; its centre vertex moves with the rim, and
+// forces on it act on the rim.
 #pragma once
 
 #include <utility>
@@ -14,7 +14,7 @@ namespace furrow::tire {
 
 class AncfTire final : public Tire {
  public:
-  /// @param alive  called now and then while the tire is inflated; may throw to stop
+  /// @param alive called repeatedly during inflation; may throw to stop
   explicit AncfTire(const TireFile& file, const ShellIntegratorParams& params = {}, std::function<void()> alive = {});
 
   int coordinates() const override { return 6 * ring_.nodes(); }
@@ -43,8 +43,8 @@ class AncfTire final : public Tire {
   RimClearance clearance_;
   ShellIntegrator integrator_;
   InflationReport inflation_;
-  // ∫ (V − V₀) dp since the tire was placed, J: what a changing pressure puts into the potential −p (V − V₀) without
-  // work on the tire.
+  // ∫ (V − V₀) dp since the tire was placed, J: change of the potential −p (V − V₀) by a changing pressure, which does
+  // no work on the tire.
   double pressure_work_ = 0.0;
   Field force_;  // of the running interval
   std::vector<std::pair<std::size_t, std::size_t>>

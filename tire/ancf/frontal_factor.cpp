@@ -95,7 +95,7 @@ void FrontalFactor::eliminate(const std::vector<int>& supernodes, std::span<cons
     }
 }
 
-/// The columns of supernode s, and what its children pass on to rows below in passed_[s].
+/// Gathers the columns of supernode s, and its children's contributions to the rows below in passed_[s].
 void FrontalFactor::gather(int s, std::span<const float> values, std::vector<float>& columns) {
   FURROW_ASSERT(in_range(s, entries_.size()), s, entries_.size());
   FURROW_ASSERT(std::all_of(entries_[s].begin(), entries_[s].end(),

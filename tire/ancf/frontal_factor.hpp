@@ -1,10 +1,10 @@
 // Cholesky factor of a sparse symmetric matrix that can be renewed in part.
 //
-// Multifrontal method [Duff & Reid 1983, The multifrontal solution of indefinite sparse symmetric linear equations,
-// ACM Trans. Math. Softw. 9, doi:10.1145/356044.356047]: each supernode of the elimination tree adds its entries of the
-// matrix and what its children pass on, eliminates its own columns, and passes the rest to its parent. What is passed
-// is kept; when entries of the matrix change only the supernodes that hold them and those above are computed again. The
-// result does not depend on what was renewed before: a factor made at once has the same bits.
+// Multifrontal method [Duff & Reid 1983, The multifrontal solution of indefinite sparse symmetric linear equations, ACM
+// Trans. Math. Softw. 9, doi:10.1145/356044.356047]: each supernode of the elimination tree adds its entries of the
+// matrix and its children's Schur complements, eliminates its own columns, and passes its Schur complement to its
+// parent. Schur complements are kept: when entries of the matrix change, only the supernodes that hold them and those
+// above are computed again. The result does not depend on earlier renewals: a factor made at once has the same bits.
 //
 // Single precision: the factor corrects a residual that is computed in double precision.
 #pragma once
@@ -19,8 +19,8 @@ namespace furrow::tire {
 
 class FrontalFactor {
  public:
-  /// One entry of the matrix: where its value stands among the values given to factorize, its row and column in the
-  /// order of elimination (row ≥ column), and the group of entries with which it changes.
+  /// One entry of the matrix: the index of its value in `values` of factorize, its row and column in the order of
+  /// elimination (row ≥ column), and the group of entries with which it changes.
   struct Entry {
     int value = 0, row = 0, column = 0, group = 0;
   };
@@ -30,7 +30,7 @@ class FrontalFactor {
   /// @pre row ≥ column and group < groups in each of them
   FrontalFactor(PanelPattern pattern, const std::vector<Entry>& entries, int groups);
 
-  /// Computes what depends on the groups marked in `changed`, the branches of the pattern by `threads`.
+  /// Computes the supernodes that depend on the groups marked in `changed`; `threads` share the pattern's branches.
   /// @returns false when the matrix is not positive definite; the factor is then unusable until all groups are renewed
   bool factorize(std::span<const float> values, std::span<const char> changed, int threads);
 
@@ -38,7 +38,7 @@ class FrontalFactor {
   void solve(float* x, int threads) { pattern_.solve(factor_, x, work_, threads); }
 
   const PanelPattern& pattern() const { return pattern_; }
-  /// Floating point operations of the last factorize, and of one that renews all.
+  /// Floating point operations of the last factorize, and of a complete one.
   double operations() const { return operations_; }
   double all_operations() const { return all_operations_; }
 

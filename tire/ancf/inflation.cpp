@@ -17,7 +17,7 @@ constexpr double kCreepTime = 5e-3;  // τ, s
 constexpr double kFirstStep = 1e-3;  // s
 constexpr double kMaxStep = 10.0;    // s
 constexpr double kTolerance = 1e-8;  // of the static residual, relative to the full pressure's forces
-constexpr double kNewton = 1e-9;     // of a step's residual, likewise
+constexpr double kNewton = 1e-9;     // of a step's residual, relative to the same forces
 constexpr double kRounding = 1e-11;  // m, of coordinates: Newton's corrections below it are rounding errors
 constexpr double kAccepted = 1e-2;   // of the static residual, after the last step
 constexpr int kRampSteps = 10;
@@ -48,7 +48,7 @@ class ColumnCreep {
       add(change);
       r = residual(c);
       if (!(r.norm() < 1e3 * reference_)) break;
-      // At low pressure rounding errors of c D̂ E alone are above the tolerance: more digits cannot be had.
+      // At low pressure the rounding errors of c D̂ E alone are above the tolerance: more digits are not possible.
       if (r.norm() < kNewton * reference_ || change.lpNorm<Eigen::Infinity>() < kRounding) {
         shell_.strains(q_, strains_);
         return true;

@@ -1,8 +1,8 @@
-// Inflates the undeformed ring on a rim at rest, axisymmetrically: one column of nodes is unknown, the others
-// are it turned. A layered tire need not be stable as a static body: the steel belts of the reference layup
-// carry compressive hoop force at the tread's edges. The equilibrium is therefore approached by creep under
-// the Kelvin–Voigt law (no inertia), B(q')ᵀ D̂ [E' + τ ΔE/h] = p ∂V/∂q(q'), whose step h grows while the
-// tangent stays positive definite and shrinks when its Cholesky factorization fails.
+// Inflates the undeformed ring on a rim at rest, axisymmetrically: one column of nodes is unknown, the others are the
+// same column turned. A layered tire need not be stable as a static body: the steel belts of the reference layup carry
+// compressive hoop force at the tread's edges. The equilibrium is therefore approached by creep under the Kelvin–Voigt
+// law (no inertia), B(q')ᵀ D̂ [E' + τ ΔE/h] = p ∂V/∂q(q'). Its step h grows while the tangent stays positive definite
+// and shrinks when the Cholesky factorization fails.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace furrow::tire {
 
 struct InflationReport {
   int steps = 0;
-  int shrunk = 0;         // times that a step was repeated with a smaller h
+  int shrunk = 0;         // repetitions of a step with a smaller h
   double residual = 0.0;  // of the static equations, relative to the pressure forces
 };
 

@@ -81,8 +81,8 @@ std::size_t PanelPattern::panel_values(int s) const {
   return triangle_values(p.columns) + static_cast<std::size_t>(kStrip) * strips(p.below) * p.columns;
 }
 
-/// Subtrees of at most 1/(2 kBranches) of the factor are shared out, the largest first; what is above them is the
-/// trunk.
+/// Distributes subtrees of at most 1/(2 kBranches) of the factor to the branches, the largest first. The columns above
+/// them are the trunk.
 void PanelPattern::cut() {
   const int count = static_cast<int>(panels_.size());
   std::vector<std::size_t> weight(count, 0);  // of the subtree

@@ -1,30 +1,30 @@
-// Triangular solves with a supernodal Cholesky factor, single precision, laid out for them.
+// Triangular solves with a supernodal Cholesky factor in single precision.
 //
-// A solve reads the factor twice and computes little: what it costs is memory traffic. So the factor is kept in single
-// precision (it corrects a residual that is computed in double precision), and each supernode as a panel that both
-// solves read from front to back:
+// A solve reads the factor twice and computes little: its cost is memory traffic. So the factor is kept in single
+// precision; it corrects a residual that is computed in double precision. Each supernode is a panel that both solves
+// read from front to back:
 //   panel = [L₁₁⁻¹; L₂₁], in strips of kStrip rows, column by column within a strip.
-// With the diagonal block inverted there is no recurrence inside a panel: both solves are products.
+// As the diagonal block is inverted, there is no recurrence inside a panel: both solves are products.
 //   forward:   x₁ ← L₁₁⁻¹ x₁,  x₂ ← x₂ − L₂₁ x₁        backward:  x₁ ← L₁₁⁻ᵀ (x₁ − L₂₁ᵀ x₂)
 //
-// The elimination tree is cut into branches that threads take, and a trunk that follows them (forward) or leads
-// (backward). Each branch sums what it passes to the trunk for itself; the cut is that of the pattern, so that results
-// have the same bits for any number of threads.
+// The elimination tree is cut into branches, which threads share, and a trunk, solved after them (forward) or before
+// them (backward). Each branch sums its own contribution to the trunk. The cut depends on the pattern alone, so that
+// results have the same bits for any number of threads.
 #pragma once
 
 #include <vector>
 
 namespace furrow::tire {
 
-/// Which rows and columns the supernodes of a factor have; shared by all factors of one pattern.
+/// Rows and columns of a factor's supernodes; all factors of one pattern share them.
 class PanelPattern {
  public:
   struct Panel {
     int first = 0;         // column
     int columns = 0;       // how many
     int below = 0;         // rows of L₂₁
-    int rows = 0;          // where their numbers begin
-    std::size_t data = 0;  // where the panel begins in a factor's values
+    int rows = 0;          // start of their numbers
+    std::size_t data = 0;  // start of the panel in a factor's values
   };
 
   static constexpr int kBranches = 4;
@@ -34,7 +34,7 @@ class PanelPattern {
   PanelPattern(int supernodes, const int* super, const int* row_start, const int* row_number);
 
   int size() const { return size_; }
-  /// Length of a right-hand side with room for what the branches pass on.
+  /// Length of a right-hand side with room for the branches' contributions to the trunk.
   int padded_size() const { return size_ + kBranches * trunk_columns_; }
   std::size_t values() const { return values_; }
   const std::vector<Panel>& panels() const { return panels_; }
@@ -59,7 +59,7 @@ class PanelPattern {
 
   std::vector<Panel> panels_;
   std::vector<int> row_, parent_;
-  std::vector<int> to_;  // as row_, but rows of the trunk in the branch's own part of the padding
+  std::vector<int> to_;  // as row_, but rows of the trunk are in the branch's own part of the padding
   std::vector<std::vector<int>> branch_;
   std::vector<int> trunk_column_;  // columns of the trunk
   int trunk_columns_ = 0;

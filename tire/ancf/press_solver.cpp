@@ -24,7 +24,7 @@ namespace {
 constexpr double kTolerance = 1e-6;       // of the free residual, relative to the load
 constexpr double kDirectorLength = 0.01;  // m, makes director residuals (N m) comparable with forces
 constexpr double kMinLoad = 1.0;          // N, below which the residual is relative to the pressure forces
-constexpr double kMinViscosity = 1e-3;    // σ = τ/h: first tried where the tangent is not positive definite
+constexpr double kMinViscosity = 1e-3;    // σ = τ/h: first value if the tangent is not positive definite
 constexpr double kMaxViscosity = 1e6;
 constexpr double kRounding = 1e-13;  // of the potential, relative to its elastic part and p V
 constexpr int kMaxSteps = 1500;
@@ -33,7 +33,7 @@ constexpr double kShortStep = 0.2;                        // share of a step bel
 constexpr int kAround = 6, kAcross = 4, kMaxAround = 64;  // contact points of an element
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
 
-/// So many that a bar's top, or its edge where that is longer, meets two at least.
+/// Number of points such that a bar's top, or its edge if that is longer, meets at least two.
 int points_around(const ShellMesh& mesh, const PressObstacle& obstacle) {
   if (obstacle.height <= 0.0) return kAround;
   double longest = 0.0;
@@ -49,7 +49,7 @@ struct PressSolver::Linear {
   Eigen::SparseMatrix<double> matrix;  // lower triangle
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> llt;
   BatchTangent tangent;
-  std::vector<std::array<int, 300>> slot;  // of each element: where the lower triangle of its matrix goes; −1: a bead's
+  std::vector<std::array<int, 300>> slot;  // of each element: places of its matrix's lower triangle; −1: a bead's
 
   static int at(int r, int k) { return r >= k ? r * (r + 1) / 2 + k : k * (k + 1) / 2 + r; }
 
@@ -89,7 +89,7 @@ struct PressSolver::Linear {
     return llt.info() == Eigen::Success;
   }
 
-  /// Where unknown k lies in a field.
+  /// Index of unknown k in a field.
   static std::size_t place(const ShellLayout& layout, int k) {
     const int across = layout.rows - 2;
     return layout.offset(1 + k / 6 % across, k % 6) + k / 6 / across;
@@ -138,8 +138,8 @@ PressSolver::PressSolver(const TireFile& file, const ShellMesh& mesh, const Fiel
 
 PressSolver::~PressSolver() = default;
 
-/// visit(i, j, weights of the corners, position, share of the undeformed area), for points
-/// below the obstacle's top at least.
+/// Calls visit(i, j, weights of the corners, position, share of the undeformed area), at least for points below the
+/// obstacle's top.
 template <class Visit>
 void PressSolver::contact_points(Visit visit) const {
   for (int j = 0; j + 1 < layout_.rows; ++j) {
@@ -164,14 +164,14 @@ void PressSolver::contact_points(Visit visit) const {
   }
 }
 
-/// Of a point, m; its part of the contact's stiffness acts along −∂depth/∂x.
+/// Depth of a point, m; its part of the contact's stiffness acts along −∂depth/∂x.
 double PressSolver::depth(const Vec3& x, const PressObstacle::Profile& top) const {
   return top_ + top.height - up_.dot(x);
 }
 
 Vec3 PressSolver::normal(const PressObstacle::Profile& top) const { return up_ - top.slope * Vec3::UnitX(); }
 
-/// Adds to r_, rim_ and potential_, or to the tangent.
+/// Adds the contact to r_, rim_ and potential_, or to the tangent.
 void PressSolver::contact(bool tangent) {
   contact_points([&](int i, int j, const std::array<double, 4>& w, const Vec3& x, double area) {
     const PressObstacle::Profile top = obstacle_.at(x.x());
@@ -191,7 +191,7 @@ void PressSolver::contact(bool tangent) {
       return;
     }
     potential_ += 0.5 * stiffness * depth * depth;
-    const Vec3 force = stiffness * depth * Vec3(-top.slope, 0.0, 1.0);  // in the ground's axes, as the place
+    const Vec3 force = stiffness * depth * Vec3(-top.slope, 0.0, 1.0);  // in the ground's axes, like the position
     rim_.force += force, rim_.moment += Vec3(x.x(), left_.dot(x), up_.dot(x)).cross(force);
     for (int n = 0; n < 4; ++n) {
       const int row = j + kRow[n], column = (i + kColumn[n]) % layout_.columns;
@@ -200,7 +200,7 @@ void PressSolver::contact(bool tangent) {
   });
 }
 
-/// ∂Π/∂q into r_, Π into potential_, what the rim bears into rim_. @returns the free residual's norm
+/// Computes ∂Π/∂q in r_, Π in potential_ and the rim's wrench in rim_. @returns the free residual's norm
 double PressSolver::evaluate() {
   potential_ = shell_.account(q_, strains_).elastic - shell_.pressure() * shell_.volume(q_, Vec3::Zero());
   shell_.forces(q_, q_, strains_, 1.0, r_);
@@ -216,7 +216,7 @@ double PressSolver::evaluate() {
   return std::sqrt(total);
 }
 
-/// ∂²Π/∂q² + σ K_material at q_ without the contact's part.
+/// Computes ∂²Π/∂q² + σ K_material at q_ without the contact's part.
 void PressSolver::assemble() {
   linear_->matrix.coeffs().setZero();
   for (int j = 0; j + 1 < layout_.rows; ++j)
@@ -233,7 +233,7 @@ void PressSolver::assemble() {
     }
 }
 
-/// Factor of ∂²Π/∂q² + σ K_material at q_. @returns false when it is not positive definite
+/// Factors ∂²Π/∂q² + σ K_material at q_. @returns false when it is not positive definite
 bool PressSolver::factorize() {
   assemble();
   contact(true);
@@ -241,7 +241,7 @@ bool PressSolver::factorize() {
 }
 
 /// One step of creep, with a factor in place; `norm` is the residual's norm before and after.
-/// @returns the share of it that was taken; 0: the potential does not fall along it, q_ is unchanged
+/// @returns the share of the step that was made; 0: the potential does not fall along it, q_ is unchanged
 double PressSolver::creep(double& norm) {
   const Eigen::VectorXd gradient = linear_->gather(layout_, r_), change = -linear_->llt.solve(gradient);
   const double slope = gradient.dot(change), start = potential_, norm_before = norm;
@@ -250,7 +250,7 @@ double PressSolver::creep(double& norm) {
   for (int cut = 0; cut <= kMaxCuts; ++cut, step *= 0.5) {
     move(from, change, step);
     norm = evaluate();
-    // Where the change of the potential drowns in its rounding errors the residual decides.
+    // If the potential changes by less than its rounding errors, the residual decides.
     if (-slope < rounding_ ? norm < 2.0 * norm_before : potential_ < start + 1e-4 * step * slope) return step;
   }
   q_ = from;
@@ -266,8 +266,8 @@ void PressSolver::move(const Field& from, const Eigen::VectorXd& change, double 
   layout_.fill_padding(q_);
 }
 
-/// Moves the obstacle, and with it to first order, by the factor of the last point, what it touches: the step is one of
-/// a slow motion, not a sudden release.
+/// Moves the obstacle and, to first order with the factor of the last point, the touching points. So the step follows a
+/// slow motion and not a sudden release.
 void PressSolver::follow(double top) {
   const double rise = top - top_;
   if (!(force() > 0.0)) {
@@ -350,7 +350,7 @@ double PressSolver::director_runout() const {
   return most;
 }
 
-/// C of a point; zero where it does not touch.
+/// C of a point; zero if it does not touch.
 Eigen::Matrix3d PressSolver::contact_matrix(const Vec3& x, double area, double tangential) const {
   const PressObstacle::Profile top = obstacle_.at(x.x());
   const double depth = this->depth(x, top);
@@ -391,7 +391,7 @@ GroundStiffness PressSolver::ground_stiffness(double tangential) {
   Eigen::MatrixXd right(linear_->matrix.rows(), 4);
   for (int k = 0; k < 4; ++k) right.col(k) = linear_->gather(layout_, pull[k]);
   const GroundStiffness stiffness = direct - right.transpose() * linear_->llt.solve(right);
-  factorize();  // as press() left it: the next point begins with it
+  factorize();  // restores the factor of press(), with which the next point begins
   return 0.5 * (stiffness + stiffness.transpose());
 }
 

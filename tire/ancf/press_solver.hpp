@@ -1,5 +1,5 @@
-// Static pressing of an inflated ring of shell elements, its beads fixed, on a frictionless obstacle z = H(x) in the
-// ground's axes (press_obstacle.hpp), whose z is n in the wheel's.
+// Static pressing of an inflated ring of shell elements with fixed beads on a frictionless obstacle z = H(x). The
+// obstacle is given in the ground's axes (press_obstacle.hpp); their z is n in the wheel's axes.
 //
 // Equilibrium is a minimum of the potential of elastic, pressure and contact forces, without inertia, viscosity and
 // weight:
@@ -7,17 +7,18 @@
 // the contact summed over points of the mid-surface with their share A of the undeformed area. Loading and unloading
 // coincide wherever the minimum is unique.
 //
-// It is approached by creep of the Kelvin–Voigt solid, in linearly implicit steps h along which Π has to fall:
+// The minimum is approached by creep of the Kelvin–Voigt solid, in linearly implicit steps h along which Π has to fall:
 //   (∂²Π/∂q² + σ BᵀD̂B) Δq = −∂Π/∂q,   σ = τ/h.
-// σ = 0 is Newton's method. A layered tire need not be stable as a static body: where belts or sidewalls are compressed
-// they wrinkle, and ∂²Π/∂q² loses its definiteness on the way. There σ grows until the Cholesky factorization succeeds,
-// and falls again afterwards; only an equilibrium at which it succeeds with σ = 0, a stable one, is accepted.
+// σ = 0 is Newton's method. A layered tire need not be stable as a static body: compressed belts and sidewalls wrinkle,
+// and ∂²Π/∂q² is then not positive definite. In that case σ grows until the Cholesky factorization succeeds, and falls
+// again afterwards. Only a stable equilibrium is accepted, where the factorization succeeds with σ = 0.
 //
-// There the ground may be moved by d, as a rigid body, with the tire sticking to it: points in contact then resist with
+// Stiffness that the ground feels. At an equilibrium the ground moves by d, as a rigid body, and the tire sticks to it.
+// Points in contact resist their motion against the ground, w u − d, with
 //   C = κ A (n nᵀ + bend) + s κ A (1 − n̂ n̂ᵀ)
-// their motion against the ground, w u − d, s a share of the normal stiffness, so that
+// s a share of the normal stiffness, so that
 //   (K + Σ wᵀ C w) u = Σ wᵀ C d,   S = Σ dᵀ C d − (Σ wᵀ C d)ᵀ (K + Σ wᵀ C w)⁻¹ (Σ wᵀ C d)
-// is the stiffness that the ground feels.
+// is this stiffness.
 #pragma once
 
 #include <functional>
@@ -37,18 +38,18 @@ class PressSolver {
   ~PressSolver();
 
   double largest_radius() const { return largest_radius_; }  // of the inflated tire, m
-  /// Of the rim's centre over a plate that the lowest node of the inflated tire just
-  /// touches: where deflection starts, m.
+  /// Height of the rim's centre over a plate that the lowest node of the inflated tire just touches, m: deflection
+  /// starts there.
   double start_height() const { return start_height_; }
   /// Moves the obstacle to a deflection and finds equilibrium; `each_step` is called before each step of creep and may
-  /// throw. @throws Error(physics) when there is none, or when the tire would be in its rim.
+  /// throw. @throws Error(physics) when there is no equilibrium, or when the tire would be in its rim.
   PressPoint press(double deflection, const std::function<void()>& each_step = {});
-  /// Π at the last point, J; its derivative by the deflection is the force.
+  /// Π at the last point, J; its derivative with respect to the deflection is the force.
   double potential() const { return potential_; }
-  /// Largest difference of radius around a row of nodes, m: of the tire not pressed, the height of its wrinkles.
+  /// Largest difference of radius around a row of nodes, m; for the unpressed tire, the height of its wrinkles.
   double runout() const;
-  /// Largest difference of the angle between a director and the axle around a row of nodes, rad: wrinkles that turn the
-  /// shell's thickness and leave its radius.
+  /// Largest difference of the angle between a director and the axle around a row of nodes, rad. It shows wrinkles that
+  /// turn the shell's thickness and keep its radius.
   double director_runout() const;
   std::vector<PressSample> footprint() const;
   /// S at the last point. @param tangential s above; 0: the ground slides. @pre press() has found an equilibrium

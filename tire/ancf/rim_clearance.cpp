@@ -10,7 +10,7 @@
 
 namespace furrow::tire {
 namespace {
-constexpr double kTorn = 2.0;         // undeformed radii: no tire comes so far from its axle
+constexpr double kTorn = 2.0;         // undeformed radii: no part of a tire gets so far from its axle
 constexpr double kMaxOfHeight = 0.5;  // of a node's undeformed height that its half thickness may take
 }  // namespace
 

@@ -1,6 +1,6 @@
-// How far the shell is from the rim that holds it. The rim is taken as a solid cylinder of the beads' radius between
-// the bead loops; what hangs outside of it, beyond a flange, may come nearer to the axle. Rim and shell have no contact
-// law: a tire whose clearance is used up is beyond this model.
+// Distance of the shell from the rim that holds it. The rim is a solid cylinder of the beads' radius between the bead
+// loops. Beyond its flanges, the shell may come nearer to the axle. Rim and shell have no contact law: a tire without
+// clearance is outside this model's range.
 #pragma once
 
 #include <vector>
@@ -17,14 +17,14 @@ class RimClearance {
 
   /// The node between the beads whose inner surface is nearest to the rim, and the one farthest from the axle's centre.
   struct Nodes {
-    double clearance = 1e300;  // m, below zero: inside the rim; huge when no node stands over the rim
+    double clearance = 1e300;  // m, negative: inside the rim; huge when no node is over the rim
     int column = 0, row = 0;   // of the nearest
     double farthest = 0.0;     // m
     int far_column = 0, far_row = 0;
   };
   Nodes measure(const ShellLayout& layout, const Field& q, const RimState& rim) const;
 
-  /// What is wrong with these nodes, with figures and what to try.
+  /// Failure if these nodes are too near or too far, with figures and advice.
   Outcome outcome(const Nodes& nodes) const;
 
  private:

@@ -13,7 +13,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kDirectorWeight = 0.5;  // the age of a director counts less: what it turns is softer
+constexpr double kDirectorWeight = 0.5;  // the age of a director counts less: it turns softer parts
 constexpr double kAlso = 0.4;            // of the age of renewal: sectors as old as this are renewed with others
 
 }  // namespace
@@ -71,7 +71,7 @@ void SectorFactor::note_shape(int sector, const Step& step) {
   std::copy_n(contact_now_.begin() + first, nodes, contact_made_.begin() + first);
 }
 
-/// What the nodes' contact tangents are in a step, once there is or was one.
+/// Stores the nodes' contact tangents in a step, once there is or was one.
 void SectorFactor::note_contact(const Step& step, const Mat3& turn) {
   if (step.contact.empty() && contact_made_.empty()) return;
   step.contact.stiffness(layout_, step.h, turn, contact_now_);
@@ -92,7 +92,7 @@ void SectorFactor::build(const std::vector<char>& which) {
   }
 }
 
-/// The tangent of a sector's elements in the shape that was kept.
+/// Builds the tangent of a sector's elements in the shape that was kept.
 void SectorFactor::build_sector(int sector) {
   const double c = params_.coefficient(h_) + shell_.branch_gain(h_), inertia = 1.0 / (h_ * h_);
   BatchTangent tangent;
@@ -156,8 +156,8 @@ double SectorFactor::age(int sector, const Field& q_new, const Mat3& turn) const
   return std::sqrt(std::max(std::max(most[0], most[1]), std::max(most[2], most[3])));
 }
 
-/// Largest change of a contact tangent of a sector since the factor was made, relative to what the factor holds of the
-/// node: that tangent and the node's inertia.
+/// Largest change of a contact tangent of a sector since the factor was made, relative to the node's part of the
+/// factor: that tangent and the node's inertia.
 double SectorFactor::contact_age(int sector, double h) const {
   FURROW_ASSERT(contact_made_.empty() || contact_now_.size() == contact_made_.size(), contact_now_.size(),
                 contact_made_.size());

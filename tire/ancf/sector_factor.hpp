@@ -1,13 +1,12 @@
-// The Cholesky factor of a step's tangent, kept from step to step and renewed where it has aged.
+// The Cholesky factor of a step's tangent, kept from step to step and renewed in the sectors that have aged.
 //
 // For a change of a free node's q', equation (2) of shell_integrator.hpp has the tangent
 //   A = M/h² + c B(q_f)ᵀ D̂ B(q_f) + ½ (geometric and pressure parts) + ½ K + C/h,   c = 1 + τ/h + Σ g_i b_i,
 // in its symmetric form; K and C are those of the contact (shell_contact.hpp). As c is some hundred, a degree of local
 // rotation matters, and A ages where the tire deforms. So the ring is cut into sectors, and the factor is renewed in
-// those whose shape, in rim axes, has changed since it was made: around the contact patch, which travels through the
-// rim's axes, and where the tire sways or wrinkles. A sector's age is the largest relative change of an edge, a
-// director or a contact tangent. The factor of given shapes has the same bits however it came about: what is saved is
-// the shapes.
+// those whose shape, in rim axes, has changed. These are around the contact patch, which travels through the rim's
+// axes, and where the tire sways or wrinkles. A sector's age is the largest relative change of an edge, a director or a
+// contact tangent. The factor's bits depend on the shapes alone, so only the shapes are saved.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +30,7 @@ struct SectorFactorParams {
   int worth = 30;            // iterations that a renewal may cost
   int threads = 1;           // of a step; results do not depend on them
 
-  /// 1 + τ/h: stress of a step of h by its strains, relative to the static one.
+  /// 1 + τ/h: stress from the strains of a step of h, relative to the static stress.
   double coefficient(double h) const { return 1.0 + damping / h; }
 };
 
@@ -43,12 +42,12 @@ class SectorFactor {
   SectorFactor(const SectorFactor&) = delete;
   SectorFactor& operator=(const SectorFactor&) = delete;
 
-  /// A step as far as the factor depends on it; coordinates with their padding filled.
+  /// The data of a step on which the factor depends; coordinates have their padding filled.
   struct Step {
     double h = 0.0;       // s
     const RimState& rim;  // at its end
     const Field& q;       // coordinates at its beginning: m, –
-    const Field& q_new;   // the same at its end, as predicted or corrected so far
+    const Field& q_new;   // coordinates at its end, as predicted or corrected so far
     const ShellContact& contact;
   };
 
@@ -56,16 +55,16 @@ class SectorFactor {
 
   /// Starts without a factor and counts from zero.
   void start();
-  /// Makes the factor fit for a step: young enough everywhere; after a failed attempt (1) renewed wherever it has aged
-  /// at all, then (2 and up) new. @returns false when there is none
+  /// Renews the factor for a step in sectors that are too old. Attempt 1, after a failure, renews all sectors that have
+  /// aged at all; attempts from 2 on make a new factor. @returns false when there is no factor
   bool prepare(const Step& step, int attempt);
   /// x = A⁻¹ rhs on the free rows, in world axes of a rim turned by `turn`; padding of x is zero there.
   void solve(const Mat3& turn, const Field& rhs, Field& x) { factor_.solve(turn, rhs, x, params_.threads); }
-  /// A step has taken `count` iterations: more than one indicates an old factor.
+  /// Notes that a step has taken `count` iterations: more than one indicates an old factor.
   void note_iterations(int count);
 
   std::int64_t renewals() const { return renewals_; }  // whole or in part
-  double work() const { return work_; }                // the same, in whole factorizations
+  double work() const { return work_; }                // cost of the renewals, in whole factorizations
 
   /// Processor time spent, s, cumulative; not part of the state.
   struct Times {
@@ -102,12 +101,12 @@ class SectorFactor {
   std::vector<double> weight_;  // of the nodes under standard gravity, [column * rows + row], N
   ShellFactor factor_;
 
-  // What the factor was made from: coordinates in rim axes at the ends of a step, sector beside sector.
+  // Coordinates in rim axes at the ends of a step, sector by sector, from which the factor was made.
   ShellLayout made_layout_;
   Field made_old_, made_new_;
   std::vector<char> geometric_;        // sectors made with their geometric stiffness
   std::vector<double> made_pressure_;  // Pa, by sector
-  // Contact tangents in rim axes, [column * rows + row], N/m: now, and in the factor; empty until there was one.
+  // Contact tangents in rim axes, [column * rows + row], N/m: now, and in the factor; empty until there is one.
   std::vector<Mat3> contact_now_, contact_made_;
   bool valid_ = false;
   double h_ = 0.0;  // s

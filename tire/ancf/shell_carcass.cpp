@@ -179,7 +179,8 @@ void ShellCarcass::row_forces(const Field& q_new, const Field& q_force, Step& st
   step.rows[j].change = sum(change);
 }
 
-// Row j adds to the nodes of rows j and j + 1: first the even rows, then the odd ones, so that no two threads meet.
+// Row j adds to the nodes of rows j and j + 1. Even rows come first, then odd rows, so that no two threads write to the
+// same node.
 void ShellCarcass::forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f, int threads) const {
   FURROW_ASSERT(step.h > 0.0 && threads > 0, step.h, threads);
   FURROW_ASSERT(q_new.size() == layout_.size() && q_force.size() == layout_.size(), q_new.size(), q_force.size(),
@@ -209,8 +210,8 @@ ShellCarcass::Energies ShellCarcass::accept(Step& step) const {
   return total;
 }
 
-/// H_i and g_i D̂ H_i at the step's end. What is lost is the work of the mean stress, Σ ΔEᵀ g D̂ H̄, less what is
-/// stored: exact for an even change of strain.
+/// H_i and g_i D̂ H_i at the step's end. The loss is the work of the mean stress, Σ ΔEᵀ g D̂ H̄, minus the stored
+/// energy: exact for a strain that changes at a constant rate.
 void ShellCarcass::accept_branches(Step& step, Energies& total) const {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const BranchStep branch(branches_[i], step.h);

@@ -3,12 +3,12 @@
 //   f = Σ_e B(q_f)ᵀ D̂ [E_old + c (E(q_new) − E_old)] − p ∂V/∂q(q_f),   B = ∂E/∂q,   c a factor of the time
 //   integrator
 // In a time step, branches of a generalised Maxwell model add Σ g_i D̂ H_i, Ḣ_i = Ė − H_i/τ_i. For a strain that
-// changes evenly over the step h, x_i = h/τ_i,
+// changes at a constant rate over the step h, x_i = h/τ_i,
 //   H_i' = e^{−x_i} H_i + b_i ΔE,  b_i = (1 − e^{−x_i})/x_i
 // holds exactly (Taylor, Pister & Goudreau 1970, Thermomechanical analysis of viscoelastic solids, IJNME 2,
-// doi:10.1002/nme.1620020106), and as e^{−2x} + (1 − b)² ≤ 1 a step never gives energy. The stiffness of all branches
-// is a multiple of the element's own, so a step costs the same product D̂ ΔE as without them. The pressure acts on the
-// current area of the mid-surface; V is the volume that it closes with the bead discs.
+// doi:10.1002/nme.1620020106), and as e^{−2x} + (1 − b)² ≤ 1 a step never adds energy. The stiffness of all branches is
+// a multiple of the element's own, so a step needs the one product D̂ ΔE, with or without branches. The pressure acts
+// on the current area of the mid-surface; V is the volume between mid-surface and bead discs.
 #pragma once
 
 #include "protocol/core/assert.hpp"
@@ -45,32 +45,32 @@ class ShellCarcass {
     double stored = 0.0;   // in the branches, ½ Σ g HᵀD̂ H, J
     double relaxed = 0.0;  // dissipated by the branches, J
   };
-  /// Strains of `q` replace those in `e`.
+  /// Replaces the strains in `e` with those of `q`.
   Energies account(const Field& q, Field& e) const;
 
-  /// What a time step knows of all elements, [row][batch][strain][lane].
+  /// Data of all elements in a time step, [row][batch][strain][lane].
   struct Step {
     Field strains, stress;             // E_old and D̂ E_old
     Field new_strains, stress_change;  // at q_new, and D̂ (E_new − E_old)
     std::vector<Energies> rows;        // changes over the step, by width position
-    // Of the branches, one after the other: H and g D̂ H; and stress + Σ e^{−x} g D̂ H of the step at hand.
+    // Of the branches, one after the other: H and g D̂ H; and stress + Σ e^{−x} g D̂ H of the current step.
     std::vector<Field> branch_strain, branch_stress;
     Field relaxed_stress;
     double h = 0.0;  // s
   };
-  /// Starts at q: strains and stress.
+  /// Starts at q: sets strains and stress.
   void begin(const Field& q, Step& step) const;
-  /// Says how long the step is that comes, s. @pre begin() was called for this step; h > 0
+  /// Sets the length of the next step, s. @pre begin() was called for this step; h > 0
   void prepare(Step& step, double h) const;
-  /// What the branches add to c for a step of h: Σ g_i b_i.
+  /// Contribution of the branches to c for a step of h: Σ g_i b_i.
   double branch_gain(double h) const;
-  /// forces() of a step, with c as without branches. Rows are shared out to `threads`; the result does not depend on
-  /// how many.
+  /// forces() of a step; c is given without the branches. `threads` share the rows; the result does not depend on their
+  /// number.
   void forces(const Field& q_new, const Field& q_force, Step& step, double c, Field& f, int threads) const;
   /// Takes the last q_new as the next step's start. @returns changes over the step, and Σ ΔEᵀ D̂ ΔE, J
   Energies accept(Step& step) const;
 
-  /// Between the mid-surface and the two cones from the bead loops to `centre`, m³.
+  /// Volume between the mid-surface and the two cones from the bead loops to `centre`, m³.
   double volume(const Field& q, const Vec3& centre) const;
 
   /// Resultant of the pressure on the mid-surface and its moment about `centre`; both depend on the bead
@@ -84,7 +84,7 @@ class ShellCarcass {
  private:
   void accept_branches(Step& step, Energies& total) const;
   void row_forces(const Field& q_new, const Field& q_force, Step& step, double c, int j, Field& f) const;
-  /// Double4 of a batch that are elements (1) and not padding (0).
+  /// Double4 of a batch: 1 for elements, 0 for padding.
   Double4 mask(int batch) const;
   void batch_strains_at(const Field& q, int j, int batch, Double4* e) const;
   const double* batch_of(const Field& e, int j, int batch) const {

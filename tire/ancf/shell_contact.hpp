@@ -1,14 +1,14 @@
-// Contact forces on free nodes of the ring that answer to its motion within the step. With the force f that the terrain
-// reported for a motion of means x̄, v̄, and its tangents K, C (protocol/core/surface.hpp),
+// Contact forces on free nodes of the ring that follow its motion within the step. With the force f that the terrain
+// reported for a motion with the means x̄, v̄, and its tangents K, C (protocol/core/surface.hpp),
 //
 //   F = P[ f − K (q_f − x̄) − C (v' − v̄) ],                                                                   (1)
 //
-// taken at the middle position q_f and the velocity v' of the step, so that F is the terrain's own force as far as its
-// law is linear and the terrain stays where it is. P keeps it from pulling: with n along f and p = F·n,
+// taken at the middle position q_f and the velocity v' of the step. F is then exactly the terrain's force if the
+// terrain's law is linear and the terrain does not move. P prevents pulling: with n along f and p = F·n,
 //
 //   P[F] = 0 for p ≤ 0,   p n + min(1, p/|F_t|) F_t otherwise,                                                (2)
 //
-// continuous, and at least within 45° of what was reported. In the tangent of the step a node has ½ K + C/h.
+// continuous, and within 45° of the reported force. In the tangent of the step a node has ½ K + C/h.
 #pragma once
 
 #include <vector>
@@ -28,9 +28,9 @@ class ShellContact {
   std::size_t add(int i, int j, const Vec3& force, const ContactTangent& tangent);
   bool empty() const { return entries_.empty(); }
 
-  /// Takes F − f from the residual.
+  /// Subtracts F − f from the residual.
   void apply(const ShellLayout& layout, const Field& q_force, const Field& v_new, Field& residual) const;
-  /// Counts F for a step of size h that was accepted.
+  /// Adds F h to the impulses for an accepted step of size h.
   void accept(const ShellLayout& layout, const Field& q_force, const Field& v_new, double h);
   /// Impulse of entry k since it was added, N s.
   const Vec3& impulse(std::size_t k) const {

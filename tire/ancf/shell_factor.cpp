@@ -11,7 +11,7 @@
 namespace furrow::tire {
 namespace {
 constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};
-// Blocks of a node with itself and with its neighbours: how far these are.
+// Blocks of a node with itself and with its neighbours, by their distances.
 constexpr int kKinds = 5;
 constexpr int kKindColumn[kKinds] = {0, 0, 1, 1, 1}, kKindRow[kKinds] = {0, 1, -1, 0, 1};
 

@@ -1,5 +1,5 @@
-// Cholesky factor of a symmetric matrix on the free nodes of a ring, assembled element by element, in rim axes:
-// strain energy and mass are objective, so a factor made in one orientation of the rim is used in another by turning
+// Cholesky factor of a symmetric matrix on the free nodes of a ring, assembled element by element, in rim axes: strain
+// energy and mass are objective. A factor made in one orientation of the rim is therefore used in another by turning
 // right-hand side and solution,
 //   A(q turned by Q) = Q A Qᵀ.
 // The elements are held in sectors of kDoubleLanes columns; a factor is renewed in those sectors that have changed.

@@ -12,7 +12,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr int kAttempts = 10, kCareful = 2;  // per step; from which one on corrections are halved
+constexpr int kAttempts = 10, kCareful = 2;  // per step; first attempt in which corrections are halved
 constexpr double kMinShare = 0.01;           // of a correction that is halved
 constexpr double kDirectorLength = 0.01;     // m, makes director residuals (N m) comparable with forces
 constexpr int kPairs = 12;
@@ -97,13 +97,13 @@ void ShellIntegrator::set_bead(const RimState& rim) {
     }
 }
 
-/// Free nodes continue with their velocities and a share of the last change of these.
+/// Predicts free nodes from their velocities and a share of the last change of these.
 void ShellIntegrator::predict(double h, double share) {
   const std::size_t first = layout_.free_begin(), last = first + layout_.free_size();
   for (std::size_t k = first; k < last; ++k) q_new_[k] = q_[k] + h * (v_[k] + share * (v_[k] - v_before_[k]));
 }
 
-/// Residual of (2) at q_new_ into r_, at the beads the reactions Q.
+/// Computes the residual of (2) at q_new_ in r_; at the beads, the reactions Q.
 void ShellIntegrator::evaluate(double h, const Field& force) {
   const Stopwatch watch(times_.force);
   layout_.fill_padding(q_new_);
@@ -193,7 +193,7 @@ Outcome ShellIntegrator::step(double h, const RimState& start, const RimState& e
   const SectorFactor::Step now{h, end, q_, q_new_, contact_};
   double norm = 0.0;
   int count = 0;
-  // An old factor, a younger one, then Newton's method with new ones as long as the residual stays finite.
+  // First an old factor, then a younger one, then Newton's method with new ones while the residual is finite.
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (attempt <= kCareful) {
       predict(h, attempt < kCareful ? 1.0 : 0.0);
@@ -222,8 +222,8 @@ Outcome ShellIntegrator::step(double h, const RimState& start, const RimState& e
                   norm / reference_, params_.tolerance, count, h));
 }
 
-/// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. What
-/// is left of the free residual is counted with the beads, so that momentum balances to round-off.
+/// Spindle wrench from (2): −Σ Q − pressure resultant, moments at q_f, and the term Δx × ½ (p + p')/h. The free
+/// residual is counted with the beads, so that momentum balances to round-off.
 void ShellIntegrator::finish(double h, const RimState& start, const RimState& end, const Vec3& about, Wrench& on_rim) {
   const Stopwatch watch(times_.other);
   on_rim = {};
@@ -256,9 +256,10 @@ void ShellIntegrator::finish(double h, const RimState& start, const RimState& en
   numerical_loss_ += 0.5 * energies.change;
 }
 
-/// Of the product of (2) with Δq = q' − q, where Δq of the beads is their rim's way X and turn θ (mean_turn.hpp):
+/// Terms of the product of (2) with Δq = q' − q. For the beads, Δq is the rim's displacement X and turn θ
+/// (mean_turn.hpp):
 ///   Δvᵀ M Δq/h = Δ(kinetic energy) + Δvᵀ M (Δq/h − v̄),  v̄ = ½ (v + v'),
-/// ½ Δvᵀ M Δv on free nodes. The spindle's moment holds the term Σ Δq × M v̄/h besides the beads' reactions, and the
+/// ½ Δvᵀ M Δv on free nodes. The spindle's moment contains the beads' reactions, the term Σ Δq × M v̄/h, and the
 /// residual r of the free nodes as if it acted on the rim. So the work of the rim, −F·X − M·θ, is less by
 ///   numerical: Δvᵀ M (Δq/h − v̄) + θ·Σ Δq × M v̄/h      (zero for a steady spin)
 ///   solver:    Σ r·X + θ·Σ (q_f − x) × r − r·Δq        over free nodes.
@@ -271,7 +272,7 @@ void ShellIntegrator::book_losses(double h, const RimState& start, const RimStat
     const Map u = line(b, j, s), v = line(b, j, s + 1), w = line(b, j, s + 2);
     return Vec3(y.dot(w) - z.dot(v), z.dot(u) - x.dot(w), x.dot(v) - y.dot(u));
   };
-  mass_.apply(v_new_, 1.0, p_new_);  // its padding is zero, and that of r_
+  mass_.apply(v_new_, 1.0, p_new_);  // its padding and the padding of r_ are zero
   for (std::size_t k = 0; k < q_.size(); ++k) moved_[k] = q_new_[k] - q_[k];
   const auto one = Eigen::VectorXd::Ones(layout_.columns);
   Vec3 spin = Vec3::Zero(), force = Vec3::Zero(), moment = Vec3::Zero();

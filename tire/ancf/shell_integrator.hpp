@@ -3,16 +3,15 @@
 // Over a step h from (q, v) to (q', v'), with q_f = ½ (q + q') and E, E' the strains at q, q':
 //   q' − q = h v'                                                                          (1) free nodes
 //   M (v' − v)/h + B(q_f)ᵀ D̂ [E' + τ (E' − E)/h] − p ∂V/∂q(q_f) = F + M g + Q              (2)
-// F are the contact forces, constant over the step or answering to it (shell_contact.hpp), Q the reactions at the
-// beads. q', v' of the beads come from the rim. - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish
-// exactly for a rigid motion between
+// F are the contact forces, constant or changing with the motion (shell_contact.hpp), Q the reactions at the beads. q',
+// v' of the beads come from the rim.
+//  - As E is quadratic in q, E' − E = B(q_f) (q' − q): strain rates vanish exactly for a rigid motion between
 //    the step's ends, and the work of the internal forces is Δ(elastic energy) + ½ ΔEᵀ D̂ ΔE + (τ/h) ΔEᵀ D̂ ΔE.
 //    With the ½ Δvᵀ M Δv that (1) removes, energy cannot grow; the numerical damping acts like h of
-//    additional τ, 1 % of the material's. Both are booked as they are lost (numerical_loss), and so is the work of what
-//    is left of (2) when the iteration ends (solver_loss).
-//  - Velocities are those of the backward Euler rule: what is stiff through τ K does not ring, as it does with
-//    trapezoidal or HHT velocities, where a contact force that comes one interval late and depends on
-//    velocity would feed it.
+//    additional τ, 1 % of the material's. Both losses are recorded (numerical_loss), and so is the work of the
+//    residual of (2) when the iteration ends (solver_loss).
+//  - Velocities are those of the backward Euler rule, so modes stiffened by τ K do not ring. With trapezoidal or HHT
+//    velocities they ring, and a velocity-dependent contact force that comes one interval late amplifies them.
 //  - Δp and ΔL over the step are the impulses of F, M g and the spindle to round-off: the identity
 //      x'×p' − x×p = x_f × Δp + Δx × ½ (p + p')
 //    gives the moment impulse; its last term, O(h) for (1), is counted with the spindle.
@@ -59,7 +58,7 @@ class ShellIntegrator {
   Outcome step(double h, const RimState& start, const RimState& end, const Field& force, const Vec3& about,
                Wrench& on_rim);
 
-  /// Forces with tangents, in addition to those that step() is given; to be set before each interval.
+  /// Forces with tangents, in addition to those given to step(); set them before each interval.
   ShellContact& contact() { return contact_; }
   const ShellContact& contact() const { return contact_; }
 
@@ -76,12 +75,12 @@ class ShellIntegrator {
   double dissipation() const { return dissipation_; }        // J, cumulative
   double numerical_loss() const { return numerical_loss_; }  // J, cumulative
   double solver_loss() const { return solver_loss_; }        // J, cumulative
-  /// Part of the spindle's, N s, cumulative.
+  /// Impulse of the solver's residual, part of the spindle's, N s, cumulative.
   const Vec3& solver_impulse() const { return solver_impulse_; }
   double potential_energy() const;  // of gravity, 0 at the world's origin, J
   std::int64_t iterations() const { return iterations_; }
   std::int64_t factorizations() const { return factor_.renewals(); }  // whole or in part
-  double factor_work() const { return factor_.work(); }               // the same, in whole factorizations
+  double factor_work() const { return factor_.work(); }               // cost of the renewals, in whole factorizations
   double residual() const { return residual_; }
 
   /// Processor time spent in the parts of a step, s, cumulative; not part of the state.

@@ -1,7 +1,7 @@
-// Where a nodal field of the ring lies in memory. One line per (row, component) with the columns side by
-// side, so that neighbouring elements around the ring fill the lanes of a vector:
+// Memory layout of a nodal field of the ring. Each (row, component) has one line with the columns side by side, so that
+// neighbouring elements around the ring fill the lanes of a vector:
 //   field[offset(j, c) + i],  j row across, c component (0–2 position, 3–5 director), i column
-// Each line is continued cyclically on both sides ("padding"), so that no index wraps in the inner loops.
+// Each line continues cyclically on both sides ("padding"), so that no index wraps in the inner loops.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +54,7 @@ struct ShellLayout {
       std::copy(p, p + right, p + columns);
     }
   }
-  /// Adds what was written beyond the last column to the first ones and clears the padding.
+  /// Adds the values beyond the last column to the first columns and clears the padding.
   void fold_padding(Field& f) const {
     FURROW_ASSERT(f.size() == size() && columns >= kDoubleLanes, f.size(), size(), columns);
     const int right = stride() - kDoubleLanes - columns;

@@ -3,7 +3,7 @@
 
 namespace furrow::tire {
 namespace {
-constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};  // corner's place in its element
+constexpr int kColumn[4] = {0, 1, 1, 0}, kRow[4] = {0, 0, 1, 1};  // of a corner in its element
 }
 
 ShellMass::ShellMass(const ShellMesh& mesh, std::vector<ElementMass> elements)

@@ -1,5 +1,5 @@
-// Consistent mass of the ring as a stencil: by rotational symmetry one set of coefficients per node row, the
-// same for every column and Cartesian component.
+// Consistent mass of the ring as a stencil. By rotational symmetry, each node row has one set of coefficients for all
+// columns and Cartesian components.
 #pragma once
 
 #include "protocol/core/assert.hpp"
@@ -12,8 +12,8 @@ class ShellMass {
  public:
   ShellMass(const ShellMesh& mesh, std::vector<ElementMass> elements);
 
-  /// out = factor × M field; the padding of `field` must be filled, that of `out` is left alone.
-  /// @pre both have the layout's size and are not the same
+  /// out = factor × M field; the padding of `field` must be filled, the padding of `out` is not changed.
+  /// @pre both have the layout's size and are different fields
   void apply(const Field& field, double factor, Field& out) const;
   /// out += factor × M field.
   void add(const Field& field, double factor, Field& out) const;

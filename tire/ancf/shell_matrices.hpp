@@ -3,9 +3,8 @@
 //   D    = Σ_layers ∫ Nᵀ Tᵀ C T N j dξ dη dz,   L = Σ_layers ∫ Gᵀ C T N j dξ dη dz
 //   K_αα = Σ_layers ∫ Gᵀ C G j dξ dη dz
 // with N the covariant map, T(ξ, η, z) from covariant components to material axes, and j = det J₀(z).
-// The enhanced strain G α = (j₀/j) T₀ M(ξ, η, ζ) α holds one set of parameters for the whole element, each of
-// zero mean: ξ on 11, η on 22, ξ and η on 12, and ζ (1, ξ, η, ξη) on 33. As the material is linear α is
-// eliminated exactly.
+// The enhanced strain G α = (j₀/j) T₀ M(ξ, η, ζ) α holds one set of parameters for the whole element, each of zero
+// mean: ξ on 11, η on 22, ξ and η on 12, and ζ (1, ξ, η, ξη) on 33. As the material is linear, α is eliminated exactly.
 //   Simo & Rifai (1990), A class of mixed assumed strain methods, Int. J. Numer. Methods Eng. 29,
 //   doi:10.1002/nme.1620290802.
 #pragma once

@@ -14,7 +14,7 @@ using namespace simd;
 using Complex = std::complex<double>;
 using Tie = Eigen::Matrix<Complex, 24, 12>;
 
-/// Corners 1 and 2 of an element lie one column on: turned, and ahead in phase.
+/// Corners 1 and 2 of an element are in the next column: turned, and ahead in phase.
 Tie tie_columns(const ShellMesh& mesh, int order) {
   Tie t = Tie::Zero();
   const Complex phase = std::polar(1.0, order * mesh.pitch());

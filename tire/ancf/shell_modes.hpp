@@ -1,6 +1,6 @@
 // An inflated shell on a fixed rim, order by order (tire/modes.hpp): displacements û e^{i n θ} in axes that turn with
-// the columns decouple, so that stiffness and mass of the whole ring are one Hermitian matrix of a single column per
-// circumferential order n. Positions and directors of the beads are held.
+// the columns decouple. For each circumferential order n, stiffness and mass of the whole ring are therefore Hermitian
+// matrices of a single column. Positions and directors of the beads are held.
 #pragma once
 
 #include <Eigen/Dense>
@@ -25,9 +25,9 @@ struct InflatedCarcass {
   /// Unknowns: position x, y, z and director x, y, z of each row between the beads, in the axes of column 0.
   Eigen::MatrixXcd stiffness(int order) const;  // per column, N/m
   Eigen::MatrixXcd mass(int order) const;       // kg
-  /// The lowest `count` natural frequencies of an order, Hz; negative: growth rate over 2π of what is unstable.
+  /// The lowest `count` natural frequencies of an order, Hz; negative: growth rate over 2π of an unstable mode.
   Eigen::VectorXd frequencies(int order, int count) const;
-  /// Smallest eigenvalue ω², 1/s², below zero where the ring is unstable as a static body.
+  /// Smallest eigenvalue ω², 1/s²; negative if the ring is unstable as a static body.
   double smallest_eigenvalue(int order) const;
 };
 

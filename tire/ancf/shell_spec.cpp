@@ -18,8 +18,8 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kBytesPerCoordinate = 20e3;        // shell matrices, tangent and its factors
-constexpr double kBytesPerSavedCoordinate = 110.0;  // coordinates, velocities, and those that factors were made from
-// Of τ that the step may be, without and with contact tangents: tests/studies/steps.md, "Step of the flexible tire".
+constexpr double kBytesPerSavedCoordinate = 110.0;  // coordinates, velocities, coordinates of the factors
+// Largest step as a share of τ, without and with contact tangents: tests/studies/steps.md, "Step of the flexible tire".
 constexpr double kLateShare = 0.04, kTangentShare = 0.1;
 
 int most_layers(const TireFile& file) {
@@ -57,7 +57,7 @@ class ShellSpec final : public TireSpec {
   std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<ShellModes>(file_); }
 
  private:
-  TireFile given_;  // as it stands
+  TireFile given_;  // without the scenario's choices
   TireFile file_;   // with the scenario's choices
 };
 

@@ -1,5 +1,4 @@
-// The layered shell tire as an entry of the table of models: its file, what a scenario changes of it, what it says of
-// itself.
+// The layered shell tire as an entry of the table of models: its file, a scenario's changes of it, its description.
 #pragma once
 
 #include <memory>
@@ -11,7 +10,7 @@
 
 namespace furrow::tire {
 
-/// The tire file with the scenario's choices in place of its own. @throws Error(bad_input)
+/// The tire file with the scenario's choices instead of its own. @throws Error(bad_input)
 TireFile tire_file_of(const TireOptions& options, TireFile file);
 
 /// The undeformed shell: nodes of the mid-surface, then the centres of the bead discs. @throws Error(bad_input)

@@ -7,7 +7,7 @@ using Row = Eigen::Matrix<double, 8, 1>;  // a linear functional of the nodal sc
 
 constexpr std::array<double, 4> kXi{-1, 1, 1, -1}, kEta{-1, -1, 1, 1};
 
-/// Of positions (s = 0) or directors (s = 1).
+/// Shape functions of positions (s = 0) or directors (s = 1).
 Row shape(double xi, double eta, int s) {
   Row row = Row::Zero();
   for (int n = 0; n < 4; ++n) row[2 * n + s] = 0.25 * (1 + kXi[n] * xi) * (1 + kEta[n] * eta);

@@ -40,11 +40,11 @@ using StrainMatrix = Eigen::Matrix<double, kStrains, kStrains, Eigen::RowMajor>;
 /// H_k of all strains.
 const std::array<NodeMatrix, kStrains>& strain_forms();
 
-/// ½ Σ qᵀ H_k q: the strains before the reference is taken off.
+/// ½ Σ qᵀ H_k q: the strains before the reference is subtracted.
 StrainVector raw_strains(const ElementNodes& q);
 
-/// Maps generalised strains to the covariant components 11, 22, 2·12, 33, 2·13, 2·23 at a Gauss point
-/// (ξ = ∓1/√3 for l = 0, 1; η likewise for k) and height z.
+/// Maps generalised strains to the covariant components 11, 22, 2·12, 33, 2·13, 2·23 at a Gauss point (ξ = ∓1/√3 for l
+/// = 0, 1, and η = ∓1/√3 for k = 0, 1) and height z.
 Eigen::Matrix<double, 6, kStrains> covariant_map(int k, int l, double z);
 
 }  // namespace furrow::tire

@@ -1,11 +1,11 @@
-// Processor time of this thread: the cost of work, whatever else runs on the machine.
+// Processor time of this thread: the cost of work, independent of other programs on the machine.
 #pragma once
 
 #include <ctime>
 
 namespace furrow::tire {
 
-/// Adds the time from its making to its end to a total, s.
+/// Adds the time from its construction to its destruction to a total, s.
 class Stopwatch {
  public:
   explicit Stopwatch(double& total) : total_(total), start_(now()) {}

@@ -15,7 +15,7 @@
 namespace furrow::tire {
 namespace {
 
-/// How the plane moves across itself.
+/// Motion of the plane across itself.
 struct Rigid {
   Vec3 lateral;  // velocity along the axis, m/s
   Vec3 tilt;     // ω without its part about the axis, rad/s
@@ -44,7 +44,7 @@ class ExtrudedTire final : public Tire {
   void do_place(const RimState& rim) override;
   Outcome do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) override;
   void do_restore(const Archive& archive) override;
-  /// Vertices of an outer node's pair stand at ± half the width; the last two at the middle of the sides.
+  /// The two vertices of an outer node are at ± half the width; the last two are at the middle of the sides.
   bool on_tread(int vertex) const { return vertex < 2 * static_cast<int>(model_->tread().size()); }
   double side(int vertex) const { return (vertex % 2 == 0 ? 0.5 : -0.5) * shape_.tread_width; }
   Rigid rigid(const RimState& rim) const;
@@ -66,7 +66,7 @@ class ExtrudedTire final : public Tire {
 
   std::unique_ptr<PlaneModel> model_;
   PlanarField load_;               // of the running interval, N
-  std::vector<Vec3> arms_before_;  // of the vertices with a force, as the interval began, m
+  std::vector<Vec3> arms_before_;  // of the vertices with a force at the interval's start, m
   double dissipation_ = 0.0, numerical_loss_ = 0.0, solver_loss_ = 0.0;  // J
   Vec3 solver_impulse_ = Vec3::Zero();                                   // N s
 };
@@ -89,7 +89,7 @@ Vec3 ExtrudedTire::momentum(const WheelPlane& plane, const RimState& rim) const 
   return plane.out(model_->momentum()) + shape_.mass.mass * rigid(rim).lateral;
 }
 
-/// About the rim's centre, W.
+/// Angular momentum about the rim's centre, W.
 Vec3 ExtrudedTire::angular_momentum(const WheelPlane& plane, const RimState& rim) const {
   return model_->angular_momentum() * plane.axis + shape_.mass.inertia(0, 0) * rigid(rim).tilt;
 }
@@ -119,7 +119,7 @@ void ExtrudedTire::surface(SurfaceState& out) const {
   }
 }
 
-/// Of the vertices on the nodes, in the wheel's plane.
+/// Applies the vertices' forces to the nodes, in the wheel's plane.
 void ExtrudedTire::spread(const NodalForces& forces, const WheelPlane& plane) {
   std::fill(load_.x.begin(), load_.x.end(), 0.0);
   std::fill(load_.z.begin(), load_.z.end(), 0.0);
@@ -153,8 +153,8 @@ Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& fo
   const WheelPlane first = WheelPlane::of(rim.start().orientation), last = WheelPlane::of(rim.end().orientation);
   spread(forces, plane);
   spindle_ = {};
-  // Forces by the balance of momentum in space, which is that of the plane's steps where the plane does not turn.
-  // Moments across the plane with lever arms that are means of the interval's ends.
+  // Forces follow from the balance of momentum in space, which equals the balance of the plane's steps if the plane
+  // does not turn. Moments across the plane have the means of the lever arms at the interval's ends.
   const Vec3 before = momentum(first, rim.start()), turning = angular_momentum(first, rim.start());
   const PlanarPoint moment_before = model_->first_moment();
   std::vector<Vec3>& arms = arms_before_;
@@ -169,7 +169,7 @@ Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& fo
   Vec3 moment = plane.out({0.5 * (moment_before.x + moment_after.x), 0.5 * (moment_before.z + moment_after.z)})
                     .cross(gravity_ - acceleration) -
                 (angular_momentum(last, rim.end()) - turning) / duration;
-  Vec3 direct = Vec3::Zero();  // in the plane, on the middles of the sides, which are the rim's
+  Vec3 direct = Vec3::Zero();  // in the plane, on the middles of the sides; acts on the rim
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     force += forces.force[k];
     moment += (0.5 * (arms[k] + arm(last, forces.vertex[k]))).cross(forces.force[k]);
@@ -183,9 +183,9 @@ Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& fo
   return {};
 }
 
-/// Losses of the interval: those of the steps; what mean force times way and mean moment times turn say of the rim's
-/// work otherwise than its steps, also through the force that a plane which turns adds to that of its steps; and what a
-/// rigid body's rule loses across the plane.
+/// Records the losses of the interval. They are the losses of the steps, the difference of the rim's work, and the loss
+/// of a rigid body's rule across the plane. The difference is between mean force times displacement plus mean moment
+/// times turn, and the work in the steps. The additional force of a turning plane contributes to it.
 void ExtrudedTire::book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning,
                         const PlaneSums& sums) {
   const RimState &from = rim.start(), &to = rim.end();

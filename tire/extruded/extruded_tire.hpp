@@ -1,12 +1,12 @@
-// Tires that are alike across their width in motion, under the interface of all tires.
+// Moving tires whose section does not change across their width, with the interface of all tires.
 //
-// In its plane the tire is a PlaneModel on the rim (plane_model.hpp). Across the plane (wheel_plane.hpp) the tire is
-// the rigid body that its mass properties say: it shifts, turns and leans with the rim, and gyroscopic moments are
-// those of its own spin. Axes that turn while an interval lasts are those of its middle. What a plane that turns adds
-// to the forces of its plane's own motion goes to the rim, by the balance of momentum, and does not deform the tire.
+// In its plane the tire is a PlaneModel on the rim (plane_model.hpp). Across the plane (wheel_plane.hpp) the tire is a
+// rigid body with its mass properties: it shifts, turns and leans with the rim, and gyroscopic moments come from its
+// own spin. Axes that turn during an interval are taken at its middle. The additional inertial forces of a turning
+// plane act on the rim, by the balance of momentum, and do not deform the tire.
 //
-// The contact surface is the outer edge, drawn out over the width: vertices on both sides of a node, which get forces
-// of their own and act on it by their sum. Forces of an interval act constantly over it, at the nodes.
+// The contact surface is the outer edge, extruded over the width. Each node has a vertex on both sides; each vertex
+// gets its own force, and their sum acts on the node. Forces are constant over an interval.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
-// A tire that is alike across its width, in the plane of its wheel, on a rim with a given motion: what an extruded tire
-// (extruded_tire.hpp) moves in its plane. Positions and velocities of nodes count from the rim's centre, in axes that
-// do not turn with the rim. Angles are about +y: forward rolling increases them.
+// A tire in the plane of its wheel, on a rim with a given motion: the part of an extruded tire (extruded_tire.hpp) that
+// moves in its plane. Positions and velocities of nodes are relative to the rim's centre, in axes that do not turn with
+// the rim. Angles are about +y: forward rolling increases them.
 #pragma once
 
 #include <vector>
@@ -12,9 +12,9 @@
 
 namespace furrow::tire {
 
-/// Where the rim's centre goes in a step, and how far the rim is turned at its end.
+/// Motion of the rim's centre in a step, and angle of the rim at its end.
 struct PlaneRimStep {
-  PlanarPoint velocity;  // of the centre: its way over the step, m/s
+  PlanarPoint velocity;  // of the centre: displacement over the step's time, m/s
   double angle = 0.0;    // rad
 };
 
@@ -40,15 +40,16 @@ class PlaneModel {
 
   /// Gauge pressure from now on, Pa.
   virtual void set_pressure(double pressure) = 0;
-  /// Undeformed, moving as a rigid body with the rim. @param spin rad/s
+  /// Places the tire undeformed, moving as a rigid body with the rim. @param spin rad/s
   virtual void place(double angle, double spin, PlanarPoint velocity) = 0;
-  /// Into how many equal steps one of h is cut. @returns failure when they are too many
+  /// Sets `count` to the number of equal steps that a step of h is divided into. @returns failure when they are too
+  /// many
   virtual Outcome parts(double h, int& count) = 0;
   /// One step of h. @param load on nodes, N. @param gravity in the wheel's plane, m/s²
   /// @pre placed or restored; h > 0
   virtual Outcome step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,
                        PlaneSums& sums) = 0;
-  /// Whether the tire is within what the model is meant for.
+  /// Checks that the tire is in the model's range.
   virtual Outcome check() const = 0;
 
   virtual const PlanarField& position() const = 0;  // m

@@ -1,5 +1,5 @@
-// Where a spin axis stands in a wheel's plane and around it. The plane is spanned by a × z, horizontal, and by what is
-// normal to it and to the rim's axis a.
+// The wheel's plane and the rim's angle in it. With the rim's axis a, the plane is spanned by the horizontal a × z and
+// by the normal to a × z and a.
 #pragma once
 
 #include "protocol/core/vec.hpp"
@@ -15,7 +15,7 @@ struct WheelPlane {
   Vec3 across(const Vec3& v) const { return v - along(v); }       // the part in the plane
   /// @pre the rim's axis is not vertical
   static WheelPlane of(const Quat& rim);
-  /// By which a rim is turned about its axis, rad.
+  /// Angle by which a rim is turned about its axis, rad.
   double angle(const Quat& rim) const;
 };
 

@@ -19,7 +19,7 @@ constexpr int kStepsBetweenChecks = 500;  // of the step's limit in the present 
 constexpr int kMostSteps = 1000;          // in one step of the scenario
 constexpr double kLeastRadius = 1.02;     // of outer nodes, in radii of the rim
 
-/// With a node at the top, as cylinder() has vertices.
+/// An annulus with a node at the top, like the vertices of cylinder().
 PlanarMesh annulus(const PlanarWheelSize& size) {
   PlanarMesh mesh = planar_annulus(size.rim_radius, size.radius, size.rings, size.around);
   for (double& x : mesh.position.x) x = -x;
@@ -79,7 +79,7 @@ void PlanarCarcass::restore(const Archive& archive) {
   renew();
 }
 
-/// What follows from positions and velocities alone: nothing of it is saved.
+/// Computes the values that follow from positions and velocities alone. They are not saved.
 void PlanarCarcass::renew() {
   elements_.force(r_, u_, internal_);
   power_ = elements_.viscous_power(r_, u_);

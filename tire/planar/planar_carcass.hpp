@@ -1,16 +1,18 @@
 // The tire of a planar wheel on a rim with a given motion: an annulus of triangles whose inner nodes are held.
 //
-// Positions r and velocities u of the nodes count from the rim's centre, in axes that do not turn with the rim: x
+// Positions r and velocities u of the nodes are relative to the rim's centre, in axes that do not turn with the rim: x
 // forward, z up in the wheel's plane. A step h in which the centre has the velocity V', after V in the step before,
 //   A = (V' − V)/h,   u' = u + h (F_int(r, u) + F_ext)/m + h (g − A),   r' = r + h u'                         (1)
-// is semi-implicit Euler's of the velocities v = V + u. Held nodes go where the rim has them; what holds them is
+// is the semi-implicit Euler rule for the velocities v = V + u. Held nodes move with the rim; the force that holds them
+// is
 //   R = m Δv/h − F_int − F_ext − m g,   −Σ R on the rim, −Σ r × R about its centre.                           (2)
-// So momentum and angular momentum change by what acts, to round-off.
+// So momentum and angular momentum change by the acting impulses, to round-off.
 //
 // Energy of a step, with the work of F_ext and R as they act and Δr = r' − r:
 //   work = Δ(kinetic + elastic + potential) + viscous + numerical,
 //   numerical = ½ Σ m |Δv|² + ½ Σ (F_int' − F_int)·Δr,   viscous = ½ h (P + P'),                              (3)
-// P the viscous power; what (3) leaves is of third order in the elastic part and of second in the viscous one.
+// P the viscous power. The error of (3) is of third order in h in the elastic part and of second order in the viscous
+// part.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +43,7 @@ class PlanarCarcass final : public PlaneModel {
   double tread_mass() const override;
   void set_pressure(double) override {}
   void place(double angle, double spin, PlanarPoint velocity) override;
-  /// Explicit steps are a share of the largest stable one, which is looked at again now and then.
+  /// Explicit steps are a share of the largest stable one, which is checked again at intervals.
   Outcome parts(double h, int& count) override;
   Outcome step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,
                PlaneSums& sums) override;

@@ -1,9 +1,9 @@
-// Contact of a planar tire at rest with rigid ground, without friction: the tire's outer nodes in the ground, and the
-// ground's corners in the tire.
+// Contact of a planar tire at rest with rigid ground, without friction: the tire's outer nodes touch the ground, and
+// the ground's corners touch the tire.
 //
-// A node at a depth h below the ground's nearest side gets the force c h along the way out. A corner at a depth h
-// behind the nearest side of the tire pushes that side away, its force shared by the side's two nodes as it lies
-// between them. The force is that of the energy Σ ½ c h².
+// A node at a depth h below the ground's nearest side gets the force c h towards that side. A corner at a depth h
+// behind the nearest side of the tire pushes that side away; its position between the side's two nodes divides the
+// force between them. The energy of these forces is Σ ½ c h².
 #pragma once
 
 #include <vector>
@@ -34,10 +34,10 @@ class PlanarContact {
   const PlanarGround& ground() const { return ground_; }
   const PlanarContactLaw& law() const { return law_; }
 
-  /// Finds what touches, with the forces at rest and without friction.
+  /// Finds all touches, with their forces at rest and without friction.
   void find(const PlanarField& x);
-  double energy() const;  // of what was found at rest, J
-  /// Of the last search: nodes along the edge of the tire, then corners.
+  double energy() const;  // of the touches at rest, J
+  /// Touches of the last search: nodes along the edge of the tire, then corners.
   const std::vector<PlanarTouch>& touches() const { return touches_; }
   double force_z() const;  // on the tire, N
 

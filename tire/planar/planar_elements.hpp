@@ -2,18 +2,18 @@
 //
 // With the matrices F_I and F_D of a triangle's two edge vectors, undeformed and deformed, and L_D that of their rates,
 //   F = F_D F_I⁻¹,   L = L_D F_D⁻¹,   D = ½(L + Lᵀ),   T by planar_material.hpp (1).                            (1)
-// A side with the outward normal n, as long as the side, gives each of its two nodes −½ T n b, b the width: a stretched
-// triangle pulls its nodes together. A node so receives ½ T n b of the side opposite to it, which is −∂(A b W)/∂x of
-// the energy. Nodal mass: ρ |F_I| b / 6 of each element.
+// A side gives each of its two nodes −½ T n b, with the width b and the outward normal n, as long as the side: a
+// stretched triangle pulls its nodes together. So a node receives ½ T n b from the opposite side, which is
+// −∂(A b W)/∂x. Nodal mass: ρ |F_I| b / 6 of each element.
 //
 // `averaged` replaces J in the volumetric part by its mean over the triangles around a node, weighted by their areas
 // and taken within one material,
 //   J_a = Σ A_e J_e / Σ A_e,   Π = b Σ_e A_e W_μ(F_e) + b Σ_a ⅓ Σ_e A_e · κ/2 (J_a² − 1 − 2 ln J_a),            (2)
-// whose elements have the mean of their nodes' pressures [Bonet & Burton 1998]: constant-strain triangles lock when ν
-// approaches ½, and these do not.
+// whose elements have the mean of their nodes' pressures [Bonet & Burton 1998]. Without averaging, constant-strain
+// triangles lock when ν approaches ½.
 //
-// Data flow of force(): elements read the positions of their nodes and write six numbers each, all in vectors; then
-// every node adds up what its elements wrote, in a fixed order. Nothing is allocated.
+// Data flow of force(): each element reads the positions of its nodes and writes six numbers, all in vectors. Then
+// every node sums the numbers of its elements, in a fixed order. Nothing is allocated.
 //
 // Bonet, Burton, A simple average nodal pressure tetrahedral element, Communications in Numerical Methods in
 // Engineering 14 (1998) 437, doi:10.1002/(SICI)1099-0887(199805)14:5<437::AID-CNM162>3.0.CO;2-W.
@@ -53,12 +53,12 @@ class PlanarElements {
   bool force(const PlanarField& x, const PlanarField& v, PlanarField& out);
   /// Elastic, J.
   double energy(const PlanarField& x) const;
-  /// That viscosity takes, W; not negative.
+  /// Power that viscosity dissipates, W; not negative.
   double viscous_power(const PlanarField& x, const PlanarField& v) const;
-  /// Without its viscous part.
+  /// Stress without its viscous part.
   PlanarStress stress(const PlanarField& x, int element) const;
 
-  // Of one element, for tangents and limits.
+  // Data of one element, for tangents and limits.
   struct Element {
     std::array<int, 3> node;
     double area, mu, kappa, viscosity, density;  // undeformed m², Pa, Pa, Pa s, kg/m³
@@ -70,7 +70,7 @@ class PlanarElements {
   /// κ (J − 1/J), or its mean over the nodes, Pa.
   std::vector<double> volumetric(const PlanarField& x) const;
 
-  /// Where volumes are averaged: a node with the triangles of one material around it.
+  /// For averaged volumes: a node with the triangles of one material around it.
   struct Patch {
     double kappa = 0.0, area = 0.0;  // Pa; third of the triangles' areas, m²
     std::vector<int> elements;
@@ -89,11 +89,11 @@ class PlanarElements {
   std::array<std::vector<int>, 3> node_;
   std::array<std::vector<double>, 4> inverse_;  // of F_I, by rows
   std::vector<double> area_, mu_, kappa_, viscosity_, density_;
-  // What elements write: forces on their corners 0, then on all corners 1, then 2, N.
+  // Written by elements: forces on their corners 0, then on all corners 1, then 2, N.
   std::vector<double> push_x_, push_z_;
-  // Where nodes read: entries size() × corner + element of node n from first_[n] to first_[n + 1].
+  // Read by nodes: entries size() × corner + element of node n, from first_[n] to first_[n + 1].
   std::vector<int> first_, entry_;
-  // Of averaging.
+  // For averaged volumes.
   std::vector<Patch> patches_;
   std::array<std::vector<int>, 3> patch_;  // of an element's corners
   std::vector<double> volume_, pressure_;  // of elements: A J, m²; Pa

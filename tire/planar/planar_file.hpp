@@ -1,4 +1,4 @@
-// What the file of a planar tire says.
+// The file of a planar tire.
 #pragma once
 
 #include <string>

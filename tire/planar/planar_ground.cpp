@@ -10,8 +10,8 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kFar = 4.0;   // plates reach so many radii
-constexpr double kDeep = 100;  // of a bar's sides, m: no tire is as large
+constexpr double kFar = 4.0;   // radii to which plates reach
+constexpr double kDeep = 100;  // of a bar's sides, m: larger than any tire
 
 bool by_x(const PlanarPoint& a, const PlanarPoint& b) { return a.x < b.x; }
 
@@ -48,7 +48,7 @@ PlanarGround PlanarGround::curb(double height, double length) {
   return PlanarGround({{-length, 0.0}, {0.0, 0.0}, {0.0, height}, {length, height}});
 }
 
-/// The solid's height at x: the highest of an upright face. −∞ beyond the ends.
+/// The solid's height at x; at a vertical face, its highest. −∞ beyond the ends.
 double PlanarGround::height(double x) const {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   if (x < points_.front().x || x > points_.back().x) return kNone;
@@ -60,7 +60,7 @@ double PlanarGround::height(double x) const {
   return a.z + (b.z - a.z) * (x - a.x) / (b.x - a.x);
 }
 
-// The nearest side is no farther than the one straight above: faces within that distance in x are looked at.
+// The nearest side is at most as far as the side straight above, so only faces within that distance in x are checked.
 PlanarDepth PlanarGround::depth(double x, double z) const {
   const double above = height(x) - z;
   if (!(above > 0.0)) return {};

@@ -1,6 +1,6 @@
-// What a planar tire stands on: a rigid polyline with its solid on the right-hand side when it is walked along from its
-// first point to its last, so that a road from left to right has its solid below. Faces may stand upright: a curb.
-// Beyond the ends there is nothing.
+// The ground under a planar tire: a rigid polyline. Its solid is on the right-hand side of the direction from first to
+// last point, so a road from left to right has its solid below. Faces may be vertical, as at a curb. There is no ground
+// beyond the ends.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace furrow::tire {
 
-/// How deep a point lies in the solid, and where the nearest side is.
+/// Depth of a point in the solid, and the direction to the nearest side.
 struct PlanarDepth {
-  double depth = 0.0;               // m; 0: not in it
+  double depth = 0.0;               // m; 0: outside
   double out_x = 0.0, out_z = 0.0;  // unit vector from the point to the nearest side
 };
 
@@ -21,11 +21,11 @@ class PlanarGround {
 
   /// @pre two points at least, finite, x not decreasing, no two the same
   explicit PlanarGround(std::vector<PlanarPoint> points);
-  /// Flat at z = 0 for tires of a radius up to this.
+  /// Flat at z = 0, long enough for tires of up to this radius.
   static PlanarGround plate(double radius);
-  /// A flat-topped bar with upright sides, its top at z = 0, whose base is never touched. @pre width > 0
+  /// A flat-topped bar with vertical sides and its top at z = 0; its base is never touched. @pre width > 0
   static PlanarGround bar(double width, double position);
-  /// Flat at z = 0 up to x = 0, at `height` from there on; of a length to both sides.
+  /// Flat at z = 0 up to x = 0 and at `height` from there on; extends by `length` to both sides.
   static PlanarGround curb(double height, double length);
 
   const std::vector<PlanarPoint>& points() const { return points_; }
@@ -33,7 +33,7 @@ class PlanarGround {
 
   PlanarDepth depth(double x, double z) const;
 
-  /// Convex corners, ends among them, by growing x.
+  /// Convex corners, with the ends, by increasing x.
   const std::vector<PlanarPoint>& corners() const { return corners_; }
 
  private:

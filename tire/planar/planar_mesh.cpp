@@ -78,8 +78,8 @@ PlanarMesh planar_disc(double radius, int around, double shift) {
   return mesh;
 }
 
-// The nodes of a ring lie over the middles of the chords of the next: at r + t for a thickness t those are lower by
-// (r + t)(1 − cos π/n), which must be less than 9/10 of t.
+// The nodes of a ring are at the angles of the middles of the next ring's chords. For a thickness t, the chords at r +
+// t are lower by (r + t)(1 − cos π/n), which must be less than 9/10 of t.
 int planar_most_rings(double inner, double outer, int around) {
   const double sagitta = outer * (1.0 - std::cos(std::numbers::pi / around));
   return static_cast<int>(0.9 * (outer - inner) / sagitta);

@@ -1,9 +1,9 @@
-// Meshes of triangles for a wheel seen from its right side: a disc, and around it an annulus, the tire, that share the
+// Meshes of triangles for a wheel seen from its right side: a disc and, around it, an annulus, the tire. Both share the
 // nodes of the disc's rim. x forward, z up, origin at the axle; triangles run counter-clockwise in (x, z).
 //
-// Nodes lie on rings. Those of the annulus have equally many nodes, each ring turned by half a step against the next,
-// so that triangles are isosceles and a mesh is its own mirror image; those of the disc lose about six nodes a ring
-// towards the middle. The outermost ring has a node at the lowest point.
+// Nodes lie on rings. Rings of the annulus have equally many nodes, and each is turned by half a step against the next.
+// So triangles are isosceles and a mesh is its own mirror image. Rings of the disc have about six nodes less with each
+// ring towards the middle. The outermost ring has a node at the lowest point.
 #pragma once
 
 #include <array>
@@ -28,15 +28,15 @@ struct PlanarMesh {
 /// @param shift turns the outer ring by this share of a step. @pre radius > 0, around ≥ 6
 PlanarMesh planar_disc(double radius, int around, double shift = 0.0);
 
-/// Rings at which triangles are still a tenth as high as without the curvature of the rings: more of them would cut
-/// each other.
+/// Largest number of rings: the rings' curvature makes triangles flatter, here to a tenth of their height. With more
+/// rings they would overlap.
 int planar_most_rings(double inner, double outer, int around);
 
 /// @param rings of elements between the radii. @pre 0 < inner < outer, 1 ≤ rings ≤ planar_most_rings(), around ≥ 6
 PlanarMesh planar_annulus(double inner, double outer, int rings, int around);
 
-/// Both as one mesh: the outer nodes of the first are the inner ones of the second. The parts of the second are
-/// numbered after those of the first.
+/// Merges two meshes: the outer nodes of the disc are the inner nodes of the annulus. The parts of the annulus are
+/// numbered after the parts of the disc.
 /// @pre those nodes coincide, in order
 PlanarMesh merged(const PlanarMesh& disc, const PlanarMesh& annulus);
 
@@ -45,7 +45,7 @@ struct PlanarWheelSize {
   int rings = 0, around = 0;              // elements through the tire, and along each of its rings
 };
 
-/// Disc (part 0) and tire (part 1). @pre as of planar_disc() and planar_annulus()
+/// Disc (part 0) and tire (part 1). @pre as for planar_disc() and planar_annulus()
 PlanarMesh planar_wheel(const PlanarWheelSize& size);
 
 }  // namespace furrow::tire

@@ -29,7 +29,7 @@ PlanarModes::PlanarModes(const PlanarParams& params)
   FURROW_ASSERT(carcass_.mesh().nodes() == around_ * (rings_ + 1), carcass_.mesh().nodes(), around_, rings_);
 }
 
-/// Nodes lie ring by ring, from the inside outwards: unknowns of ring k begin at 2 (k − 1), those of ring 0 are held.
+/// Nodes are ordered ring by ring, from the inside outwards. Unknowns of ring k begin at 2 (k − 1); ring 0 is held.
 Eigen::MatrixXcd PlanarModes::stiffness(int order) const {
   const PlanarElements& elements = carcass_.elements();
   const PlanarField& p = carcass_.mesh().position;
@@ -63,7 +63,7 @@ Eigen::MatrixXcd PlanarModes::stiffness(int order) const {
 
 Eigen::MatrixXcd PlanarModes::mass() const {
   Eigen::MatrixXcd m = Eigen::MatrixXcd::Zero(unknowns(), unknowns());
-  for (int ring = 1; ring <= rings_; ++ring)  // nodes of a ring are alike
+  for (int ring = 1; ring <= rings_; ++ring)  // all nodes of a ring are equal
     for (int x = 0; x < 2; ++x) m(2 * (ring - 1) + x, 2 * (ring - 1) + x) = carcass_.mass()[ring * around_];
   return m;
 }

@@ -1,5 +1,5 @@
-// Natural frequencies of a planar tire whose inner nodes are held, order by order (tire/modes.hpp). The rings of nodes
-// are turned against each other: the phase of a node is that of its own angle, and K_n is the sum over all elements
+// Natural frequencies of a planar tire whose inner nodes are held, order by order (tire/modes.hpp). As the rings of
+// nodes are turned against each other, a node has the phase of its own angle, and K_n is the sum over all elements
 // divided by their number around. Viscosity is left out.
 #pragma once
 
@@ -15,7 +15,8 @@ class PlanarModes final : public ModalTest {
   int unknowns() const override { return 2 * rings_; }
   ModesResults modes(const ModesOptions& options, const ProgressCall& progress) const override;
 
-  /// Unknowns: forward at the top and radial of each ring but the inner one, from the inside outwards. N/m
+  /// N/m. Unknowns: displacements forward at the top and radial, of each ring except the inner one, from the inside
+  /// outwards.
   Eigen::MatrixXcd stiffness(int order) const;
   Eigen::MatrixXcd mass() const;  // kg
 

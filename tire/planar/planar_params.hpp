@@ -1,4 +1,4 @@
-// What makes a planar wheel: its sizes, materials and options.
+// Parameters of a planar wheel: its sizes, materials and options.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct PlanarParams {
   double contact_stiffness = 0.0;  // c of a node, N/m per metre of width
   double friction = 0.0;           // of tire on ground
   PlanarIntegrator integrator = PlanarIntegrator::semi_implicit_euler;
-  double step_share = 0.5;  // of the largest step that the undeformed mesh bears
+  double step_share = 0.5;  // of the largest stable step of the undeformed mesh
 };
 
 inline PlanarElements planar_elements(const PlanarMesh& mesh, const PlanarParams& params) {

@@ -1,6 +1,6 @@
 // The static test of the planar tire: its load–deflection curve and the pressure along its footprint, on a plate, a bar
-// with upright sides or a profile, without friction. Deflection is how far the ground's highest point stands above the
-// undeformed tire's lowest, of a wheel whose centre node is held.
+// with vertical sides or a profile, without friction. The wheel's centre node is held. Deflection is the height of the
+// ground's highest point above the undeformed tire's lowest.
 #pragma once
 
 #include "tire/planar/planar_static.hpp"

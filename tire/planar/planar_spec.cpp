@@ -64,17 +64,17 @@ class PlanarSpec final : public TireSpec {
   std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<PlanarModes>(file_.params); }
 
  private:
-  /// Why runs cannot move this tire; empty: they can.
+  /// Why this tire cannot be used in motion; empty if it can.
   std::string not_in_motion() const {
     if (file_.params.integrator == PlanarIntegrator::semi_implicit_euler) return {};
     return "is 'runge_kutta_4', which runs do not take in this version: expected 'semi_implicit_euler', or tire.rigid "
            "true";
   }
-  /// Of the tire without its disc.
+  /// Mass properties of the tire without its disc.
   MassProperties mass() const { return planar_mass(file_.params); }
 
   PlanarFile file_;
-  std::vector<std::pair<std::string, std::string>> unusual_;  // of the file as it stands
+  std::vector<std::pair<std::string, std::string>> unusual_;  // of the file without the scenario's changes
 };
 
 TireDescription PlanarSpec::describe() const {
@@ -103,7 +103,8 @@ TireDescription PlanarSpec::describe() const {
   return d;
 }
 
-/// What the scenario says in place of the file: another number of elements around takes as many more through the tire.
+/// Applies the scenario's choices instead of the file's. A change of the number of elements around changes the number
+/// through the tire by the same factor.
 void apply(PlanarFile& file, const TireOptions& options) {
   options.apply_to(file.contact);
   file.params.friction = file.contact.friction;

@@ -1,5 +1,5 @@
-// The planar finite-element tire as an entry of the table of models: its file, what a scenario changes of it, what it
-// says of itself.
+// The planar finite-element tire as an entry of the table of models: its file, a scenario's changes of it, its
+// description.
 #pragma once
 
 #include <memory>

@@ -18,15 +18,15 @@ namespace {
 constexpr double kTolerance = 1e-8;  // of the free forces, relative to the ground's
 constexpr double kLeastForce = 1.0;  // N, below which they are relative to it
 constexpr double kRounding = 1e-14;  // of the largest stiffness × size
-constexpr double kLongest = 0.02;    // of the radius: a longer way is gone in parts
+constexpr double kLongest = 0.02;    // of the radius: a longer displacement is made in parts
 constexpr int kMostHalvings = 8, kMostSteps = 200, kMostCuts = 25;
-constexpr double kHold = 10.0;  // stiffness of what holds the rim, of the disc's modulus × area
+constexpr double kHold = 10.0;  // stiffness that holds the rim, in the disc's modulus × area
 constexpr double kFirstShare = 1e-5, kLastShare = 1e3, kMoreShare = 4.0;
 
 using Entries = std::vector<std::pair<int, double>>;  // of a vector: row, value
 
 int unknown(int node) { return 2 * (node - 1); }
-/// Of the rows of touch_stiffness() that belong to nodes.
+/// Number of rows of touch_stiffness() that belong to nodes.
 int touch_size(const PlanarTouch& t) { return t.b < 0 ? 2 : 4; }
 int touch_unknown(const PlanarTouch& t, int row) { return unknown(row < 2 ? t.a : t.b) + row % 2; }
 
@@ -43,7 +43,7 @@ struct PlanarStatic::Linear {
   void add(int row, int column, double value) {
     if (row >= column && column >= 0) entries.emplace_back(row, column, value);
   }
-  /// A rank of one: factor × g gᵀ. Entries of the same row add up.
+  /// Adds the matrix of rank one factor × g gᵀ. Entries of the same row add up.
   void add_outer(Entries& g, double factor) {
     std::sort(g.begin(), g.end());
     std::size_t kept = 0;
@@ -74,7 +74,7 @@ PlanarStatic::PlanarStatic(const PlanarParams& params, PlanarGround ground)
     inertia_ += mesh_.position.x[n] * mesh_.position.x[n] + mesh_.position.z[n] * mesh_.position.z[n];
   spring_ = kHold * params.disc.young_modulus * params.size.rim_radius * params.size.rim_radius * params.options.width;
   require_blas_buffers();
-  linear_->llt.cholmod().print = 0;  // tangents that are not positive definite are dealt with
+  linear_->llt.cholmod().print = 0;  // tangents that are not positive definite are handled
   linear_->right.resize(2 * (mesh_.nodes() - 1));
   assemble();
   linear_->diagonal = linear_->matrix.diagonal();
@@ -135,7 +135,7 @@ PlanarMatrix PlanarStatic::touch_stiffness(const PlanarTouch& t, double tangenti
   return k;
 }
 
-/// The entries are those of the same places every time: what touches adds to places that the elements fill.
+/// The sparsity pattern is always the same: touches add to entries that the elements fill.
 /// @param tangential s of touch_stiffness()
 void PlanarStatic::assemble(double tangential) {
   Linear& l = *linear_;
@@ -188,7 +188,7 @@ bool PlanarStatic::factorize(double share) {
   return l.llt.info() == Eigen::Success;
 }
 
-/// Goes along the way as far as the potential, or where round-off hides it the residual, falls.
+/// Follows the step as far as the potential falls, or the residual if round-off hides the potential.
 bool PlanarStatic::descend(double& energy, double& residual) {
   double share = 1.0;
   for (int cut = 0; cut < kMostCuts; ++cut, share *= 0.5) {

@@ -1,9 +1,9 @@
-// A planar wheel at rest on rigid ground without friction, its centre node held at a place and its disc's rim held
-// against turning by a couple.
+// A planar wheel at rest on rigid ground without friction. Its centre node is held in place; a couple holds its disc's
+// rim against turning.
 //
-// The minimum of Π = elastic energy + Σ ½ c h² + ½ k θ² with the mean turn θ of the rim; Newton's method with a line
-// search on Π. Where the tangent is not positive definite a share of its diagonal at rest is added. The centre goes to
-// a new place in parts that are small enough to be followed.
+// Newton's method with a line search finds the minimum of Π = elastic energy + Σ ½ c h² + ½ k θ², with the mean turn θ
+// of the rim. If the tangent is not positive definite, a share of its diagonal at rest is added. The centre moves to a
+// new place in parts small enough for convergence.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ class PlanarStatic {
   PlanarStatic(const PlanarStatic&) = delete;
   PlanarStatic& operator=(const PlanarStatic&) = delete;
 
-  /// Moves the centre there from where it is. First: undeformed, just above the ground, at x = 0.
+  /// Moves the centre from its present place to this one. The wheel starts undeformed, just above the ground, at x = 0.
   PlanarReport move_to(PlanarPoint centre);
 
   const PlanarMesh& mesh() const { return mesh_; }
@@ -37,10 +37,10 @@ class PlanarStatic {
   const PlanarField& shape() const { return x_; }
   const PlanarContact& contact() const { return contact_; }
   double force() const { return contact_.force_z(); }  // of the ground on the tire, upwards, N
-  double couple() const;                               // that holds the rim, about +y, N m
+  double couple() const;                               // on the rim that holds it, about +y, N m
   Wrench rim() const;  // of the tire on the rim about the centre, from the ground's forces
-  /// Along x and z against a ground that sticks wherever it touches; sideways the tire is rigid.
-  /// @param tangential share of the contact's stiffness with which it sticks; 0: it slides
+  /// Stiffness along x and z against a ground to which the tire sticks wherever it touches; sideways the tire is rigid.
+  /// @param tangential tangential stiffness as a share of the contact's stiffness; 0: it slides
   GroundStiffness ground_stiffness(double tangential = 1.0);
 
  private:

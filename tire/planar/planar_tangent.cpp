@@ -65,7 +65,7 @@ double step_limit(const PlanarElements& elements, const PlanarField& x) {
   for (int n = 0; n < elements.size(); ++n) {
     const PlanarElements::Element e = elements.element(n);
     const Shape s = shape_of(elements, e, x, n);
-    const double per_mass = 3.0 / e.density;  // area and width fall out
+    const double per_mass = 3.0 / e.density;  // area and width cancel
     const double k =
         largest_eigenvalue(tangent(s, per_mass, e.mu, e.mu - e.kappa * (s.j * s.j - 1.0), 2.0 * e.kappa * s.j * s.j));
     double c = 0.0;

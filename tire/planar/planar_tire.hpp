@@ -1,5 +1,5 @@
-// The planar finite-element tire in motion: planar_carcass.hpp, drawn out over its width
-// (tire/extruded/extruded_tire.hpp). Its inner nodes move with the rim, which stands for the disc.
+// The planar finite-element tire in motion: planar_carcass.hpp, extruded over its width
+// (tire/extruded/extruded_tire.hpp). Its inner nodes move with the rim, which replaces the disc.
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace furrow::tire {
 
-/// Mass, and inertia about the centre, of the undeformed tire without its disc: those of the nodes.
+/// Mass, and inertia about the centre, of the nodes of the undeformed tire without its disc.
 MassProperties planar_mass(const PlanarParams& params);
 
-/// @pre semi-implicit Euler
+/// @pre the file's integrator is semi-implicit Euler
 std::unique_ptr<Tire> make_planar_tire(const PlanarFile& file, TireShape shape, const Vec3& gravity);
 
 }  // namespace furrow::tire

@@ -17,9 +17,9 @@ namespace {
 constexpr double kLoadTolerance = 1e-3;  // of the footprint's load
 constexpr int kMaxTrials = 12;
 constexpr double kOnePath = 1e-3;       // loading and unloading that differ by less are one path
-constexpr double kEdgePressure = 0.02;  // of the largest: where the footprint ends
+constexpr double kEdgePressure = 0.02;  // of the largest: the footprint ends at this pressure
 
-/// Deflection that carries the load, between two points of the curve; the solver is left there.
+/// Finds the deflection that carries the load, between two points of the curve; the solver stays there.
 PressPoint find_load(const std::function<PressPoint(double)>& press, PressPoint low, PressPoint high, double load) {
   FURROW_ASSERT(load > low.force && load <= high.force, load, low.force, high.force);
   PressPoint now = high;
@@ -31,10 +31,10 @@ PressPoint find_load(const std::function<PressPoint(double)>& press, PressPoint 
   return now;
 }
 
-/// The tangent of the inflated tire that is not pressed is positive definite.
+/// Whether the tangent of the unpressed, inflated tire is positive definite.
 bool stable_unpressed(const PressResults& results) { return results.loading.front().failed_factorizations == 0; }
 
-/// Largest difference between loading and unloading, of the largest force.
+/// Largest difference between loading and unloading, as a share of the largest force.
 double path_difference(const PressResults& results) {
   double difference = 0.0, largest = 0.0;
   for (const PressPoint& point : results.loading) largest = std::max(largest, point.force);
@@ -183,7 +183,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["stable_while_pressed"] = failed == results.loading.front().failed_factorizations;
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
-  // A patch on plate or cleat holds the middle of it.
+  // A patch on plate or cleat contains the obstacle's middle.
   const double middle = profile && !results.footprint.empty() ? results.footprint.front().x : options.obstacle.position;
   Extent length{middle, middle}, width;
   for (const PressSample& s : results.footprint) {
@@ -192,7 +192,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
     area += s.area;
     length.include(s.x), width.include(s.y);
   }
-  const auto of_patch = [&](double value) {  // of a model that knows a patch
+  const auto of_patch = [&](double value) {  // of a model that has a patch
     return results.footprint.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
   };
   j["footprint"] = {

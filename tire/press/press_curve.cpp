@@ -20,7 +20,7 @@ namespace furrow::tire {
 namespace {
 
 constexpr int kFormat = 2;             // raise when the bits of a curve or its digest may change
-constexpr double kFirstShare = 0.048;  // of the radius, which is pressed first
+constexpr double kFirstShare = 0.048;  // of the radius, the first deflection
 constexpr double kMore = 1.6;          // times the deflection when the load was not reached
 constexpr int kMostTrials = 4;
 constexpr double kSteepest = 2.0;          // exponent with which a tire's force rises with its deflection, at most
@@ -48,7 +48,7 @@ std::filesystem::path cache_file(const TireSpec& tire, double deflection) {
   return folder / (hash.hex() + ".json");
 }
 
-/// Of a curve's numbers.
+/// Checksum of a curve's numbers.
 std::string checksum(const PressCurve& curve) {
   Hash hash;
   hash.add(&curve.radius, sizeof curve.radius);
@@ -57,7 +57,7 @@ std::string checksum(const PressCurve& curve) {
   return hash.hex();
 }
 
-/// What the cache holds; none where it is missing or damaged.
+/// Reads a curve from the cache; none if it is missing or damaged.
 std::optional<PressCurve> read_curve(const std::filesystem::path& file) {
   if (file.empty()) return std::nullopt;
   const nlohmann::ordered_json json = read_json_if_whole(file);
@@ -100,7 +100,7 @@ PressCurve press(const StaticTest& test, const TireSpec& tire, double deflection
   PressOptions options;
   options.deflection = deflection;
   options.points = kPoints;
-  options.load = std::numeric_limits<double>::infinity();  // no footprint is looked for
+  options.load = std::numeric_limits<double>::infinity();  // no footprint is wanted
   options.unload = false;
   const PressResults results = [&] {
     try {
@@ -133,7 +133,7 @@ std::optional<PressCurve> press_curve(const TireSpec& tire, double load, const P
   for (int trial = 0;; ++trial) {
     PressCurve curve = press(*test, tire, deflection, progress);
     if (curve.points.back().second >= load) return curve;
-    // What the trials that are left cannot reach needs no pressing.
+    // A load that the remaining trials cannot reach needs no pressing.
     const double reached = curve.points.back().second,
                  rise = std::pow(kMore, kSteepest * static_cast<double>(kMostTrials - trial));
     if (trial == kMostTrials || reached * rise < load)

@@ -1,7 +1,7 @@
-// The force of an inflated tire on flat ground against its deflection, at rest: what a vehicle stands on.
+// The force of an inflated tire at rest on flat ground against its deflection, for a vehicle at rest.
 //
-// Pressing takes seconds, so the curve is kept in the user's cache (press/), by the tire's file and by what the
-// scenario changes of it. It is as exact as the mesh: see README.md, "Static pressing".
+// Pressing takes seconds, so the curve is kept in the user's cache (press/) for each tire file and each set of a
+// scenario's changes. It is as exact as the mesh: see README.md, "Static pressing".
 #pragma once
 
 #include <optional>
@@ -14,19 +14,19 @@
 namespace furrow::tire {
 
 struct PressCurve {
-  double radius = 0.0;                            // of the inflated tire, where the deflection begins, m
+  double radius = 0.0;                            // of the inflated tire at zero deflection, m
   std::vector<std::pair<double, double>> points;  // deflection, m, and force, N; from (0, 0) on, rising
 };
 
-/// The curve at least up to `load`, N, at the pressure of the time 0; none for models that have no static test.
-/// @pre load > 0. @throws Error(physics) naming the tire's file when it carries no such load
+/// The curve up to at least `load`, N, at the pressure of time 0; none for models without a static test.
+/// @pre load > 0. @throws Error(physics) naming the tire's file if the tire cannot carry this load
 std::optional<PressCurve> press_curve(const TireSpec& tire, double load, const ProgressCall& progress);
 
-/// A load that no tire of this size carries, N: a pressure beyond that of any tire, over its width and its diameter.
-/// Infinite for rigid tires.
+/// A load that no tire of this size carries, N: a pressure that no tire has, times width and diameter. Infinite for
+/// rigid tires.
 double hopeless_load(const TireDescription& tire);
 
-/// The options with a mesh that is coarse enough to be pressed within seconds.
+/// The options with a mesh coarse enough for pressing within seconds.
 TireOptions coarse_for_pressing(TireOptions options);
 
 }  // namespace furrow::tire

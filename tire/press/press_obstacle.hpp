@@ -1,4 +1,4 @@
-// What a tire is pressed on, and what is measured there: of every model's static test.
+// The obstacle that a tire is pressed on, and the results of pressing, for the static tests of all models.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ namespace furrow::tire {
 
 /// A flat plate, a flat-topped bar across the direction of travel with rounded edges, or a profile.
 ///
-/// The ground's axes are x forward, y left, z up from it; the rim's centre is over their origin. Camber turns the wheel
-/// in them about x. Seen from the wheel, whose x is the same, it is the ground that is tilted.
+/// The ground's axes are x forward, y left, z up from the ground; the rim's centre is over their origin. Camber turns
+/// the wheel about x. In the wheel's axes, which have the same x, the ground is tilted.
 struct PressObstacle {
   double height = 0.0;                         // of the bar's top above the base, m; 0: a plate
   double width = 0.0;                          // of the top along x, m
   double position = 0.0;                       // of the bar's middle, forward of the axle, m
-  double camber = 0.0;                         // of the wheel; leans its top to the right of travel, rad
+  double camber = 0.0;                         // of the wheel; a positive one leans its top to the right of travel, rad
   double edge = 5e-3;                          // along x, over which the bar's sides rise, m
   double stiffness = 4e9;                      // κ, N/m³: 0.06 mm under 240 kPa
   std::vector<std::array<double, 2>> profile;  // x from the axle, z, m; empty: plate or bar
@@ -29,14 +29,14 @@ struct PressObstacle {
   struct Profile {
     double height = 0.0, slope = 0.0, curvature = 0.0;  // m, -, 1/m
   };
-  /// Of plate and bar. Top at 0; the base of a bar is never touched.
+  /// Profile of plate and bar. The top is at 0; the base of a bar is never touched.
   Profile at(double x) const;
   /// The ground's y and z in the wheel's axes.
   Vec3 left() const { return {0.0, std::cos(camber), -std::sin(camber)}; }
   Vec3 up() const { return {0.0, std::sin(camber), std::cos(camber)}; }
 };
 
-/// The same for a model in the plane.
+/// The obstacle for a model in the plane.
 template <class Ground>
 Ground plane_ground(const PressObstacle& obstacle, double radius) {
   if (obstacle.profile.empty())
@@ -46,7 +46,7 @@ Ground plane_ground(const PressObstacle& obstacle, double radius) {
   return Ground(std::move(points));
 }
 
-/// Rows x_m,z_m of a CSV file, x increasing. @throws Error(bad_input) naming file and line
+/// Reads rows x_m,z_m of a CSV file, x increasing. @throws Error(bad_input) naming file and line
 std::vector<std::array<double, 2>> read_press_profile(const std::filesystem::path& file);
 
 struct PressPoint {
@@ -65,9 +65,9 @@ struct PressSample {
   double pressure = 0.0;    // Pa
 };
 
-/// How a pressed tire resists small motions of a ground to which it sticks wherever it touches: force and moment that
-/// move the ground, by its way along its x, y and z (m) and its turn about z through the rim's centre (rad). N/m, N, N
-/// m/rad. Not a number: the model has none.
+/// Stiffness of a pressed tire against small motions of a ground to which it sticks wherever it touches. Rows are the
+/// force and moment that move the ground. Columns are its displacements along x, y and z (m) and its turn about z
+/// through the rim's centre (rad). N/m, N, N m/rad. NaN: the model has none.
 using GroundStiffness = Eigen::Matrix4d;
 
 }  // namespace furrow::tire

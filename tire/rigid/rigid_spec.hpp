@@ -1,4 +1,4 @@
-// Any tire held rigid: what `tire.rigid` makes of its model.
+// Any tire held rigid, by the key `tire.rigid`.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace furrow::tire {
 
-/// The shape, mass and contact of `flexible`, which it keeps; it takes no contact tangents.
+/// A tire with the shape, mass and contact of `flexible`, which it keeps. It takes no contact tangents.
 std::unique_ptr<TireSpec> make_rigid(std::unique_ptr<TireSpec> flexible);
 
 }  // namespace furrow::tire

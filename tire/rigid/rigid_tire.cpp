@@ -2,8 +2,8 @@
 // inertia J:
 //   F_spindle = Σ f + m g − Δ(m v)/H
 //   M_spindle = Σ (x − c) × f − Δ(J ω)/H,  x − c the mean of the interval's ends
-// With the way X and the turn θ of the rim (mean_turn.hpp), −F·X − M·θ + Σ f·Δx − Δ(energy) is what the interval's rule
-// loses: the rim's velocities need not be its way over H.
+// With the displacement X and the turn θ of the rim (mean_turn.hpp), −F·X − M·θ + Σ f·Δx − Δ(energy) is the numerical
+// loss of the interval's rule, since the rim's velocities may differ from X/H and θ/H. It is
 //   m Δv·(X/H − v̄) + ΔL·(θ/H − ω̄) + ½ (ω·L' − ω'·L),  L = J ω; v̄, ω̄ the means of the interval's ends.
 #include "tire/rigid/rigid_tire.hpp"
 

@@ -1,8 +1,8 @@
 // Factor and solution of a symmetric cyclic system of 2 × 2 blocks, each coupled with two neighbours on both sides, as
-// a band: the ring is folded flat, its segments in the order 0, N − 1, 1, N − 2, 2, …, so that neighbours of second
-// order are at most four places apart. Nine entries lie below each diagonal entry; nothing fills in beyond them.
+// a band. The ring is folded flat: with segments in the order 0, N − 1, 1, N − 2, 2, …, neighbours of second order are
+// at most four places apart. Nine entries lie below each diagonal entry, and there is no fill-in beyond them.
 //
-// Right-hand sides are solved together, kLanes at a time, interleaved: they cost about what one does.
+// Right-hand sides are solved together, kLanes at a time, interleaved. Together they cost about as much as one.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class FoldedBand {
 
   /// L D Lᵀ of the blocks. @returns whether all pivots are positive
   bool factorize(const RingTangent& blocks);
-  /// Entries of right-hand sides, with those behind the last unknown that stay zero.
+  /// Entries of right-hand sides, including those behind the last unknown, which stay zero.
   std::size_t entries() const { return static_cast<std::size_t>(kLanes) * (unknowns_ + kBelow); }
   /// Solves in place. @pre factorized; x has entries() entries, lane by lane of each unknown, the last ones zero
   void solve(double* x) const;

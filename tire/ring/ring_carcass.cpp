@@ -46,7 +46,7 @@ RingCarcass::RingCarcass(const RingParams& params, const RingMotion& motion)
       lanes_(band_.entries()),
       air_(band_.unknowns()) {
   FURROW_ASSERT(damping_ >= 0.0, damping_);
-  // Segments run backwards from the top, as angles of ring_mechanics.hpp grow.
+  // Segments are numbered backwards from the top, in the direction of the angles of ring_mechanics.hpp.
   for (int j = 0; j < n_; ++j) {
     tread_[(n_ - j) % n_] = j;
     sine_.push_back(-std::sin(j * ring_.angle()));
@@ -88,7 +88,7 @@ void RingCarcass::place(double angle, double spin, PlanarPoint velocity) {
   for (int j = 0; j < n_; ++j) w_.x[j] = spin * r_.z[j], w_.z[j] = -spin * r_.x[j];
 }
 
-/// What (2) knows, m_j (r + h w)/h² + f + m_j (g − A), and a first q' − q: that of r' = r + h w.
+/// Computes the known terms of (2), m_j (r + h w)/h² + f + m_j (g − A), and a first q' − q from r' = r + h w.
 void RingCarcass::aim(double h, double turn, double middle, PlanarPoint acceleration, const PlanarField& load,
                       PlanarPoint gravity) {
   const double c = std::cos(middle), s = std::sin(middle), ct = std::cos(turn), st = std::sin(turn);
@@ -98,12 +98,12 @@ void RingCarcass::aim(double h, double turn, double middle, PlanarPoint accelera
     const Local way = local(j, c, s, r_.x[j] + h * w_.x[j], r_.z[j] + h * w_.z[j]);
     const Local acts = local(j, c, s, load.x[j] + gx, load.z[j] + gz);
     target_.u[j] = stiff * way.u + acts.u, target_.v[j] = stiff * way.v + acts.v;
-    change_.u[j] = ct * way.u - st * way.v - ring_.radius() - q_.u[j];  // turned back by δ: the rim goes on
+    change_.u[j] = ct * way.u - st * way.v - ring_.radius() - q_.u[j];  // turned back by δ: the rim turns on
     change_.v[j] = ct * way.v + st * way.u - q_.v[j];
   }
 }
 
-/// A = m/h² + ½ ∂²Π + (τ/h) K at q_m, and A⁻¹ 1 of the air. @returns whether A is positive definite
+/// Factors A = m/h² + ½ ∂²Π + (τ/h) K at q_m, and computes A⁻¹ 1 for the air. @returns whether A is positive definite
 bool RingCarcass::factorize(double h) {
   ring_.tangent(middle_, tangent_);
   const double share = 0.5 + damping_ / h, stiff = node_mass_ / (h * h);
@@ -127,7 +127,7 @@ bool RingCarcass::factorize(double h) {
   return true;
 }
 
-/// Sets what is left of (2). @returns the largest of it, N; not a number where the motion is none
+/// Computes the residual of (2). @returns its largest entry, N; NaN if the motion is not finite
 double RingCarcass::residual(double h, double turn) {
   for (int j = 0; j < n_; ++j) {
     middle_.u[j] = q_.u[j] + 0.5 * change_.u[j];
@@ -195,9 +195,9 @@ Outcome RingCarcass::step(double h, const PlaneRimStep& rim, const PlanarField& 
   return {};
 }
 
-/// Goes on by the change that was found, and adds what (4) says of it. The rim's part is what remains of the balances
-/// of momentum and of angular momentum, with lever arms r_m; its work as the segments feel it is that of
-/// −Σ R F in the way and, by (3), −2 sin δ Σ F·R(−α_m) J r_m in the turn.
+/// Advances by the change that was found, and adds the terms of (4). The rim's impulses follow from the balances of
+/// momentum and of angular momentum, with lever arms r_m. Its work on the segments is the work of −Σ R F over the
+/// displacement and, by (3), −2 sin δ Σ F·R(−α_m) J r_m for the turn.
 void RingCarcass::move(double h, const PlaneRimStep& rim, double turn, const PlanarField& load, PlanarPoint gravity,
                        PlaneSums& sums) {
   const double middle = angle_ + turn, c = std::cos(middle), s = std::sin(middle);

@@ -1,13 +1,13 @@
 // The flexible ring in motion on a rim with a given motion, in the plane of its wheel.
 //
-// Masses. The file's mass m and spin inertia I are those of two thin rings: the belt, m_b at R, on its segments, and a
-// rest m − m_b at the rim's radius ρ, which moves with the rim:
+// Masses. Two thin rings have the file's mass m and spin inertia I: the belt, m_b at R, on its segments, and the rest m
+// − m_b at the rim's radius ρ, which moves with the rim:
 //   m_b R² + (m − m_b) ρ² = I.                                                                                (1)
 //
-// Positions r_j and velocities w_j of the segments count from the rim's centre, in axes that do not turn with the rim;
-// their displacements q_j = (u, v) are seen from the rim, which is turned by α: r_j = R(α) (R e_r + q_j). So inertia is
-// complete, with centrifugal and Coriolis terms [Gong 1993, A study of in-plane dynamics of tires, TU Delft, ch. 3,
-// writes them out], and a rigid rotation strains nothing. A step h, in which the centre has
+// Positions r_j and velocities w_j of the segments are relative to the rim's centre, in axes that do not turn with the
+// rim. Displacements q_j = (u, v) are relative to the rim, which is turned by α: r_j = R(α) (R e_r + q_j). So inertia
+// is complete, with centrifugal and Coriolis terms [Gong 1993, A study of in-plane dynamics of tires, TU Delft, ch. 3,
+// writes them out], and a rigid rotation causes no strain. A step h, in which the centre has
 // the velocity V', after V before,
 //   r' = r + h w',   m_j (w' − w + V' − V)/h = −cos δ R(α_m) F + f + m_j g,                                   (2)
 //   F = ∂Π(q_m) + (τ/h) K(q_m) (q' − q),   q_m = ½ (q + q'),   α_m = ½ (α + α'),   δ = ½ (α' − α),
@@ -15,15 +15,15 @@
 // structural damping (Kelvin and Voigt) of belt and sidewall with the time constant τ. Exactly,
 //   q' − q = R(−α_m) [cos δ (r' − r) − 2 sin δ J r_m],   J a right angle,   r_m = ½ (r + r').                  (3)
 //
-// Momentum and angular momentum change by what acts, to round-off, whatever is left of
-// (2). Energy, with Δx = Δr + h V':
+// Momentum and angular momentum change by the acting impulses, to round-off, whatever the residual of (2). Energy, with
+// Δx = Δr + h V':
 //   f·Δx + m g·Δx + rim = Δ(kinetic + Π) + ½ Σ m |Δv|² + (τ/h) Δqᵀ K Δq,                                      (4)
-// but for third order in h through the curvature of sidewall and hoop tension. The term in Δv is the loss of the rule,
-// which acts like h/2 of additional τ; it cannot be negative. Stiff motion does not ring, as with the
-// shell's rule (shell_integrator.hpp).
+// up to third order in h, from the curvature of sidewall and hoop tension. The term in Δv is the numerical loss, which
+// acts like h/2 of additional τ; it cannot be negative. As with the shell's rule (shell_integrator.hpp), stiff motion
+// does not ring.
 //
-// (2) is solved for q' − q by Newton's method with one factor in a step: folded_band.hpp, the air's rank of one by
-// Sherman and Morrison, without the turn 2δ of a step.
+// Newton's method solves (2) for q' − q with one factor per step (folded_band.hpp). The factor leaves out the turn 2δ
+// of the step; the Sherman–Morrison formula adds the air's rank of one.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ namespace furrow::tire {
 
 class RingCarcass final : public PlaneModel {
  public:
-  /// @pre as of RingMechanics and belt_mass(); damping ≥ 0
+  /// @pre as for RingMechanics and belt_mass(); damping ≥ 0
   RingCarcass(const RingParams& params, const RingMotion& motion);
 
   const RingMechanics& ring() const { return ring_; }
@@ -47,7 +47,7 @@ class RingCarcass final : public PlaneModel {
   int coordinates() const override { return 2 * n_; }
   const std::vector<int>& tread() const override { return tread_; }
   double tread_mass() const override { return node_mass_ * n_; }
-  /// Energy that a changing pressure puts in is left out of pressure_energy().
+  /// pressure_energy() leaves out the energy that a changing pressure adds.
   void set_pressure(double pressure) override;
   void place(double angle, double spin, PlanarPoint velocity) override;
   Outcome parts(double, int& count) override { return count = 1, Outcome{}; }
@@ -75,7 +75,7 @@ class RingCarcass final : public PlaneModel {
   struct Local {
     double u, v;  // along e_r, e_t
   };
-  /// A vector of the plane in the axes of a segment of a rim that is turned so that c, s are its cosine and sine.
+  /// A vector of the plane in the axes of a segment; c and s are cosine and sine of the rim's angle.
   Local local(int j, double c, double s, double x, double z) const;
   PlanarPoint plane(int j, double c, double s, Local p) const;
 
@@ -112,10 +112,10 @@ class RingCarcass final : public PlaneModel {
   PlanarPoint centre_;               // V
   double pumped_ = 0.0;              // J, by changing pressures
   std::int64_t iterations_ = 0;
-  double residual_ = 0.0;  // of the last step, over the force that moves a segment by the radius
+  double residual_ = 0.0;  // of the last step, relative to the force that moves a segment by the radius
 
   RingField change_, middle_, force_, damped_;  // q' − q, q_m, ∂Π(q_m), K (q' − q)
-  RingField target_, left_;                     // of (2), in axes turned by α_m: what is known, what is left; N
+  RingField target_, left_;                     // of (2), in axes turned by α_m: known terms, residual; N
   RingTangent tangent_;
   std::vector<double> lanes_, air_;  // right-hand sides; A⁻¹ 1
   double air_share_ = 0.0;

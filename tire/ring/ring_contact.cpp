@@ -13,9 +13,9 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kHidden = 1e-9;  // m by which another face may stand before a corner that is seen
-constexpr double kNear = 0.02;    // of the radius: gaps that are looked at
-constexpr double kFound = 1e-10;  // of the radius, along, to which a corner's place under the belt is found
+constexpr double kHidden = 1e-9;  // m, by which another face may be in front of a visible corner
+constexpr double kNear = 0.02;    // of the radius: largest gap that is kept
+constexpr double kFound = 1e-10;  // of the radius: tolerance along the belt for a corner's place under it
 
 }  // namespace
 
@@ -46,7 +46,7 @@ struct RingContact::Belt {
     }
   }
 
-  /// Of the three displacements in (1), and their derivatives.
+  /// Weights of the three displacements in (1), and their derivatives.
   struct Weights {
     std::array<double, 3> share, slope, bend;
   };
@@ -104,7 +104,7 @@ bool RingContact::corners(const RingField& q, std::vector<CornerGap>& out) const
       radial_corner(q, k, out);
     else
       exact_corner(q, k, out);
-    // A step that crosses what is left out here sees it in the next one.
+    // If a step crosses a gap that is left out here, the next step contains it.
     if (!out.empty() && out.back().corner == k && out.back().gap > kNear * radius_) out.pop_back();
   }
   return true;
@@ -130,7 +130,7 @@ void RingContact::exact_corner(const RingField& q, int k, std::vector<CornerGap>
   const double at = ground_.corners()[k].x - axle_.x;
   double turns = std::asin(at / radius_) / phi_;
   constexpr int kMostIterations = 30;
-  for (int i = 0; i < kMostIterations; ++i) {  // where the belt is over the corner: x grows along it, smoothly
+  for (int i = 0; i < kMostIterations; ++i) {  // the belt's point over the corner: x grows smoothly along it
     const Belt belt(*this, q, turns);
     const double change = (at - belt.x) / belt.x_s;
     turns += change;

@@ -10,7 +10,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kFlat = 1e-9;  // change of slope below which a point is no corner
+constexpr double kFlat = 1e-9;  // change of slope below which a point is not a corner
 
 }  // namespace
 

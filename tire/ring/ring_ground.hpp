@@ -1,6 +1,6 @@
-// What a ring stands on: a polyline z(x) seen from the side, rigid and without friction. Its faces carry segments of
-// the ring; its convex corners, and its two ends, carry the belt between segments. Beyond the ends there is nothing, so
-// that two points are a bar whose base is never touched, and two points far apart a plate.
+// The ground under a ring: a polyline z(x) seen from the side, rigid and without friction. Its faces carry segments of
+// the ring; its convex corners and its two ends carry the belt between segments. There is no ground beyond the ends. So
+// two points make a bar whose base is never touched, and two points far apart make a plate.
 #pragma once
 
 #include <vector>
@@ -17,13 +17,13 @@ class RingGround {
 
   /// @pre two points at least, x strictly increasing, all finite
   explicit RingGround(std::vector<GroundPoint> points);
-  /// A flat plate at z = 0, under every tire of a radius up to this.
+  /// A flat plate at z = 0, long enough for tires of up to this radius.
   static RingGround plate(double radius);
   /// A bar with its top at z = 0, from −width/2 to width/2 about `position`. @pre width > 0
   static RingGround bar(double width, double position);
 
   const std::vector<GroundPoint>& points() const { return points_; }
-  /// Where the belt can be carried between segments.
+  /// Points that can carry the belt between segments.
   const std::vector<GroundPoint>& corners() const { return corners_; }
   double top() const { return top_; }  // m
 
@@ -31,8 +31,8 @@ class RingGround {
   int face(double x) const;
   double slope(int face) const;
   double height(int face, double x) const;
-  /// Distance along a ray from (x, z) under the angle θ from straight down to the first face that it meets from above;
-  /// infinite where there is none. @pre |θ| < π/2
+  /// Distance along a ray from (x, z), at the angle θ from straight down, to the first face that it meets from above;
+  /// infinite if there is none. @pre |θ| < π/2
   double distance(double x, double z, double angle) const;
 
  private:

@@ -23,8 +23,8 @@ RingMechanics::RingMechanics(const RingParams& params)
   FURROW_ASSERT(n_ >= kMinSegments, n_);
   FURROW_ASSERT(params.ambient > 0.0 && params.air_share > 0.0, params.ambient, params.air_share);
   set_pressure(params.pressure);
-  // Block (j, j + d) of (2): φ Σ_o A b(o) b(o + d)ᵀ + B a(o) a(o + d)ᵀ; o: place of segment j as the measure's own
-  // segment sees it, −1, 0, 1.
+  // Block (j, j + d) of (2): φ Σ_o A b(o) b(o + d)ᵀ + B a(o) a(o + d)ᵀ; o: place of segment j relative to the measure's
+  // own segment, −1, 0, 1.
   const double f = first_, g = second_;
   const double b[3][2] = {{-g, -f}, {2.0 * g, 0.0}, {-g, f}};  // of D₁v − D₂u: by u, v
   const double a[3][2] = {{-f, g}, {0.0, -2.0 * g}, {f, g}};   // of D₁u + D₂v
@@ -103,7 +103,7 @@ void RingMechanics::belt_gradient(const RingField& q, RingField& out) {
 
 void RingMechanics::gradient(const RingField& q, RingField& out) {
   belt_gradient(q, out);
-  // Air and the constant part of the sidewall cancel when not loaded: their difference is taken first.
+  // Air and the constant part of the sidewall cancel without load, so their difference is computed first.
   const double lift = share_ * (params_.pressure - pressure(q));
   for (int j = 0; j < n_; ++j) {
     const double u = q.u[j];
@@ -140,8 +140,8 @@ void RingMechanics::tangent(const RingField& q, RingTangent& out) const {
   tension_.add_tangent(q, 1.0, out);
 }
 
-// A segment's sidewall pulls the rim outwards, along (sin θ, −cos θ), and after its tangential displacement, along
-// (cos θ, sin θ). What is alike all around, s₀, has no resultant.
+// A segment's sidewall pulls the rim outwards, along (sin θ, −cos θ), and in the direction of its tangential
+// displacement, along (cos θ, sin θ). The part s₀ is constant around the ring and has no resultant.
 RingForce RingMechanics::spindle(const RingField& q) const {
   RingForce sum;
   for (int j = 0; j < n_; ++j) {

@@ -8,19 +8,19 @@
 //     + φ Σ ∫₀ᵘ (s₀ + s₁u + s₂u² + s₃u³) du + ½ k_t v²                             sidewall                    (3)
 //     − p₀V₀ ln(V/V₀) + p_a (V − V₀),   V = V₀ + RφT Σu,   V₀ = η π R² T           air                         (4)
 //     + Π_t                                          hoop tension of the belt, (1) of ring_tension.hpp
-// A resists the change of the belt's curvature, (v − u')'. B resists shear between its plies, which is as the gradient
-// of the hoop strain, (u + v')' (shear lag); B → ∞ is the inextensible ring, whose bending energy is ½A (u'' + u)². The
-// belt's null space is exactly of dimension four, also of (1): both translations (u, v) = (cos θ, −sin θ) and
-// (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1; no alternating mode is free. Translations and
-// growth are held by the sidewall, the rotation by k_t > 0 alone: its torsional stiffness is 2π R² k_t.
+// A resists the change of the belt's curvature, (v − u')'. B resists shear between its plies, which is proportional to
+// the gradient of the hoop strain, (u + v')' (shear lag). B → ∞ is the inextensible ring, whose bending energy is ½A
+// (u'' + u)². The belt's null space, also with (1), has exactly four dimensions: both translations (u, v) = (cos θ,
+// −sin θ) and (sin θ, cos θ), the rotation v = 1, and the uniform growth u = 1. No alternating mode is free. The
+// sidewall resists translations and growth. Only k_t > 0 resists the rotation: its torsional stiffness is 2π R² k_t.
 //
-// (3) is the sidewall's polynomial in w = u + q about the draw q (ring_params.hpp), with s₀ = p R T, p = p₀ − p_a, of
-// which the share σ is what the belt's tension adds to the sidewall's (1 − σ) p R T; so the inflated ring is in balance
-// exactly. With σ = 0 the belt carries no hoop tension: the whole resultant of the pressure goes to the sidewall. σ > 0
-// leaves the rigid motions free, and holds waves of the orders n ≥ 2.
+// (3) is the sidewall's polynomial in w = u + q about the draw q (ring_params.hpp), with s₀ = p R T, p = p₀ − p_a. The
+// sidewall carries (1 − σ) p R T and the belt's tension the share σ, so the inflated ring is exactly in balance. With σ
+// = 0 the belt has no hoop tension, and the sidewall carries the whole resultant of the pressure. σ > 0 leaves rigid
+// motions free and resists waves of the orders n ≥ 2.
 //
-// Air of the kind `linearised` has the second-order expansion of (4). Its tangent in either kind is a constant times
-// the outer product of (1, …, 1) on u with itself: a rank of one, given apart (RingTangent::gas).
+// The air `linearised` has the second-order expansion of (4). The tangent of either kind of air is a constant times the
+// outer product of (1, …, 1) on u with itself. This matrix of rank one is kept separately (RingTangent::gas).
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ struct RingForce {
 
 class RingMechanics {
  public:
-  /// @pre as of sidewall_draw(); segments ≥ kMinSegments, ambient, air_share > 0
+  /// @pre as for sidewall_draw(); segments ≥ kMinSegments, ambient, air_share > 0
   explicit RingMechanics(const RingParams& params);
 
   int segments() const { return n_; }
@@ -54,26 +54,26 @@ class RingMechanics {
   void set_pressure(double pressure);
 
   RingField zero() const;
-  RingTangent no_tangent() const;  // of the right size
-  /// Π, J; 0 when inflated and not loaded.
+  RingTangent no_tangent() const;  // zero, of the right size
+  /// Π, J; 0 when inflated and unloaded.
   double energy(const RingField& q) const;
   /// ∂Π/∂q. @pre the volume is positive
   void gradient(const RingField& q, RingField& out);
-  /// The part of the air, J.
+  /// The air's part of Π, J.
   double air_energy(const RingField& q) const;
-  /// Tangent at q of belt and sidewall, without air and hoop tension, times x: what a structure damps.
+  /// Tangent at q of belt and sidewall, without air and hoop tension, times x. Structural damping acts on this part.
   void without_air(const RingField& q, const RingField& x, RingField& out);
-  /// Of all; the part of the air apart.
+  /// Tangent of all parts; the air's part is separate, in RingTangent::gas.
   void tangent(const RingField& q, RingTangent& out) const;
   /// Gauge pressure, Pa.
   double pressure(const RingField& q) const;
   /// Tangent of one segment's sidewall, N/m.
   double slope(double u) const { return phi_ * (s_[1] + u * (2.0 * s_[2] + 3.0 * s_[3] * u)); }
-  /// Force of the sidewall on the rim, seen from the axle, N.
+  /// Force of the sidewall on the rim, N.
   RingForce spindle(const RingField& q) const;
-  /// Its moment on the rim about +y, N m: that of the tangential springs.
+  /// Moment of the tangential springs on the rim about +y, N m.
   double spindle_moment(const RingField& q) const;
-  /// Round-off of an entry of the gradient, N: that of the belt's stiffness times the largest displacement.
+  /// Round-off of an entry of the gradient, N: the round-off of the belt's stiffness times the largest displacement.
   double rounding(const RingField& q) const;
 
  private:

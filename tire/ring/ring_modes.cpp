@@ -15,7 +15,7 @@ RingModes::RingModes(const RingParams& params, const RingMotion& motion, const M
       segment_mass_(belt_mass(motion, params.radius) / params.segments),
       total_(mass) {}
 
-/// Waves e^{i n θ} with θ from the top forwards, against which segments are numbered.
+/// Waves e^{i n θ} with θ from the top forwards, opposite to the numbering of the segments.
 Eigen::MatrixXcd RingModes::stiffness(int order) const {
   RingTangent t = ring_.no_tangent();
   ring_.tangent(ring_.zero(), t);

@@ -1,6 +1,6 @@
 // Natural frequencies of a flexible ring at rest, inflated, on a rim that does not move, order by order
-// (tire/modes.hpp). Segments have displacements of their own axes, so that stiffness and mass of an order are the
-// blocks of the tangent with the phases of neighbours; the air answers in order 0 alone. Damping is left out.
+// (tire/modes.hpp). Displacements are in each segment's own axes, so stiffness and mass of an order are the tangent's
+// blocks with the phases of the neighbours. The air contributes to order 0 alone. Damping is left out.
 #pragma once
 
 #include "tire/modes.hpp"
@@ -10,7 +10,7 @@ namespace furrow::tire {
 
 class RingModes final : public ModalTest {
  public:
-  /// @pre as of RingMechanics and belt_mass()
+  /// @pre as for RingMechanics and belt_mass()
   RingModes(const RingParams& params, const RingMotion& motion, const MassProperties& mass);
   int sections() const override { return ring_.segments(); }
   int unknowns() const override { return 2; }

@@ -5,7 +5,7 @@
 namespace furrow::tire {
 
 // k₁q + k₂q² + k₃q³ − f is convex in q ≥ 0, and not negative at f / k₁, f = (1 − σ) p R T: from there Newton's method
-// falls to its root without passing it.
+// decreases to the root without passing it.
 double sidewall_draw(const RingParams& s) {
   FURROW_ASSERT(s.radius > 0.0 && s.width > 0.0 && s.sidewall_1 > 0.0, s.radius, s.width, s.sidewall_1);
   FURROW_ASSERT(s.sidewall_2 >= 0.0 && s.sidewall_3 >= 0.0 && s.pressure >= 0.0, s.sidewall_2, s.sidewall_3);

@@ -1,21 +1,22 @@
-// What the flexible-ring tire is made of: fewer than ten numbers, all of them per radian of the belt where they belong
-// to a segment, so that they mean the same for any number of segments.
+// Parameters of the flexible-ring tire. Parameters of a segment are given per radian of the belt, so that they do not
+// depend on the number of segments.
 //
-// The belt is a ring of radius R and width T whose displacements u (radial, outwards) and v (tangential) count from its
-// inflated, circular shape. The sidewall pulls it inwards with k₁w + k₂w² + k₃w³, w = u + q, where the draw q is how
-// far inflation holds it from the length at which it is at rest:
+// The belt is a ring of radius R and width T. Its displacements u (radial, outwards) and v (tangential) are relative to
+// its inflated, circular shape. The sidewall pulls it inwards with k₁w + k₂w² + k₃w³, w = u + q, where the draw q is
+// the sidewall's extension by inflation:
 //   k₁q + k₂q² + k₃q³ = (1 − σ) p R T                                                                         (1)
-// balances the gauge pressure p, so that q is no number of its own. The share σ of p R T is held by the belt, as hoop
-// tension: that of a membrane. R is that of the inflated tire whatever the pressure: a belt hardly stretches. k₂ > 0
-// makes the sidewall stiffen with pressure and soften when pressed; its force grows with w
-// everywhere while k₂² < 3 k₁k₃.
+// balances the gauge pressure p, so q is not an independent parameter. The belt carries the share σ of p R T as hoop
+// tension, like a membrane. R is the radius of the inflated tire at any pressure, since a belt hardly stretches. With
+// k₂ > 0 the sidewall stiffens with pressure and softens when pressed. Its force grows with w everywhere if k₂² < 3
+// k₁k₃.
 #pragma once
 
 namespace furrow::tire {
 
-/// How a segment meets the ground: at its own angle, its tangential movement left out, or where it is.
+/// Where a segment touches the ground: at its own angle, without its tangential displacement (radial), or at its true
+/// position (exact).
 enum class RingKinematics { radial, exact };
-/// p V constant, or its tangent at the inflated volume.
+/// Law of the air: p V is constant (exact), or the tangent of this law at the inflated volume (linearised).
 enum class RingGas { linearised, exact };
 
 struct RingParams {
@@ -38,10 +39,10 @@ struct RingParams {
 
 inline constexpr int kMinSegments = 16, kMaxSegments = 20000;
 
-/// Largest deflection that the model is meant for, share of the radius.
+/// Largest deflection in the model's range, share of the radius.
 inline constexpr double kMostRingDeflection = 0.25;
 
-/// What a ring in motion needs besides. Mass and spin inertia are those of two thin rings: the belt, m_b at R, and a
+/// Further parameters of a ring in motion. Two thin rings have the mass and spin inertia: the belt, m_b at R, and the
 /// rest at the rim's radius ρ, which moves with the rim:
 ///   m_b R² + (m − m_b) ρ² = I.                                                                              (2)
 struct RingMotion {

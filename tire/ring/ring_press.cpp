@@ -13,10 +13,10 @@ namespace furrow::tire {
 namespace {
 
 constexpr double kMinLoad = 1.0;   // N, below which the residual is relative to it
-constexpr double kLongest = 0.01;  // of the radius: a longer way is gone in parts
+constexpr double kLongest = 0.01;  // of the radius: a longer displacement is made in parts
 constexpr int kMostHalvings = 6;
 
-/// Moves the axle down to a height, in parts where one step does not find the equilibrium.
+/// Moves the axle down to a height, in parts if one step does not find the equilibrium.
 class Descent {
  public:
   Descent(RingSolver& solver, double top) : solver_(solver), height_(top + solver.ring().radius()) {}

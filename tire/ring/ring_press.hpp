@@ -1,5 +1,5 @@
 // The static test of the flexible ring: its load–deflection curve and the pressure along its centre line, on a plate, a
-// bar or a profile. Deflection is how far the ground's highest point stands above the inflated ring's lowest.
+// bar or a profile. Deflection is the height of the ground's highest point above the inflated ring's lowest.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace furrow::tire {
 
-/// @param rim_radius m, that the belt must not reach
+/// @param rim_radius that the belt must not reach, m
 /// @throws Error(bad_input) when the deflection is beyond kMostRingDeflection, Error(physics) without an equilibrium
 PressResults press_ring(const RingParams& params, double rim_radius, const MassProperties& mass,
                         const PressOptions& options, const ProgressCall& progress);
 
-/// Pressure at the segments that touch, and where corners carry the belt: their force spread over one segment.
+/// Pressure at touching segments and at corners that carry the belt. A corner's force is spread over one segment.
 std::vector<PressSample> ring_footprint(const RingSolver& solver);
 
 }  // namespace furrow::tire

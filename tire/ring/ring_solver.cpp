@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kForceTolerance = 1e-11;  // of the force that moves a segment by the radius
 constexpr double kEnough = 4.0;            // round-offs of an entry of the gradient
-constexpr double kStall = 32.0;            // the same, where a step gains nothing
+constexpr double kStall = 32.0;            // round-offs of an entry, if a step gains nothing
 constexpr double kGapTolerance = 1e-12;    // of the radius
 constexpr double kLongestStep = 0.3;       // of the radius
 constexpr int kFullSteps = 12;             // from then on steps are halved
@@ -66,8 +66,8 @@ RingReport RingSolver::solve(const AxlePlace& axle) {
   return report;
 }
 
-/// Δ from the exact tangent; where it has no minimum, because the belt would slide over a corner, from that without the
-/// corners' curvature, which always has one. @returns linear systems solved; 0: failed
+/// Computes Δ with the exact tangent. If there is no minimum, because the belt would slide over a corner, computes it
+/// without the corners' curvature; this tangent always has a minimum. @returns linear systems solved; 0: failed
 int RingSolver::step(double force_tolerance, double gap_tolerance) {
   set_before_ = set_;
   for (const bool exact : {true, false}) {
@@ -90,7 +90,7 @@ bool RingSolver::evaluate() {
   return carry_corners();
 }
 
-/// A corner's closed gap stays closed while the belt moves over it. Corners come in their order in both lists.
+/// Keeps a corner's gap closed while the belt moves over it. Both lists have the corners in the same order.
 bool RingSolver::carry_corners() {
   std::swap(corners_, corners_before_);
   std::swap(set_.corner, set_before_.corner), std::swap(set_.corner_force, set_before_.corner_force);
@@ -107,7 +107,7 @@ bool RingSolver::carry_corners() {
   return all;
 }
 
-/// Largest force that contact leaves; sets the segments' contact forces.
+/// Sets the segments' contact forces. @returns the largest force that contact does not balance
 double RingSolver::free_residual() {
   rest_.u = gradient_.u, rest_.v = gradient_.v;
   for (std::size_t k = 0; k < corners_.size(); ++k) {
@@ -131,7 +131,7 @@ double RingSolver::free_residual() {
   return largest;
 }
 
-/// Whether forces push, and gaps are closed where they do and nowhere less.
+/// Sets the report's largest penetration and pull.
 void RingSolver::judge(RingReport& report) const {
   report.penetration = report.pull = 0.0;
   const auto look = [&](bool on, double gap, double force) {
@@ -142,7 +142,7 @@ void RingSolver::judge(RingReport& report) const {
   for (std::size_t k = 0; k < corners_.size(); ++k) look(set_.corner[k], corners_[k].gap, set_.corner_force[k]);
 }
 
-/// The curvature of the closed corner gaps belongs to the tangent.
+/// Adds the curvature of the closed corner gaps to the tangent.
 void RingSolver::add_bends() {
   for (std::size_t k = 0; k < corners_.size(); ++k)
     if (set_.corner[k] && set_.corner_force[k] > 0.0)

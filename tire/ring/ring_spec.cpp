@@ -22,7 +22,7 @@
 namespace furrow::tire {
 namespace {
 
-constexpr double kMostDraw = 0.5;  // of the radius: beyond, a sidewall is too soft for its pressure
+constexpr double kMostDraw = 0.5;  // of the radius: with more, the sidewall is too soft for its pressure
 constexpr double kBytesPerSegment = 1200.0;
 constexpr double kSavedBytes = 32.0;  // of a segment
 constexpr double kStepShare = 0.04;   // of τ: contact forces come one step late
@@ -98,7 +98,7 @@ class RingSpec final : public TireSpec {
   }
 
   RingFile file_;
-  // Of the file as it stands:
+  // Of the file without the scenario's changes:
   int file_segments_;
   std::vector<std::pair<std::string, std::string>> unusual_;
 };
@@ -134,7 +134,7 @@ TireShape RingSpec::shape() const {
   return shape;
 }
 
-/// What the scenario says in place of the file.
+/// Applies the scenario's choices instead of the file's.
 void apply(RingFile& file, const TireOptions& options) {
   if (!options.pressure.empty()) file.params.pressure = options.pressure.at(0.0);
   options.apply_to(file.contact);

@@ -1,5 +1,4 @@
-// The flexible-ring tire as an entry of the table of models: its file, what a scenario changes of it, what it says of
-// itself.
+// The flexible-ring tire as an entry of the table of models: its file, a scenario's changes of it, its description.
 #pragma once
 
 #include <array>

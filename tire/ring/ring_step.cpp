@@ -1,4 +1,4 @@
-// With a set of closed gaps: segments' gaps are taken out, corners' gaps border the system,
+// For a set of closed gaps, segments' gaps are eliminated and corners' gaps border the system,
 //   K Δ + γ 1 (1·Δ) − Cᵀ μ = −r,   C Δ = −g.
 // In axes turned so that the first coordinate of a closed segment lies along ∂g, that coordinate is known. Let f mark
 // the others, d the known ones and τ = γ (1·Δ):
@@ -14,9 +14,9 @@
 namespace furrow::tire {
 namespace {
 
-constexpr int kTogether = 12;  // systems up to which a set may change by any number of members
+constexpr int kTogether = 12;  // systems before a set changes by one member at a time
 constexpr int kMostSystems = 150;
-constexpr double kDependent = 1e-10;  // share of a corner's own compliance below which others hold it already
+constexpr double kDependent = 1e-10;  // share of a corner's own compliance below which others already hold it
 
 }  // namespace
 
@@ -59,8 +59,7 @@ bool RingStep::solve_closed(const Problem& p, const ContactSet& set) {
   return std::isfinite(change_.u[0]);
 }
 
-/// Adds ½ρ (C Δ + g)², which is zero in the solution: the tangent need be positive definite only where the gap is
-/// closed.
+/// Adds ½ρ (C Δ + g)², which is zero in the solution: the tangent only has to be positive definite with the gap closed.
 void RingStep::stiffen(const CornerGap& corner, double rho) {
   std::array<double, 36> square;
   for (int i = 0; i < 6; ++i)
@@ -73,7 +72,7 @@ void RingStep::stiffen(const CornerGap& corner, double rho) {
   }
 }
 
-/// Turns the axes of closed segments along their gaps and takes these coordinates out of the system.
+/// Turns the axes of closed segments along their gaps and eliminates these coordinates.
 void RingStep::turn(const Problem& p, const ContactSet& set) {
   for (int j = 0; j < n_; ++j) {
     along_u_[j] = 1.0, along_v_[j] = move_[j] = 0.0;
@@ -167,8 +166,8 @@ void RingStep::fill_border(const Problem& p, const ContactSet& set) {
   }
 }
 
-/// τ and μ, into border_right_: symmetric and positive definite but for corners that others hold already, whose force
-/// is left at zero.
+/// Computes τ and μ in border_right_. The system is symmetric and positive definite except for corners that others
+/// already hold; their force stays zero.
 void RingStep::eliminate_border() {
   const int m = 1 + static_cast<int>(closed_.size());
   double* const a = border_.data();
@@ -228,7 +227,7 @@ void RingStep::forces(const Problem& p, ContactSet& set) {
   }
 }
 
-/// @returns how many are to be let go or taken on; with `one` only the worst is
+/// Changes the set. @returns the number of members that leave or join it; with `one` only the worst changes
 int RingStep::update(const Problem& p, ContactSet& set, bool one) {
   int changes = 0;
   double worst_by = 0.0;

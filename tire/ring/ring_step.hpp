@@ -1,10 +1,10 @@
 // One step of a ring on the ground: the change Δ of its displacements that minimises
 //   ½ Δᵀ K Δ + ½ γ (1·Δ)² + rᵀ Δ   under   g + C Δ ≥ 0                                                         (1)
-// with the tangent K and the gradient r of its energy, the air's rank of one, 1 = (1, …, 1) on u, and the gaps g of
-// segments and corners with their slopes C. The contact forces λ ≥ 0 are its multipliers.
+// with the tangent K and the gradient r of the energy, the air's γ, 1 = (1, …, 1) on u, and the gaps g of segments and
+// corners with their slopes C. The contact forces λ ≥ 0 are the multipliers.
 //
-// Primal–dual active set: with a set of closed gaps (1) is a linear system; then what pulls is let go and what
-// penetrates is taken on, until nothing changes. If sets alternate, they change by the worst member at a time.
+// Primal–dual active set: for a given set of closed gaps, (1) is a linear system. Then gaps that pull leave the set and
+// gaps that penetrate join it, until nothing changes. If sets alternate, only the worst member changes at a time.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class RingStep {
     const std::vector<CornerGap>& corners;
     double force_tolerance, gap_tolerance;  // N, m
   };
-  /// Solves (1) from the set given, which it replaces. @returns linear systems solved; 0: no solution was found
+  /// Solves (1) from the given set, and replaces the set. @returns linear systems solved; 0: no solution was found
   int solve(const Problem& problem, ContactSet& set);
   const RingField& change() const { return change_; }
 
@@ -63,7 +63,7 @@ class RingStep {
   std::vector<double> move_;                  // prescribed along it, m
   std::vector<int> closed_;                   // corner gaps
   std::vector<std::array<double, 6>> slope_;  // of these, in turned axes, free part
-  std::vector<double> known_;                 // their change that is prescribed, m
+  std::vector<double> known_;                 // prescribed change of these, m
   std::vector<double> lanes_, border_, border_right_;
   double gas_known_ = 0.0;
 };

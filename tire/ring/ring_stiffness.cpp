@@ -29,7 +29,7 @@ class Stuck {
     const int corners = 2 * static_cast<int>(corners_.size()), columns = 3 + corners;
     Fields way = right_sides(ground);
     solve(way);
-    // By x and z of the ground, −τ and the corners' forces: what (1) leaves open, as a small system.
+    // For x and z of the ground, −τ and the corners' forces: the remaining unknowns of (1), as a small system.
     Eigen::MatrixXd system(1 + corners, 1 + corners), right(1 + corners, 2);
     for (int c = 0; c < columns; ++c) {
       const Eigen::VectorXd at_corners = corner_ways(way[c]);
@@ -43,7 +43,7 @@ class Stuck {
         system.col(c - 2).tail(corners) = -sign * at_corners;
       }
     }
-    // Corners that segments hold already have rows of zero: the smallest solution leaves their forces at zero.
+    // Corners that segments already hold have rows of zero; the smallest solution has zero forces there.
     const Eigen::MatrixXd open = system.completeOrthogonalDecomposition().solve(right);
     Eigen::Matrix2d out = Eigen::Matrix2d::Zero();
     for (int d = 0; d < 2; ++d) {
@@ -80,7 +80,7 @@ class Stuck {
     return out;
   }
 
-  /// −K_fc D, 1_f and W_fᵀ, nothing on segments that touch.
+  /// −K_fc D, 1_f and W_fᵀ; zero on touching segments.
   Fields right_sides(const Fields& ground) const {
     Fields out(3 + 2 * corners_.size(), ring_.zero());
     for (int j = 0; j < n_; ++j) {
@@ -133,7 +133,7 @@ class Stuck {
     }
   }
 
-  /// W f: ways of the belt along x and z over each corner.
+  /// W f: displacements of the belt along x and z over each corner.
   Eigen::VectorXd corner_ways(const RingField& f) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(corners_.size()));
     for (std::size_t k = 0; k < corners_.size(); ++k)
@@ -149,7 +149,8 @@ class Stuck {
     return {u * s + v * c, v * s - u * c};
   }
 
-  /// Of the ground: what the tangent leaves on segments that touch less what corners bear there, and the corners.
+  /// Force of the ground: the tangent's forces on touching segments minus the corners' share there, plus the corners'
+  /// forces.
   Eigen::Vector2d force(const RingField& change, const Eigen::VectorXd& corner_force) const {
     Eigen::Vector2d total = Eigen::Vector2d::Zero();
     const double all = sum(change);

@@ -1,12 +1,12 @@
-// Where an iteration ends that round-off keeps from its tolerance.
+// End of an iteration that cannot reach its tolerance because of round-off.
 #pragma once
 
 namespace furrow::tire {
 
 class RoundOffEnd {
  public:
-  /// @param enough of the residual: nothing more is asked for
-  /// @param near everything that is to vanish is within round-off
+  /// @param enough largest residual that needs no further step
+  /// @param near whether all residuals are within round-off
   /// @returns whether the iteration is over: it is near, and its residual is small enough or its last step, from near,
   /// gained nothing
   bool reached(double residual, double enough, bool near) {
@@ -16,7 +16,7 @@ class RoundOffEnd {
   }
 
  private:
-  static constexpr double kGain = 0.5;  // a step that leaves more of the residual gains nothing
+  static constexpr double kGain = 0.5;  // a step that leaves more than this share of the residual gains nothing
   bool was_near_ = false;
   double before_ = 0.0;
 };

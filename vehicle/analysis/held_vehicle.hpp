@@ -1,4 +1,4 @@
-// Rows that trim and kinematics hold besides the vehicle's own.
+// Rows that trim and kinematics hold in addition to the vehicle's own.
 #pragma once
 
 #include "vehicle/multibody/statics.hpp"
@@ -6,7 +6,7 @@
 
 namespace furrow::vehicle {
 
-/// Wheels keep the angle that they have now in their bearings.
+/// Holds the wheels at their present angles in their bearings.
 inline void hold_spins(const Vehicle& vehicle, Statics& statics) {
   const System& system = vehicle.system();
   for (int k = 0; k < vehicle.wheel_count(); ++k) {
@@ -15,7 +15,7 @@ inline void hold_spins(const Vehicle& vehicle, Statics& statics) {
   }
 }
 
-/// The axle's direction of a wheel, W.
+/// Direction of a wheel's axle, W.
 inline Vec3 spin_axis(const Vehicle& vehicle, int wheel) {
   return vehicle.system().body(vehicle.wheel(wheel).spindle).R * Vec3::UnitY();
 }

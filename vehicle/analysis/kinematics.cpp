@@ -22,7 +22,7 @@ constexpr double kRateStep = 5e-4;  // of the travel, for wheel rates, m
 constexpr double kSlow = 1e-3;      // of a shock absorber, for its coefficient, m/s
 constexpr double kQuiet = 2.0;      // before progress is told, s
 
-/// How far a steering goes to the left.
+/// The left end of a steering.
 struct SteeringEnd {
   const char* key;
   double value;
@@ -33,7 +33,7 @@ SteeringEnd end_of(const PitmanArmSpec& s) {
 }
 SteeringEnd end_of(const RackSpec& s) { return {"left_travel", s.left_travel, "travel of the rack", "m"}; }
 
-/// The vehicle with its chassis held, posture after posture.
+/// The vehicle with its chassis held, in one posture after another.
 class Bench {
  public:
   Bench(const VehicleSpec& spec, std::span<const double> radii)
@@ -65,7 +65,7 @@ class Bench {
           fmt::format(" with its wheels lifted by {:.3g} and {:.3g} m", left, right) + steering_text(axle, steering));
   }
 
-  /// What a steering input asks the axle's rack or arm for; empty where it stands straight ahead.
+  /// Position of the axle's rack or arm at a steering input, as text; empty straight ahead.
   std::string steering_text(int axle, double steering) const {
     const auto& spec = vehicle_.spec().axles[axle].steering;
     if (steering == 0.0 || !spec) return "";
@@ -73,7 +73,7 @@ class Bench {
     return fmt::format(", steering {:.3g}: a {} of {:.3g} {}", steering, at.what, steering * at.value, at.unit);
   }
 
-  /// Displacements for a rate 1 of the left wheel and `right` of the right wheel.
+  /// Displacements for the rate 1 of the left wheel and the rate `right` of the right wheel.
   Eigen::VectorXd tangent(int axle, double right) const {
     return statics_.tangent(lifts_[2 * axle]) + right * statics_.tangent(lifts_[2 * axle + 1]);
   }
@@ -176,14 +176,14 @@ KinematicsRow Bench::row(int k) const {
   return r;
 }
 
-// What follows from the motion's derivatives, for the two wheels of an axle.
+// Quantities from the motion's derivatives, for the two wheels of an axle.
 void Bench::add_slopes(int axle, KinematicsRow* rows) const {
   const Eigen::VectorXd parallel = tangent(axle, 1.0), opposite = tangent(axle, -1.0);
   for (int side = 0; side < 2; ++side) {
     const int k = 2 * axle + side;
     const Wheel& wheel = vehicle_.wheel(k);
     KinematicsRow& r = rows[side];
-    // Upward on the right in the opposite motion is a rate −1.
+    // In the opposite motion, the right wheel has the rate −1.
     r.roll_center = contact_point(k).y() * contact_rate(k, opposite).y() * outward(side);
     r.brake_slope = contact_rate(k, parallel).x() * (contact_point(k).x() > vehicle_.origin().x() ? 1.0 : -1.0);
     r.spring_ratio = ratio(wheel.spring, parallel);
@@ -222,7 +222,7 @@ Base base_of(const Vehicle& vehicle, std::span<const double> radii) {
   return base;
 }
 
-/// x of the axle about which the vehicle turns: the mean of those that are not steered.
+/// x of the axle about which the vehicle turns: the mean of the unsteered axles.
 double turning_line(Bench& bench) {
   double sum = 0.0;
   int count = 0;
@@ -244,7 +244,7 @@ void add_ackermann(KinematicsRow* rows, double line) {
   rows[kLeft].ackermann = rows[kRight].ackermann = (inner - outer) / (inner - ideal);
 }
 
-/// Of so many equal steps from straight ahead to one end of the steering, those that an axle can take.
+/// Number of steps that an axle can make, of equal ones from straight ahead to one end of the steering.
 int steps_reached(const VehicleSpec& spec, std::span<const double> radii, int axle, double end, int steps) {
   Bench bench(spec, radii);
   int reached = 0;

@@ -1,16 +1,15 @@
-// Kinematics of the suspensions: the chassis is held, wheels are lifted and steered, and the motion of the wheels is
-// given in the chassis' frame. Derivatives d/dz are exact, from the constraints' Jacobian.
+// Kinematics of the suspensions. The chassis is held, wheels are lifted and steered, and their motion is given in the
+// chassis' frame. Derivatives d/dz are exact, from the constraints' Jacobian.
 //
 //   roll centre      height above the ground of the point about which the body rolls, y_c dy_c/dz for opposite travel
-//   brake slope      dx_c/dz of the contact point with the wheel locked to its carrier, positive where braking force
-//                    keeps the suspension from moving as the load does: in front against
-//                                     compression, behind against rebound
-//   anti-dive        its share of what holds the body level: brake slope × share of the braking × wheelbase / height of
-//                    the centre of mass
+//   brake slope      dx_c/dz of the contact point with the wheel locked to its carrier; positive if the braking force
+//                    opposes the load transfer: compression in front, rebound behind
+//   anti-dive        brake slope × share of the braking × wheelbase / height of the centre of mass: this axle's share
+//                    of the force that holds the body level
 //   motion ratio     −d(length)/dz of spring or shock absorber
 //   wheel rate       d/dz of the spring's force at the wheel
-//   Ackermann        (δ_i − δ_o)/(δ_i − δ_a), with cot δ_a = cot δ_i + track/wheelbase: 1 where both wheels roll about
-//                    one point on the line of the axles that are not steered
+//   Ackermann        (δ_i − δ_o)/(δ_i − δ_a), with cot δ_a = cot δ_i + track/wheelbase: 1 if both wheels roll about
+//                    one point on the line of the unsteered axles
 #pragma once
 
 #include <limits>
@@ -24,7 +23,7 @@
 
 namespace furrow::vehicle {
 
-/// One wheel in one posture; not a number where a quantity does not exist.
+/// One wheel in one posture; NaN if a quantity does not exist.
 struct KinematicsRow {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::string motion;     // parallel, opposite or steering
@@ -73,10 +72,10 @@ struct KinematicsOptions {
   int points = 21;      // of each motion
 };
 
-/// All three motions of all axles that have them, wheel after wheel.
+/// All three motions of all axles that can make them, wheel by wheel.
 /// @param radii of the tires under load, m, one for each wheel
-/// @param progress may be empty; hears nothing of what is done within a few seconds
-/// @throws Error(physics) naming the wheel where a suspension cannot follow
+/// @param progress may be empty; not called for work of a few seconds
+/// @throws Error(physics) naming the wheel whose suspension cannot follow
 std::vector<KinematicsRow> kinematics(const VehicleSpec& spec, std::span<const double> radii,
                                       const KinematicsOptions& options = {}, const ProgressCall& progress = {});
 
@@ -91,14 +90,14 @@ std::vector<double> damping_ratios(const VehicleSpec& spec, std::span<const doub
 /// @throws Error(bad_input) naming the key that says where the ends are
 void check_locks(const VehicleSpec& spec, std::span<const double> radii, const ProgressCall& progress = {});
 
-/// The key of a steering that says how far it goes to the left.
+/// The key that sets a steering's end on the left.
 const char* end_key(const SteeringSpec& steering);
 
-/// Mean angle of each axle's wheels at full steering to the left, positive left, rad; 0 of an axle that is not steered.
+/// Mean angle of each axle's wheels at full steering to the left, positive left, rad; 0 for an unsteered axle.
 /// @pre check_locks() passed
 std::vector<double> full_steering(const VehicleSpec& spec, std::span<const double> radii);
 
-/// Names with units, then one line for each row; empty where a quantity does not exist.
+/// CSV text: names with units, then one line for each row. A field is empty if its quantity does not exist.
 std::string kinematics_csv(std::span<const KinematicsRow> rows);
 
 }  // namespace furrow::vehicle

@@ -16,9 +16,9 @@
 namespace furrow::vehicle {
 namespace {
 
-// Of an axle's springs, of the weight: others do not carry a vehicle.
+// Force of an axle's springs over the weight: outside these limits they do not carry a vehicle.
 constexpr double kLeastPush = 0.03, kMostPush = 20.0;
-constexpr double kFirstDeflection = 0.01;  // of the tires where the search begins, m
+constexpr double kFirstDeflection = 0.01;  // of the tires at the start of the search, m
 
 struct Contact {
   double deflection = 0.0, load = 0.0;  // m, N
@@ -115,8 +115,8 @@ Shares shares(const Body& body, const Eigen::VectorXd& shape, int index) {
   return s;
 }
 
-/// @param taken names of lower modes: where two vibrations move the same axle most, the second is named after the axle
-/// that it moves most beside it
+/// @param taken names of lower modes. If two vibrations move the same axle most, the second is named after the axle
+/// that it moves second most
 std::string mode_name(const Vehicle& vehicle, const Mode& mode, const std::vector<TrimMode>& taken) {
   const System& system = vehicle.system();
   const Shares body = shares(system.body(vehicle.chassis()), mode.shape, vehicle.chassis());
@@ -138,7 +138,7 @@ std::string mode_name(const Vehicle& vehicle, const Mode& mode, const std::vecto
   return first;
 }
 
-/// What may keep a vehicle from coming to rest, as it is drawn, to follow that message; empty: nothing is seen.
+/// A fault of the drawn vehicle that may prevent its rest, for the end of that message; empty if none is found.
 std::string fault_as_drawn(const Vehicle& vehicle, double weight) {
   const System& system = vehicle.system();
   Vec3 center = Vec3::Zero(), low = Vec3::Constant(1e300), high = -low;

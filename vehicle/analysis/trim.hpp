@@ -1,9 +1,9 @@
-// The static trim of a vehicle on level ground: where it comes to rest on its tires, and how it vibrates about it.
+// The static trim of a vehicle on level ground: its posture at rest on its tires, and its vibrations about it.
 //
-// A tire is known by its press curve F(δ), the vertical force at a deflection δ = R − z_c/cos γ of a wheel with its
-// centre at the height z_c and its axle at the angle γ to the ground. It stores ∫ F dδ, so that it pushes the wheel
-// with F/cos γ upward at the lowest point of its middle circle. Wheels do not turn, the steering is held straight, and
-// the chassis is held in x, y and about z.
+// A tire is described by its press curve F(δ), the vertical force at a deflection δ = R − z_c/cos γ of a wheel with its
+// centre at the height z_c and its axle at the angle γ to the ground. It stores ∫ F dδ, so it pushes the wheel with
+// F/cos γ upward at the lowest point of its middle circle. Wheels do not turn, the steering is held straight, and the
+// chassis is held in x, y and about z.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@ struct StrutTrim {
   double length = 0.0;  // m
   double force = 0.0;   // pushes its ends apart, N
   double to_shortest = 0.0,
-         to_longest = 0.0;  // m to its stops or marks, negative beyond; infinite where it has none
+         to_longest = 0.0;  // m to its stops or marks, negative beyond; infinite if it has none
 };
 void visit_fields(FieldsOf<StrutTrim> auto& s, auto&& visit) {
   visit(s.length, Field{"length", "m"});
@@ -43,7 +43,7 @@ struct WheelTrim {
   double deflection = 0.0;         // of the tire, m
   double height = 0.0;             // of the wheel's centre above the ground, m
   Vec3 center = Vec3::Zero();      // of the wheel in the vehicle's frame, m
-  double travel = 0.0;             // of it against the drawn position, upward, m
+  double travel = 0.0;             // of the centre from its drawn position, upward, m
   double camber = 0.0, toe = 0.0;  // rad
   std::optional<StrutTrim> spring, shock;
 };
@@ -60,8 +60,8 @@ void visit_fields(FieldsOf<WheelTrim> auto& s, auto&& visit) {
   visit(s.shock, Field{"shock", ""});
 }
 
-/// One vibration. The body's are heave, pitch and roll by what moves most, a wheels' "hop front" (both up) or
-/// "tramp front" (one up, one down).
+/// One vibration. Names by the largest motion: of the body heave, pitch and roll, of the wheels "hop front" (both up)
+/// or "tramp front" (one up, one down).
 struct TrimMode {
   std::string name;
   double frequency = 0.0;  // undamped, Hz
@@ -89,15 +89,15 @@ void visit_fields(FieldsOf<Trim> auto& s, auto&& visit) {
   visit(s.modes, Field{"modes", ""});
 }
 
-/// Puts the vehicle at rest on the plane z = `ground` and returns its posture.
-/// @param gravity  that it stands in, m/s², with the vehicle along x; none: its own. On a slope each wheel holds the
-///                 same share of the pull along the plane, where it touches.
+/// Brings the vehicle to rest on the plane z = `ground` and returns its posture.
+/// @param gravity  m/s², with the vehicle along x; none: the vehicle's own. On a slope, each wheel holds the same share
+///                 of the pull along the plane, at its contact point.
 /// @pre one tire for each wheel; their masses were added. @throws Error(physics) when there is no equilibrium
 Trim trim(Vehicle& vehicle, std::span<const TireCurve> tires, double ground = 0.0,
           const std::optional<Vec3>& gravity = {}, const ProgressCall& progress = {});
 
-/// Keys of stops in which a spring rests, and how far it is beyond them: the wheel has no travel left. One of an axle's
-/// two wheels is named.
+/// Keys of stops on which a spring rests, and its distance beyond them: the wheel has no travel left. Only one of an
+/// axle's two wheels is listed.
 std::vector<std::pair<std::string, std::string>> stops_at_rest(const VehicleSpec& spec, const Trim& trim);
 
 }  // namespace furrow::vehicle

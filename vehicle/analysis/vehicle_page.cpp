@@ -20,13 +20,13 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kStiffShare = 1e-3;  // of its radius that the ground gives under a tire that does not deflect
-constexpr double kHarder = 4.0;       // times as hard ground, for the vibrations
+constexpr double kStiffShare = 1e-3;  // of its radius, deflection of the ground under a tire that does not deflect
+constexpr double kHarder = 4.0;       // factor of the ground's stiffness, for the vibrations
 constexpr double kSameFrequency = 0.01;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// What is wrong with a vehicle that cannot be built or stand is wrong with its file.
+/// Reports a vehicle that cannot be built or trimmed as an error of its file.
 template <class Call>
 auto of_file(const VehicleSpec& spec, const Call& call) {
   try {
@@ -76,7 +76,7 @@ void add_distances(const VehicleSpec& spec, std::span<const StandingTire> tires,
   page.static_stability_factor = tracks / static_cast<double>(page.tracks.size()) / (2.0 * page.center_height);
 }
 
-/// @param metres_per_radian that a wheel rolls for a turn of engine or motor, 0 of one that is not driven
+/// @param metres_per_radian that a wheel rolls per turn of engine or motor; 0 for an undriven wheel
 template <class RatioOf>
 void add_gear_speed(const std::string& gear, double rpm, std::size_t wheels, const RatioOf& metres_per_radian,
                     VehiclePage& page) {
@@ -122,7 +122,7 @@ Trim stand(const VehicleSpec& spec, std::span<const StandingTire> tires, double 
   return trim(car, curves(tires, car.mass() * car.system().gravity().norm(), harder), 0.0, {}, progress);
 }
 
-/// A vehicle without springs lies on its chassis, and the equilibrium that was found is none of its suspension.
+/// Refuses a trim with more wheel travel than the loaded radius: such a vehicle lies on its chassis.
 void check_travel(const VehicleSpec& spec, const VehiclePage& page) {
   for (std::size_t k = 0; k < page.loaded_radii.size(); ++k) {
     const WheelTrim& wheel = page.trim.wheels[k];
@@ -134,7 +134,7 @@ void check_travel(const VehicleSpec& spec, const VehiclePage& page) {
   }
 }
 
-/// The vibrations that stay what they are on harder ground, lowest first.
+/// The vibrations that do not change on harder ground, lowest first.
 std::vector<TrimMode> lasting(const std::vector<TrimMode>& modes, const std::vector<TrimMode>& harder) {
   std::vector<TrimMode> kept;
   for (std::size_t k = 0; k < std::min(modes.size(), harder.size()); ++k)
@@ -197,7 +197,7 @@ std::vector<std::pair<std::string, std::string>> steers_against(const VehicleSpe
 
 nlohmann::ordered_json page_json(const VehiclePage& page) {
   nlohmann::ordered_json json = figures_json(page);
-  // The trim's members stand beside those of the vehicle.
+  // The trim's members are at the same level as the vehicle's.
   const nlohmann::ordered_json trim = json["trim"];
   json.erase("trim");
   json.update(trim);
@@ -206,7 +206,7 @@ nlohmann::ordered_json page_json(const VehiclePage& page) {
 
 namespace {
 
-/// With so many digits, and no minus before zeros.
+/// A number with these digits, without a minus sign before zeros.
 std::string fixed(double value, int digits) {
   const double unit = std::pow(10.0, -digits);
   return fmt::format("{:.{}f}", std::abs(value) < 0.5 * unit ? 0.0 : value, digits);

@@ -1,4 +1,4 @@
-// What there is to know of a vehicle before it drives: bodies and rows, masses, and how it stands on its tires.
+// Properties of a vehicle before it drives: bodies and rows, masses, and its posture on its tires.
 #pragma once
 
 #include <span>
@@ -14,13 +14,13 @@ namespace furrow::vehicle {
 
 /// The tire of a wheel.
 struct StandingTire {
-  std::string text;  // for people: its file, and where its curve is from
+  std::string text;  // for people: its file, and the origin of its curve
   MassProperties mass;
   double radius = 0.0;                            // inflated, m
-  std::vector<std::pair<double, double>> points;  // of its press curve (tire_curve.hpp); none: it does not deflect
+  std::vector<std::pair<double, double>> points;  // of its press curve (tire_curve.hpp); empty: it does not deflect
 };
 
-/// What the wheels do at one speed of the engine, or of wheel motors.
+/// Motion of the wheels at one speed of the engine, or of wheel motors.
 struct GearSpeed {
   std::string gear;  // "gear 1", "motors without load"
   double engine_rpm = 0.0;
@@ -35,12 +35,12 @@ void visit_fields(FieldsOf<GearSpeed> auto& s, auto&& visit) {
 struct VehiclePage {
   std::string name, file;
   double mass = 0.0;                              // without tires, kg
-  int bodies = 0, rows = 0, freedoms = 0;         // of bodies, rows of joints, what these leave
-  int shafts = 0, shaft_freedoms = 0;             // what gears and differentials leave of the shafts
+  int bodies = 0, rows = 0, freedoms = 0;         // bodies, rows of joints, remaining freedoms
+  int shafts = 0, shaft_freedoms = 0;             // shafts, and their freedoms after gears and differentials
   std::vector<std::string> axles, tires;          // of each axle, of each wheel
   std::vector<double> tire_masses, loaded_radii;  // of each wheel, kg; under its load, m
   Vec3 center_of_mass = Vec3::Zero();             // with its tires, as drawn, in the vehicle's frame, m
-  double center_height = 0.0;                     // of it above the ground, at rest, m
+  double center_height = 0.0;                     // height of the centre of mass above the ground, at rest, m
   double wheelbase = 0.0;                         // between first and last axle, at rest, m
   std::vector<double> tracks;                     // of each axle, between wheel centres, at rest, m
   // Mean track over twice the height of the centre of mass: the lateral acceleration over g at which a rigid vehicle
@@ -75,18 +75,18 @@ void visit_fields(FieldsOf<VehiclePage> auto& s, auto&& visit) {
   visit(s.trim, Field{"trim", ""});
 }
 
-/// Of all its bodies, kg. @throws Error(bad_input) naming the vehicle's file when it cannot be built
+/// Mass of all bodies, kg. @throws Error(bad_input) naming the vehicle's file when it cannot be built
 double mass_without_tires(const VehicleSpec& spec);
 
-/// Builds the vehicle and lets it stand. Of a vehicle with a tire that does not deflect only those vibrations are
-/// listed that do not depend on how hard the ground below it is.
+/// Builds the vehicle and computes its trim. If a tire does not deflect, only vibrations that do not depend on the
+/// ground's stiffness are listed.
 /// @pre one tire for each wheel. @throws Error(bad_input) naming the vehicle's file when it cannot be built or stand
-/// @param progress told from the beginning of each phase on; of a vehicle of many axles they take long; may throw to
-/// stop it
+/// @param progress called from the beginning of each phase on, as phases take long for a vehicle with many axles; may
+/// throw to stop
 VehiclePage vehicle_page(const VehicleSpec& spec, std::span<const StandingTire> tires,
                          const ProgressCall& progress = {});
 
-/// Keys of steerings in front of the centre of mass that turn their wheels right where the driver steers left.
+/// Keys of steerings in front of the centre of mass that turn their wheels right when the driver steers left.
 std::vector<std::pair<std::string, std::string>> steers_against(const VehicleSpec& spec, const VehiclePage& page);
 
 nlohmann::ordered_json page_json(const VehiclePage& page);

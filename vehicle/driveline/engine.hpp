@@ -1,6 +1,7 @@
 // An engine as a torque on its crank shaft, with the reaction on the shaft's carrier:
 //   T = s · full(u) + losses(u),   s = max(throttle, governor),   governor = clamp((idle − u)/band, 0, 1)
-// u speed of the crank shaft relative to its carrier, rad/s. The governor keeps it from stalling; idle 0 is none.
+// u is the speed of the crank shaft relative to its carrier, rad/s. The governor prevents stalling; idle = 0 means no
+// governor.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,5 @@
-// A brake or clutch: dry friction in a row in speeds. It holds the two sides together as long as that takes no more
-// than its capacity, and slips with its capacity beyond, as a set-valued law: what holds
-// does not creep, whatever the step.
+// A brake or clutch: dry friction in a row in speeds. It holds the two sides together up to the torque of its capacity,
+// and slips with this torque beyond. The law is set-valued: a holding coupling does not creep, for any step.
 #pragma once
 
 #include <string>
@@ -16,18 +15,18 @@ class FrictionCoupling {
   /// A clutch between two shafts.
   static FrictionCoupling clutch(System& system, const std::string& name, int first, int second, double capacity);
   /// The lock of a differential: a clutch between its outputs that creeps in proportion to its torque, with kLockCreep
-  /// at its capacity. A rigid one and brakes that hold both wheels are rows that nearly depend on each other.
+  /// at its capacity. The rows of a rigid lock and of brakes that hold both wheels would nearly depend on each other.
   static FrictionCoupling lock(System& system, const std::string& name, int first, int second, double capacity);
   /// A brake of body `b` against body `a`, about an axis fixed in b (W now). The torque acts on both.
   static FrictionCoupling brake(System& system, const std::string& name, int a, int b, const Vec3& axis,
                                 double capacity);
 
-  /// `share` of the capacity from the next step on, 0 to 1. The system's saved state holds it.
+  /// Sets the capacity to `share` of the whole from the next step on, 0 to 1. The system's saved state holds it.
   void engage(System& system, double share) const;
   bool holds(const System& system) const;     // engaged and not slipping
   double torque(const System& system) const;  // on the first shaft or on b, mean over the last step, N m
   double slip(const System& system) const;    // speed difference now, rad/s
-  double heat(const System& system) const;    // what it has taken since the start, J
+  double heat(const System& system) const;    // energy dissipated since the start, J
   int row() const { return row_; }
 
  private:

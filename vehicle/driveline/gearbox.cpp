@@ -68,7 +68,7 @@ Outcome Gearbox::shift(System& system, int gear) {
     return engage(system);
   }
   const double now = system.time();
-  // At least what balances the input's torque in the new gear.
+  // At least the torque that balances the input's torque in the new gear.
   const double old_torque = state_.old_gear == kNeutral ? 0.0 : system.rate_state(old_row).torque;
   const double step = state_.old_gear == kNeutral ? 0.0 : ratios_[state_.old_gear] / ratios_[gear];
   state_.hand_over = old_torque * std::max(1.0, step);

@@ -1,16 +1,16 @@
-// A gearbox: one ratio at a time between an input and an output shaft, u_out = g u_in, changed in a shift of stated
-// duration T. With s = u_out − g_new u_in, the slip in the new gear:
+// A gearbox: one ratio at a time between an input and an output shaft, u_out = g u_in. A shift changes it in a given
+// time T. With the slip in the new gear, s = u_out − g_new u_in:
 //
 //   torque phase, ≤ T/2  the old gear holds like a freewheel; the new one slips and takes the torque over along the C²
-//                        smoothstep, until the old one carries nothing. Left out where friction could not: without an
-//                        old gear, between forward and reverse, or where it would have to drive the slip (a down-shift
-//                        under power).
+//                        smoothstep, until the old one carries no torque. This phase is left out without an old gear,
+//                        between forward and reverse, and if friction would have to drive the slip (a down-shift under
+//                        power).
 //   speed phase, rest    the old gear is free; the new one slips, s → 0 along the C² smoothstep, with a torque that
 //                        only opposes s. It ends early when s passes 0.
-//   end                  the new gear holds; what is left of s goes at once, inelastically.
+//   end                  the new gear holds; the rest of s vanishes at once, inelastically.
 //
-// T = 0 is the last line alone. What the slip takes is on the gearbox's own account. Nothing is assembled again; the
-// rank of the constraints is looked at whenever a gear takes hold.
+// With T = 0 there is only the end. The gearbox records the energy that slip dissipates. Nothing is assembled again;
+// the rank of the constraints is checked whenever a gear starts to hold.
 #pragma once
 
 #include <string>
@@ -25,10 +25,10 @@ inline constexpr int kNeutral = -1;
 enum class ShiftPhase { none, torque, speed };
 
 struct GearboxState {
-  int gear = kNeutral;      // that holds, or will
+  int gear = kNeutral;      // that holds, or will hold after the shift
   int old_gear = kNeutral;  // during a shift
   ShiftPhase phase = ShiftPhase::none;
-  int row = 0;                                // of the two, that of `gear`
+  int row = 0;                                // row of `gear`
   double phase_start = 0.0, phase_end = 0.0;  // s
   double slip = 0.0;                          // s at the start of the speed phase, rad/s
   double hand_over = 0.0;                     // torque of the new gear at the end of the torque phase, N m
@@ -57,13 +57,13 @@ class Gearbox {
   void begin_in(System& system, int gear);
   /// Starts a shift with the next step. @pre not shifting
   Outcome shift(System& system, int gear);
-  /// Before every step of size h. @returns failure when the new gear closes a loop of gears
+  /// To be called before every step of size h. @returns failure when the new gear closes a loop of gears
   Outcome advance(System& system, double h);
 
   int gear() const { return state_.gear; }
   bool shifting() const { return state_.phase != ShiftPhase::none; }
   double output_torque(const System& system) const;  // mean over the last step, N m
-  double loss(const System& system) const;           // what shifts have taken since the start, J
+  double loss(const System& system) const;           // energy dissipated by shifts since the start, J
 
   void save(Archive& archive) const;
   void restore(const Archive& archive);

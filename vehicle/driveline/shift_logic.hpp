@@ -1,4 +1,4 @@
-// When an automatic gearbox shifts: up above one speed, down below another, at most once in a given time.
+// Shift points of an automatic gearbox: up above one speed, down below another, at most once in a given time.
 #pragma once
 
 #include "protocol/core/fields.hpp"
@@ -14,7 +14,7 @@ struct ShiftLogic {
   ShiftLogicOptions options;
   double last_shift = -1e300;  // s
 
-  /// The gear wanted at a time (s), between 0 and gears − 1; the present one unless it is time for another.
+  /// The gear wanted at a time (s), between 0 and gears − 1; the present gear unless a shift is due.
   int wanted(int gear, int gears, double speed, double time) {
     if (time - last_shift < options.latency) return gear;
     int next = gear;

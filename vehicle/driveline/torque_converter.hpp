@@ -6,9 +6,9 @@
 //
 // Rule at R = 1: K(1) is finite, so both branches end there in torques of opposite sign. Within 1 − w < R < 1 + w the
 // impeller's torque is therefore a straight line in R on each side, from its value at R = 1 ∓ w (for the present u_i)
-// to zero at R = 1; w = 0.02 by default. The fluid takes power everywhere, as long as T R ≤ 1.
+// to zero at R = 1; w = 0.02 by default. If T R ≤ 1 everywhere, the fluid only takes power.
 //
-// An impeller at rest or turning backwards is driven by a turbine that turns forward, and free otherwise.
+// A turbine that turns forward drives an impeller that is at rest or turns backwards; otherwise this impeller is free.
 #pragma once
 
 #include <string>
@@ -36,7 +36,7 @@ class TorqueConverter {
  public:
   /// @throws Error(physics) for a capacity that is not positive or a blend out of range
   TorqueConverter(System& system, const std::string& name, int impeller, int turbine, const ConverterOptions& options);
-  /// Taken by the fluid since the start, J.
+  /// Energy taken by the fluid since the start, J.
   double heat(const System& system) const {
     return -system.rate_state(rows_[0]).work - system.rate_state(rows_[1]).work;
   }

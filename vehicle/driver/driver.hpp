@@ -1,4 +1,4 @@
-// A driver: from what a vehicle does now to throttle, brake, steering, gear and differential locks.
+// A driver computes throttle, brake, steering, gear and differential locks from a vehicle's present motion.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace furrow::vehicle {
 
-/// What a driver sees.
+/// A driver's observation of its vehicle.
 struct DriverView {
   double time = 0.0;             // s
   Vec3 position = Vec3::Zero();  // middle of the rear axle, W, m
@@ -20,14 +20,14 @@ struct DriverView {
   double speed() const { return velocity.x() * std::cos(yaw) + velocity.y() * std::sin(yaw); }
 };
 
-/// Gears as drivers count them: 1 is the lowest forward gear.
+/// Gears in a driver's numbering: 1 is the lowest forward gear.
 namespace gear_request {
-inline constexpr int automatic = -2;  // as the gearbox decides
+inline constexpr int automatic = -2;  // the gearbox decides
 inline constexpr int reverse = -1;
 inline constexpr int neutral = 0;
 }  // namespace gear_request
 
-/// What a driver does.
+/// A driver's commands.
 struct DriverInputs {
   double throttle = 0.0;               // 0 to 1
   double brake = 0.0;                  // 0 to 1
@@ -43,14 +43,14 @@ void visit_fields(FieldsOf<DriverInputs> auto& s, auto&& visit) {
   visit(s.lock, Field{"lock", "-", role::column});
 }
 
-/// What a driver knows of its vehicle.
+/// Properties of its vehicle that a driver is given.
 struct DriverCar {
   double wheelbase = 0.0;      // from the rear axle to the one that steers, m
-  double steering_lock = 0.0;  // mean angle of the road wheels at steering 1: that of the steering wheel there, over
-                               // the steering ratio, rad
+  double steering_lock = 0.0;  // mean angle of the road wheels at steering 1, rad: the angle of the steering wheel
+                               // divided by the steering ratio
   double width = 0.0;          // m
-  double mass = 0.0;           // of all that moves with it, kg
-  double drive_force = 0.0;    // largest at the wheels: the smaller of engine's and grip's, N
+  double mass = 0.0;           // of everything that moves with it, kg
+  double drive_force = 0.0;    // largest at the wheels, limited by engine or grip, N
   double brake_force = 0.0;    // largest at the wheels, N
 };
 void visit_fields(FieldsOf<DriverCar> auto& s, auto&& visit) {
@@ -62,15 +62,15 @@ void visit_fields(FieldsOf<DriverCar> auto& s, auto&& visit) {
   visit(s.brake_force, Field{"brake_force", "N"});
 }
 
-/// For the table of results. What a driver has no loop for is zero.
+/// Values for the table of results. Values without a control loop are zero.
 struct DriverRecord {
   DriverInputs inputs;
   double target_speed = 0.0;   // m/s
   double path_distance = 0.0;  // travelled along the path, m
   double cross_track = 0.0;    // from the path, positive left of it, m
   double heading_error = 0.0;  // the vehicle's yaw minus the path's, −π to π, rad
-  bool path_ended = false;     // its last point was passed
-  double path_end_time = 0.0;  // when that was first seen, s
+  bool path_ended = false;     // whether its last point was passed
+  double path_end_time = 0.0;  // time at which this was first noticed, s
 };
 void visit_fields(FieldsOf<DriverRecord> auto& s, auto&& visit) {
   visit(s.inputs, Field{"inputs", ""});
@@ -85,12 +85,13 @@ void visit_fields(FieldsOf<DriverRecord> auto& s, auto&& visit) {
 class Driver {
  public:
   virtual ~Driver() = default;
-  /// Once per exchange, for the interval that begins now. Asked again at the same time it answers the same.
+  /// Called once per exchange, for the interval that begins now. A second call at the same time returns the same
+  /// inputs.
   /// @pre time does not go back
   virtual DriverInputs drive(const DriverView& view) = 0;
-  /// Of the last call.
+  /// Record of the last call.
   virtual const DriverRecord& record() const = 0;
-  /// All that the next call depends on: a driver restored continues bit for bit.
+  /// Saves everything that the next call depends on: a restored driver continues bit for bit.
   virtual void save(Archive& archive) const = 0;
   virtual void restore(const Archive& archive) = 0;
 };

@@ -14,8 +14,8 @@ namespace furrow::vehicle {
 namespace {
 
 constexpr double kGrip = 0.8;           // of the weight, along the ground
-constexpr double kNoLock = 1.0;         // rad, of vehicles that cannot steer: nobody asks for it
-constexpr double kSmallTravel = 0.002;  // m: the steered wheels are looked at in their drawn height
+constexpr double kNoLock = 1.0;         // rad, of vehicles that cannot steer: not used
+constexpr double kSmallTravel = 0.002;  // m: the steered wheels are near their drawn height
 constexpr int kPostures = 3;            // of each motion: −1, 0 and 1
 
 double axle_x(const AxleSpec& axle) {

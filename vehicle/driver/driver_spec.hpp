@@ -1,4 +1,4 @@
-// What a driver file says (`furrow schema driver` describes it for editors).
+// A driver file (`furrow schema driver` describes it for editors).
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace furrow::vehicle {
 
-/// Points of the plane (m, m), or of a function of time (s, value), which stays what it is at its ends beyond them.
+/// Points of the plane (m, m), or of a function of time (s, value). Beyond its ends the function is constant.
 using DriverPoints = std::vector<std::pair<double, double>>;
 
 namespace keys {
@@ -21,8 +21,8 @@ inline constexpr double kMostLength = 1e6;  // of paths, m
 inline constexpr Allowed kSeries = allowed::shaped(R"({"allOf": [{"$ref": "#/definitions/series"}]})");
 }  // namespace keys
 
-/// Functions of time; one that is empty was not given. Between points pedals and steering are straight lines, gear and
-/// lock stay.
+/// Functions of time; empty: not given. Between points, pedals and steering are straight lines; gear and lock are
+/// constant.
 struct InputSpec {
   DriverPoints throttle, brake;  // 0 to 1
   DriverPoints steering;         // −1 to 1, positive to the left
@@ -41,10 +41,10 @@ void visit_fields(FieldsOf<InputSpec> auto& s, auto&& visit) {
 /// speed_control.hpp
 struct SpeedSpec {
   DriverPoints target;         // m/s
-  double proportional = -1.0;  // throttle per m/s; below zero: from the vehicle
-  double integral = -1.0;      // throttle per m; below zero: from the vehicle
+  double proportional = -1.0;  // throttle per m/s; negative: from the vehicle
+  double integral = -1.0;      // throttle per m; negative: from the vehicle
   double hysteresis = 0.05;    // of throttle, between the pedals
-  double stop_speed = 0.1;     // below which it stops and holds, when the target is 0, m/s; 0 for never
+  double stop_speed = 0.1;     // below which it stops and holds if the target is 0, m/s; 0: never
 };
 void visit_fields(FieldsOf<SpeedSpec> auto& s, auto&& visit) {
   using namespace allowed;

@@ -22,7 +22,7 @@ void visit_fields(FieldsOf<FileDriverState> auto& s, auto&& visit) {
   visit(s.record, Field{"record", ""});
 }
 
-/// The value of the last point that has been reached, or else of the first; without points the given one.
+/// The value of the last point reached, or of the first point before it; `without` if there are no points.
 int step_at(const DriverPoints& points, double time, int without) {
   if (points.empty()) return without;
   const auto next =

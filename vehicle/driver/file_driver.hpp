@@ -1,4 +1,4 @@
-// The driver of a driver file. It has four parts, each of which follows tables of time or closes a loop:
+// The driver of a driver file. Each of its four parts follows a table of time or closes a loop:
 //
 //   pedals    tables, or a speed held by a PI law (speed_control.hpp)
 //   steering  a table, or a path followed by looking ahead (path_follower.hpp)
@@ -13,7 +13,7 @@
 
 namespace furrow::vehicle {
 
-/// @pre all that the car has is above zero
+/// @pre all members of the car are positive
 std::unique_ptr<Driver> make_driver(const DriverSpec& spec, const DriverCar& car);
 
 }  // namespace furrow::vehicle

@@ -25,7 +25,7 @@ std::array<Lane, 3> lanes_of(const std::string& name, double vehicle_width) {
     lanes[i].end = x + section.length;
     x = lanes[i].end + (i < track->gaps.size() ? track->gaps[i] : 0.0);
   }
-  const double side = track->from_left ? 0.5 : -0.5;  // the limits in line, from the centre, of the width
+  const double side = track->from_left ? 0.5 : -0.5;  // of the aligned limits from the centre, over the width
   const double limit = side * lanes[0].width;         // y
   lanes[2].centre = limit - side * lanes[2].width;
   lanes[1].centre = limit + track->offset + 0.5 * lanes[1].width;

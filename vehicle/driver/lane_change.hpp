@@ -1,5 +1,5 @@
 // Tracks of cones for the double lane change, as data: three lanes one after another, the middle one further to the
-// left. Lengths are fixed; widths depend on the vehicle's.
+// left. Lengths are fixed; widths depend on the vehicle's width.
 //
 //   ISO 3888-1:2018, Passenger cars — Test track for a severe lane-change manoeuvre — Part 1: Double lane-change.
 //     125 m. Its last two sections are one lane here. The right-hand limits of the first and last lane are in line, and
@@ -7,7 +7,8 @@
 //   ISO 3888-2:2011, Part 2: Obstacle avoidance. 61 m. The left-hand limits of the first and last lane are in line, and
 //     the middle lane's right-hand limit is 1 m left of them.
 //
-// The standards leave the path to the driver. Here it is the lanes' centre lines, and between them the C² smoothstep.
+// The standards leave the path to the driver. Here it follows the lanes' centre lines, with the C² smoothstep between
+// them.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ struct LaneChangeTrack {
   std::array<Section, 3> lanes;
   std::array<double, 2> gaps;  // lengths between the lanes, m
   double offset;               // of the middle lane's right-hand limit, m
-  bool from_left;              // from the left-hand limit of the others, else from their right-hand one
+  bool from_left;              // from the left-hand limit of the others, otherwise from their right-hand limit
 };
 
 inline constexpr std::array<LaneChangeTrack, 2> kLaneChangeTracks = {{

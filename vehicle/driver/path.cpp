@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kHalvings = 60;  // of a fraction: to round-off
 
-/// Where `changed` turns true between two fractions; the last one found at which it is still false.
+/// The fraction between two at which `changed` becomes true: the last one found at which it is false.
 template <class Question>
 double bisect(double low, double high, const Question& changed) {
   for (int i = 0; i < kHalvings; ++i) {
@@ -83,7 +83,7 @@ PathPlace Path::follow(const PathPlace& from, const Vec2& point) const {
   return end();
 }
 
-// Behind the end: |r + λ d| = distance, with r from the point to the end and the last direction d.
+// After the end: |r + λ d| = distance, with r from the point to the end and the last direction d.
 Vec2 Path::look_ahead(const PathPlace& from, const Vec2& point, double distance) const {
   if (!is_end(from)) {
     double u = from.fraction;

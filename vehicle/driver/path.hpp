@@ -1,7 +1,7 @@
-// A path in the horizontal plane: cubic curves from knot to knot that have the knots' directions, so that the
-// direction is continuous. With the chord d between two knots and the angle θ between their directions, the curve's
-// tangents there are 2d/(1 + cos θ/2) long: the curve then meets the middle of a piece of a circle as well, and departs
-// from the circle by less than 1e-3 θ⁶ of its radius. Behind its last knot the path continues straight.
+// A path in the horizontal plane: cubic curves from knot to knot with the knots' directions, so that the direction is
+// continuous. With the chord d between two knots and the angle θ between their directions, the curve's tangents there
+// are 2d/(1 + cos θ/2) long. For knots on a circle the curve then also meets the middle of the arc, and its distance
+// from the circle is less than 1e-3 θ⁶ of the radius. After its last knot the path continues straight.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ struct PathPoint {
   Vec2 direction = Vec2::UnitX();  // of length 1
 };
 
-/// A place on a path: places further on compare greater, first by their piece.
+/// A place on a path. Places further on compare greater: by piece, then by fraction.
 struct PathPlace {
   int piece = 0;          // counted from 0
   double fraction = 0.0;  // of the piece, 0 to 1
@@ -39,14 +39,13 @@ class Path {
   PathPlace end() const { return {static_cast<int>(pieces_.size()) - 1, 1.0}; }
   bool is_end(const PathPlace& place) const { return place.piece == end().piece && place.fraction == 1.0; }
 
-  /// The first place at or behind `from` from which the path leads away from `point`. It never goes back, and a path
-  /// that crosses itself does not confuse it.
+  /// The first place at or after `from` from which the path leads away from `point`. It never moves back, so paths may
+  /// cross themselves.
   PathPlace follow(const PathPlace& from, const Vec2& point) const;
-  /// The first position at or behind `from` that is at least `distance` from `point`.
-  /// @pre behind the end of the path, the point is less than `distance` beside it
+  /// The first position at or after `from` that is at least `distance` from `point`. @pre beyond the end of the path,
+  /// the point is less than `distance` to the side of it
   Vec2 look_ahead(const PathPlace& from, const Vec2& point, double distance) const;
-  /// Mean curvature of the path between two distances ahead of a place, 1/m, positive to the
-  /// left; straight behind its end.
+  /// Mean curvature of the path between two distances ahead of a place, 1/m, positive to the left; 0 after its end.
   /// @pre 0 ≤ near < far
   double curvature(const PathPlace& from, double near, double far) const;
 

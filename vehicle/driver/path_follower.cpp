@@ -10,9 +10,9 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kWheelbases = 1.5;  // to look ahead at least, or in which errors decay
+constexpr double kWheelbases = 1.5;  // least look-ahead, or distance in which errors decay
 constexpr double kWindow = 0.25,
-                 kLeastWindow = 0.05;  // wheelbases on each side, over which curvature is a mean
+                 kLeastWindow = 0.05;  // wheelbases on each side, for the mean of curvature
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -53,7 +53,7 @@ void PathFollower::steer(const DriverView& view, PathState& s, DriverRecord& rec
   record.inputs.steering = s.steering;
 }
 
-// Before the start of the path its first point may be further than D; the circle goes through it then.
+// Before the start of the path, its first point may be further than D; then the circle goes through this point.
 double PathFollower::wheel_angle(const PurePursuit& law, const DriverView& view, const PathPlace& place,
                                  const DriverRecord& record) const {
   const double distance = std::max({law.lookahead_distance, law.lookahead_time * std::abs(view.speed()),

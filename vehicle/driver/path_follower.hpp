@@ -1,4 +1,4 @@
-// Steers along a path by one of three laws, for a vehicle of wheelbase L whose front wheels stand at the angle δ:
+// Steers along a path by one of three laws. The vehicle has the wheelbase L, and δ is the angle of its front wheels:
 //
 //   pure_pursuit  [Coulter 1992]: the rear axle's circle, tangential to the vehicle, goes through the point ahead on
 //                 the path at the distance D = max(D₀, t v, √2 |e|) from the rear axle. y is this point's distance to
@@ -9,15 +9,15 @@
 //                   δ = −ψ − arctan(k e/(k_s + |v|))
 //   preview       feedforward of the path's curvature and feedback of the rear axle's error, after [Kapania & Gerdes
 //                 2015], eq. (4), (6) and §4: κ_p at the distance t_p |v| ahead, a mean over up to ±L/4, with the
-//                 understeer gradient K; and the heading error ψ against what a curve of κ_h, halfway there, takes with
-//                 the rear axle's slip angle S v² κ_h. k_r damps the yaw rate r as in [Hoffmann et al. 2007].
+//                 understeer gradient K. The heading error ψ is compared with the rear axle's slip angle S v² κ_h on a
+//                 curve of κ_h, halfway there. k_r damps the yaw rate r as in [Hoffmann et al. 2007].
 //                   δ = atan(L (κ_p − (e + 2 d sin(ψ − S v² κ_h))/d²)) + K v² κ_p − k_r (r − v κ_h),
 //                       d = max(d₀, t_r |v|)
-//                 Small errors of a kinematic vehicle decay critically damped in the distance d, (1 + s/d) e^(−s/d); of
-//                 large ones e counts up to √2 d, so that the vehicle comes back at 45°.
+//                 Small errors of a kinematic vehicle decay critically damped in the distance d, (1 + s/d) e^(−s/d).
+//                 Larger e counts as √2 d, so that the vehicle comes back at 45°.
 //
-// Cross-track error e is that of the axle that the law looks at. D grows with |e| so that a vehicle far off the path
-// comes back at 45°. The steering follows the law's with a bounded rate.
+// Cross-track error e is measured at the axle that the law uses. D grows with |e|, so that a vehicle far off the path
+// comes back at 45°. The steering follows the law's value with a bounded rate.
 //
 // R. C. Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm, CMU-RI-TR-92-01, Carnegie Mellon
 // University 1992.
@@ -36,10 +36,10 @@
 namespace furrow::vehicle {
 
 struct PathState {
-  bool begun = false;     // it was asked before
+  bool begun = false;     // whether there was a call before
   double time = 0.0;      // of the last call, s
   double steering = 0.0;  // then
-  PathPlace place;        // that the axle has reached; never goes back
+  PathPlace place;        // reached by the axle; never moves back
 };
 void visit_fields(FieldsOf<PathState> auto& s, auto&& visit) {
   visit(s.begun, Field{"begun", ""});
@@ -53,7 +53,7 @@ class PathFollower {
   PathFollower(const PathSpec& spec, const DriverCar& car);
 
   const Path& path() const { return path_; }
-  /// Sets the steering and what the record says of the path. @pre view.time ≥ state.time
+  /// Sets the steering and the record's values of the path. @pre view.time ≥ state.time
   void steer(const DriverView& view, PathState& state, DriverRecord& record) const;
 
  private:

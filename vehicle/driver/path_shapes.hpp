@@ -1,4 +1,4 @@
-// Paths from the shapes that a driver file may name.
+// Paths from the shapes of driver files.
 #pragma once
 
 #include "vehicle/driver/driver_spec.hpp"
@@ -6,8 +6,9 @@
 
 namespace furrow::vehicle {
 
-/// Waypoints are joined by a curve through all of them. Its direction at each is that of the parabola through it and
-/// its neighbours, by the length of the chords; at the ends it is the neighbour's, mirrored on the chord.
+/// A curve joins all waypoints. Its direction at each waypoint is that of the parabola through this point and its
+/// neighbours, as a function of the chords' lengths. At the ends it is the neighbour's direction, mirrored on the
+/// chord.
 /// @param vehicle_width for the lanes of a lane change, m
 Path make_path(const PathSpec& spec, double vehicle_width);
 

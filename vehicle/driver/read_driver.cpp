@@ -67,7 +67,7 @@ constexpr const char* kLockSchema =
              "items": {"type": "array", "minItems": 2, "maxItems": 2,
                        "items": [{"type": "number"}, {"enum": [0, 1]}]}}]})";
 
-// What is read apart of each choice.
+// Parts of each choice that are read separately.
 
 template <class Choice>
 void finish(Choice&, JsonReader&) {}
@@ -93,8 +93,8 @@ void finish(WaypointPath& shape, JsonReader& reader) {
   shape.points = points;
 }
 
-/// One of several structs: the one whose kName is the text under `key`, the first of them when there is none and it may
-/// be missing.
+/// One of several structs: the one whose kName is the text under `key`, or the first if the key is optional and
+/// missing.
 template <class... Choices>
 std::variant<Choices...> read_choice(JsonReader& reader, const std::string& key, bool required,
                                      std::type_identity<std::variant<Choices...>>) {
@@ -165,7 +165,7 @@ InputSpec read_inputs(JsonReader reader) {
   return spec;
 }
 
-/// What follows a loop follows no table.
+/// Refuses a table for a part that follows a loop.
 void check_parts(const DriverSpec& spec, const JsonReader& reader) {
   const auto refuse = [&](bool both, const std::string& input, const std::string& loop) {
     if (both) reader.fail("inputs", fmt::format("gives {} beside '{}', expected one of the two", input, loop));

@@ -1,5 +1,5 @@
 // Reads driver files: JSON (driver.schema.json), or a CSV file with the column time_s and any of throttle, brake,
-// steering and gear. Files that a driver file names are looked for beside it.
+// steering and gear. Files that a driver file names are searched for in its folder.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace furrow::vehicle {
 
 /// @throws Error(bad_input) naming file, key or line, and what was expected
 DriverSpec read_driver(const std::filesystem::path& file);
-/// @param file for messages, and for what it names @param key under which the document is in it, for messages
+/// @param file for messages, and to find the files it names @param key of the document in this file, for messages
 DriverSpec read_driver(const nlohmann::json& document, const std::string& file, const std::string& key = "");
 
 /// The JSON schema of driver files.

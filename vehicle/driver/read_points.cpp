@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr double kLargest = 1e6;  // of times and places, s and m
 
-/// What is wrong with the last of the points, if anything.
+/// The fault of the last point, if it has one.
 std::optional<std::string> fault_of_last(const DriverPoints& points, const PointRule& rule) {
   const auto [x, y] = points.back();
   const bool time = std::string(rule.first) == "time_s";
@@ -32,7 +32,7 @@ std::optional<std::string> fault_of_last(const DriverPoints& points, const Point
 
 double second_value(const json& value, const PointRule& rule, const JsonReader& reader, const std::string& key) {
   if (rule.word && value == rule.word) return rule.meaning;
-  // What a word means is no number to be written.
+  // The value of a word must not be written as a number.
   if (!value.is_number() || (rule.word && value.get<double>() == rule.meaning))
     reader.fail(key, fmt::format("{} is {}, expected {}", rule.second, value_text(value), rule.expected));
   return value.get<double>();

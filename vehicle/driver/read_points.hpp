@@ -14,14 +14,14 @@
 
 namespace furrow::vehicle {
 
-/// What may be in such a list.
+/// The values that such a list may contain.
 struct PointRule {
-  const char* first;   // column and name of the first value: "time_s", which rises, or "x_m"
-  const char* second;  // of the second: "throttle"
+  const char* first;   // column and name of the first value: "time_s", which increases, or "x_m"
+  const char* second;  // column and name of the second value: "throttle"
   double least, most;  // of the second
   const char* expected;
-  const char* word = nullptr;  // that may stand for the second
-  double meaning = 0.0;        // of the word
+  const char* word = nullptr;  // accepted instead of the second value
+  double meaning = 0.0;        // value of the word
   bool whole = false;          // the second is a whole number
 };
 

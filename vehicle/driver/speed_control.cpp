@@ -31,7 +31,7 @@ SpeedControl::SpeedControl(const SpeedSpec& spec, const DriverCar& car)
   if (integral_ < 0.0) integral_ = kFrequency * kFrequency * time_at_full_throttle;
 }
 
-// The integral by the trapezoidal rule over the times at which it is asked.
+// The integral follows the trapezoidal rule over the times of the calls.
 void SpeedControl::press(double time, double speed, SpeedState& s, DriverInputs& inputs) const {
   const double wanted = target(time), error = wanted - speed;
   const double step = s.begun ? time - s.time : 0.0;

@@ -4,14 +4,13 @@
 //   u = k_p e + I,  İ = k_i e,  −B/F ≤ u ≤ 1
 //   throttle = u,  brake = −u F/B
 //
-// so that u F is the force wanted, whichever pedal gives it. A mass m without resistance then obeys
-// ë + (F k_p/m) ė + (F k_i/m) e = 0. By default k_p = 2 ζ ω m/F and k_i = ω² m/F with ω = 0.5 rad/s and
-// ζ = 1, critical damping.
+// so that u F is the wanted force for either pedal. A mass m without resistance then obeys ë + (F k_p/m) ė + (F k_i/m)
+// e = 0. By default k_p = 2 ζ ω m/F and k_i = ω² m/F with ω = 0.5 rad/s and ζ = 1, critical damping.
 //
-// Anti-windup by conditional integration [Åström & Hägglund 2006, §3.5]: I stays what it is while u is at a bound and
-// I would move it further out. The foot changes to the brake when u falls below −h, and back when it rises above h; in
-// between, a pedal that would have to be pulled is released. At target 0 and below the stop speed the brake is pressed
-// fully and I is cleared, until the target rises.
+// Anti-windup by conditional integration [Åström & Hägglund 2006, §3.5]: I is constant while u is at a bound and I
+// would move it further out. The foot changes to the brake when u falls below −h, and back to the throttle when u rises
+// above h. Between −h and h, a pedal whose demand is negative is released. At target 0 and below the stop speed the
+// brake is pressed fully and I is cleared, until the target rises.
 //
 // K. J. Åström, T. Hägglund, Advanced PID Control, ISA 2006, ISBN 978-1-55617-942-6.
 #pragma once
@@ -30,8 +29,8 @@ struct SpeedState {
   double time = 0.0;      // of the last call, s
   double error = 0.0;     // then, m/s
   double integral = 0.0;  // I, of throttle
-  bool braking = false;   // the foot is on the brake
-  bool stopped = false;   // and holds
+  bool braking = false;   // whether the foot is on the brake
+  bool stopped = false;   // whether the vehicle has stopped and the brake holds it
 };
 void visit_fields(FieldsOf<SpeedState> auto& s, auto&& visit) {
   visit(s.begun, Field{"begun", ""});
@@ -61,7 +60,7 @@ class SpeedControl {
   double brake_ratio_;              // B/F
 };
 
-/// The function of time through these points, constant beyond them; 0 without any.
+/// The function of time through these points, constant beyond them; 0 without points.
 Table table_of_time(const std::string& name, DriverPoints points);
 
 }  // namespace furrow::vehicle

@@ -34,7 +34,7 @@ void put_keys(const T& values, json& object) {
   });
 }
 
-/// A number below zero stands for what the vehicle gives on its own; a file says so by leaving the key out.
+/// Removes negative numbers, which stand for the vehicle's own values: in a file these keys are missing.
 void remove_open(json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     if (object.contains(key) && object[key] < 0.0) object.erase(key);

@@ -1,4 +1,4 @@
-// A driver as a JSON document that holds all of it: what came from CSV files is in it as lists of points.
+// A driver as a complete JSON document. Data from CSV files are in it as lists of points.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,7 +7,7 @@
 
 namespace furrow::vehicle {
 
-/// What read_driver() makes into the same driver again.
+/// A document from which read_driver() makes the same driver.
 nlohmann::json driver_document(const DriverSpec& spec);
 
 }  // namespace furrow::vehicle

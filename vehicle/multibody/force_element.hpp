@@ -1,4 +1,4 @@
-// Springs, dampers and the like: a scalar force law in one coordinate between two bodies.
+// Springs, dampers and similar elements: a scalar force law in one coordinate between two bodies.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace furrow::vehicle {
 
-/// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N
-/// or N m, and its damping −∂f/∂rate ≥ 0, N s/m or N m s. A law that is asked for its energies says which part of the
-/// force is the negative slope of an energy, and that energy (J).
+/// Force in the coordinate (positive pushes the points apart, or B along the axis, or turns B positively), N or N m,
+/// and its damping −∂f/∂rate ≥ 0, N s/m or N m s. A law whose energies are tracked also gives the part of the force
+/// that is the negative slope of an energy, and this energy (J).
 struct ElementForce {
   double force = 0.0;
   double damping = 0.0;
@@ -34,11 +34,11 @@ struct ForceElement {
   double last_force = 0.0;  // mean over the last step, N or N m
 };
 
-/// Energies of a force element whose law gives them (System::track_energy).
+/// Energies of a force element (System::track_energy).
 struct ElementEnergy {
   double stored = 0.0;      // of the elastic part now, J
-  double elastic = 0.0;     // work that the elastic part has done since the start, J
-  double dissipated = 0.0;  // what the other part has taken since the start, J
+  double elastic = 0.0;     // work done by the elastic part since the start, J
+  double dissipated = 0.0;  // energy taken by the other part since the start, J
 };
 void visit_fields(FieldsOf<ElementEnergy> auto& s, auto&& visit) {
   visit(s.stored, Field{"stored", "J"});

@@ -44,7 +44,7 @@ Mat3 axes_about(const Vec3& direction) {
   const double length = direction.norm();
   if (!(length > 0.0) || !std::isfinite(length)) throw physics_error("a joint axis has no direction");
   const Vec3 z = direction / length;
-  int least = 0;  // world axis that lies least along z
+  int least = 0;  // world axis with the smallest component along z
   z.cwiseAbs().minCoeff(&least);
   Mat3 axes;
   axes.col(2) = z;
@@ -89,7 +89,7 @@ std::vector<Row> make_joint_rows(Joint& joint, const Pose& A, const Pose& B, con
     if (!(rows.back().reference > 0.0)) throw physics_error("joint '" + joint.name + "': its length is zero");
   }
   if (is(revolute_spherical)) {
-    // Along the hinge nothing moves; across it the length stays.
+    // The point does not move along the hinge; across it the length is constant.
     const Vec3 across = axes.transpose() * (point_b - place.point);
     if (!(across.head<2>().norm() > 1e-9))
       throw physics_error("joint '" + joint.name + "': its two ends lie on the hinge");

@@ -12,11 +12,11 @@ namespace furrow::vehicle {
 /// Rows (constrained degrees of freedom): fixed 6, revolute 5, prismatic 5, cylindrical 4, universal 4,
 /// spherical 3, distance 1, revolute–spherical 2.
 ///
-/// Two kinds stand for a massless rod: distance, with a ball at one end and a ball or a universal joint at the other;
-/// revolute–spherical, with a hinge on A and a ball on B, so that B's point stays on a circle about the hinge.
+/// Two kinds represent a massless rod. Distance has a ball at one end and a ball or a universal joint at the other.
+/// Revolute–spherical has a hinge on A and a ball on B, so that B's point stays on a circle about the hinge.
 enum class JointKind { fixed, revolute, prismatic, cylindrical, universal, spherical, distance, revolute_spherical };
 
-/// Where a joint sits in the configuration in which it is defined, W.
+/// Position of a joint in the configuration in which it is defined, W.
 struct JointPlace {
   Vec3 point = Vec3::Zero();         // m; of a rod: its end on A
   Vec3 axis = Vec3::UnitZ();         // revolute, prismatic, cylindrical: the axis; universal, rod: the axis in A

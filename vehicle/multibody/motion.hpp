@@ -27,7 +27,7 @@ inline Motion ramped_motion(double time, double speed, double ramp) {
   return {speed * (time - 0.5 * ramp), speed};
 }
 
-/// Value from 0 at time 0 to `change` after `duration` seconds by the same smoothstep.
+/// Value from 0 at time 0 to `change` after `duration` seconds by the smoothstep S.
 inline Motion step_motion(double time, double change, double duration) {
   FURROW_ASSERT(duration >= 0.0, duration);
   if (!(time > 0.0)) return {};

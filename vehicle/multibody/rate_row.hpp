@@ -1,17 +1,17 @@
-// Rows in speeds: what gears, differentials, clutches, brakes and engines act on. A row is the sum
+// Rows in speeds, on which gears, differentials, clutches, brakes and engines act. A row is the sum
 //
 //   u = Σ f (Ω − ω_C·a_C) + Σ f (ω_B − ω_A)·a_B
 //
 // of speeds of shafts relative to their carriers C and of relative spins of two bodies about an axis fixed in B. A
 // torque λ in the row has the power λ u: it acts on each shaft with f λ and on its carrier with −f λ, on B with f λ and
-// on A with −f λ. Since u does not see a rotation of everything together, no torque of a row changes the total moment.
+// on A with −f λ. A common rotation of everything does not change u, so the torques of a row have no total moment.
 //
 // A row does one of four things:
 //   free     nothing
 //   torque   λ is given
-//   hold     u = target with lower ≤ λ ≤ upper. Without bounds it is a gear; with them it is dry friction, as a set:
-//            λ = upper where u < target, λ = lower where u > target, anything between where u = target. A row that
-//            gives way holds u = target − give λ instead.
+//   hold u = target with lower ≤ λ ≤ upper. Without bounds it is a gear; with bounds it is dry friction as a set-valued
+//            law: λ = upper if u < target, λ = lower if u > target, any value between if u = target. A row with
+//            compliance holds u = target − give λ instead.
 //   law      λ = f(u, t), set by add_rate_law
 #pragma once
 
@@ -42,7 +42,7 @@ struct RateRow {
   std::string name;
   std::vector<ShaftTerm> shafts;  // no shaft twice
   std::vector<SpinTerm> spins;
-  double give = 0.0;  // while it is held between bounds, rad/s per N m
+  double give = 0.0;  // compliance while held between bounds, rad/s per N m
 };
 
 enum class RateMode { free, torque, hold, law };
@@ -73,10 +73,10 @@ void visit_fields(FieldsOf<RateState> auto& s, auto&& visit) {
   visit(s.work, Field{"work", "J"});
 }
 
-/// λ of several rows from their speeds u (rad/s) at a time (s), each with its damping −∂λ/∂u ≥ 0, N m s.
+/// λ of several rows as a function of their speeds u (rad/s) and time (s), each with its damping −∂λ/∂u ≥ 0, N m s.
 using RateLaw = std::function<void(std::span<const double> speeds, double time, std::span<ElementForce> torques)>;
 
-/// What a row has of one body (∂u/∂ω, W) and of one shaft (∂u/∂Ω).
+/// Derivative of a row's speed with respect to one body (∂u/∂ω, W) and to one shaft (∂u/∂Ω).
 struct SpinSide {
   int row = 0, body = 0;
   Vec3 w = Vec3::Zero();

@@ -5,12 +5,13 @@
 //                 laws: P = h/2 f(u½), all implicit
 //   second half   J (Ω₁ − Ω½) = Σ f P,   rows held: u = target with the speeds at the end; laws: P = h/2 f(u½)
 //
-// with the impulses of held rows between h/2 lower and h/2 upper in each half. Which rows slip is found by trial: a row
-// whose impulse leaves its bounds is put at the bound, a row at its bound whose speed has passed the target holds again
-// (after a few rounds only the first such row at a time [Murty 1974, doi:10.1016/0024-3795(74)90019-3]). A brake or
-// clutch that holds therefore holds exactly, whatever the step.
+// with the impulses of held rows between h/2 lower and h/2 upper in each half. Slipping rows are found by trial: a row
+// whose impulse leaves its bounds is put at the bound; a row at its bound whose speed has passed the target holds
+// again. After a few rounds only the first such row changes at a time [Murty 1974, doi:10.1016/0024-3795(74)90019-3].
+// So a holding brake or clutch holds exactly, for any step.
 //
-// What a carrier feels of a rotor that keeps its momentum p while the axis turns from a₀ to a₁ is −p (a₁ − a₀).
+// A rotor that keeps its momentum p while the axis turns from a₀ to a₁ gives its carrier the angular impulse −p (a₁ −
+// a₀).
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +26,7 @@
 
 namespace furrow::vehicle {
 
-/// What the rows are solved for: at the assembly only rows held without bounds count.
+/// Stage in which the rows are solved. At the assembly only rows held without bounds count.
 enum class RateStage { none, assembly, first_half, second_half };
 
 class RateSet {
@@ -44,18 +45,18 @@ class RateSet {
   const RateRow& row(int index) const { return rows_[index]; }
   const RateControl& control(int index) const { return controls_[index]; }
   const RateState& state(int index) const { return states_[index]; }
-  /// Held without bounds: counts for the rank.
+  /// Whether a row is held without bounds, and so counts for the rank.
   bool is_ideal(int row) const;
 
-  // Within a step. Spans of impulses, residuals and compliances are those of these rows alone.
-  /// Sides of the rows, numbered from first_row on; storage.
+  // Within a step. Spans of impulses, residuals and compliances contain these rows alone.
+  /// Finds the sides of the rows, numbered from first_row on, and allocates storage.
   void prepare(int first_row, std::size_t body_count);
   RateSides sides() const { return {row_count(), spin_sides_, shaft_sides_}; }
-  /// Axes at the present poses.
+  /// Computes the axes at the present poses.
   void update_axes(std::span<const Body> bodies);
-  /// Remembers speeds and angles; in half steps evaluates the laws and what the rows' speeds are before it.
+  /// Stores speeds and angles. In half steps it also evaluates the laws and the rows' speeds before the half step.
   void begin(RateStage stage, double h, double mid_time, std::span<const Body> bodies);
-  /// Nothing is held: positions are projected.
+  /// Holds no row, while positions are projected.
   void rest() { stage_ = RateStage::none; }
   void fill_compliance(std::span<double> compliance) const;
   void known_impulses(std::span<double> impulses) const;
@@ -68,10 +69,10 @@ class RateSet {
   double largest_speed() const;  // of the shafts, rad/s
   /// Moves rows between holding and slipping. @return whether any moved
   bool change_sides(std::span<const double> impulses, std::span<const Body> bodies, int round);
-  /// Means and work of this half.
+  /// Computes means and work of this half.
   void finish(std::span<const double> impulses, std::span<const Body> bodies);
 
-  /// Momentum of the rotors that a body carries, in its axes; null where it carries none.
+  /// Momentum of the rotors that a body carries, in its axes; null if it carries none.
   const Vec3* rotor_momentum(int body) const;
   void update_rotors();
 

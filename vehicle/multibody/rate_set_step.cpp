@@ -8,12 +8,12 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kTolerance = 1e-14;      // of a held row's speed, relative to the speeds that it is made of
+constexpr double kTolerance = 1e-14;      // of a held row's speed, relative to the speeds in its sum
 constexpr double kSideTolerance = 1e-12;  // by which a slipping row may have passed its target
-constexpr double kLeastSpeed = 1.0;       // rad/s; slower speeds are judged like this one
+constexpr double kLeastSpeed = 1.0;       // rad/s; slower speeds are compared with this one
 constexpr int kFreeRounds = 8;            // rounds in which all rows may change sides at once
 
-/// Bounds that leave no choice: the torque is given.
+/// Whether the bounds are equal, so that the torque is given.
 bool fixed(const RateControl& control) { return !(control.lower < control.upper); }
 
 }  // namespace
@@ -166,7 +166,7 @@ void RateSet::move(double h) {
   for (std::size_t s = 0; s < shafts_.size(); ++s) shafts_[s].state.angle = base_[s].angle + h * shafts_[s].state.speed;
 }
 
-// A law with damping c is a row of its own, P = h/2 f(u) by Newton's method with the slope −c:
+// A law with damping c is a separate row, P = h/2 f(u), solved by Newton's method with the slope −c:
 //   δu + δP 2/(h c) = (h/2 f(u) − P) 2/(h c)
 // Without damping P ← h/2 f(u) directly.
 bool RateSet::residuals(std::span<double> impulses, std::span<const double> compliance, std::span<const Body> bodies,
@@ -209,7 +209,7 @@ bool RateSet::change_sides(std::span<const double> impulses, std::span<const Bod
       if (impulses[i] > half_step_ * control.upper + room) side = 1;
       if (impulses[i] < half_step_ * control.lower - room) side = -1;
     } else {
-      // At the upper bound u may lie below what it holds, at the lower one above.
+      // At the upper bound u may be below the held speed, at the lower bound above it.
       const double held = control.target - rows_[i].give * (side > 0 ? control.upper : control.lower);
       const double passed = side * (held_speed(i, bodies) - held);
       if (passed > kSideTolerance * (scale(i, bodies) + std::abs(control.target))) side = 0;

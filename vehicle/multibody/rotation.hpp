@@ -31,7 +31,7 @@ inline Quat rotated(const Quat& q, const Vec3& omega_W, double h) {
   return result;
 }
 
-/// Constant angular velocity ω over a step h whose momentum at mid-step is ℓ:
+/// Computes the constant angular velocity ω over a step h whose momentum at mid-step is ℓ:
 ///   R½ J R½ᵀ ω = ℓ,  R½ = exp(h/2 [ω]×) R₀.
 /// In body axes W = R₀ᵀω: J W = exp(−h/2 [W]×) R₀ᵀℓ, by fixed-point iteration (contracts for h|ω| < 1).
 /// @return false when the iteration does not settle.
@@ -50,12 +50,12 @@ inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse
     }
   }
   omega_W = R * W;
-  // Two neighbouring floating-point values may alternate; that is settled as well.
+  // Two neighbouring floating-point values may alternate; the iteration has then settled too.
   const Vec3 next = inertia_inverse * (rotation_exp(-0.5 * h * W) * L);
   return (next - W).cwiseAbs().maxCoeff() <= 1e-13 * W.cwiseAbs().maxCoeff();
 }
 
-/// The same for a body that carries rotors of momentum p (body axes), which turn with it:
+/// Computes ω for a body that carries rotors of momentum p (body axes), which turn with it:
 ///   R½ (J R½ᵀ ω + p) = ℓ + R₀ p,   so   J W = exp(−h/2 [W]×) (R₀ᵀℓ + p) − p.
 inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse, const Vec3& momentum_W,
                                       const Vec3& rotor, double h, Vec3& omega_W) {
@@ -69,7 +69,7 @@ inline bool midpoint_angular_velocity(const Mat3& R, const Mat3& inertia_inverse
     const double size = W.cwiseAbs().maxCoeff() + (inertia_inverse * rotor).cwiseAbs().maxCoeff();
     W = next;
     omega_W = R * W;
-    // Round-off of the difference of two large momenta: no longer falling.
+    // The difference of two large momenta has reached round-off when it no longer falls.
     if (change <= 1e-15 * size || (i > 2 && change <= 1e-13 * size && change >= before)) return true;
     before = change;
   }

@@ -39,7 +39,7 @@ RowJacobian row_jacobian(const Row& row, const Pose& A, const Pose& B) {
     return J;
   }
   if (row.kind == RowKind::angle) {
-    // Exact while z_A and z_B coincide, which the joint that carries the angle sees to.
+    // Exact while z_A and z_B coincide; the joint that has the angle ensures this.
     const Vec3 z = *A.R * row.hinge_a;
     J.v_a.setZero();
     J.v_b.setZero();

@@ -1,5 +1,5 @@
-// Scalar coordinates between two bodies A and B. Each is the building brick of constraints (a joint is a set
-// of rows that must vanish), of motors (a row that must follow a function of time) and of force elements.
+// Scalar coordinates between two bodies A and B. They are the building blocks of constraints (a joint is a set of rows
+// that must vanish), of motors (a row that must follow a function of time) and of force elements.
 //
 //   offset    φ = e_A · (P_B − P_A)            e fixed in A
 //   dot       φ = a_A · b_B                    both unit vectors fixed in their bodies
@@ -39,7 +39,7 @@ void each_side(const Row& row, const RowJacobian& J, const Call& call) {
   if (row.b != kGround) call(row.b, J.v_b, J.w_b);
 }
 
-/// What a row needs of a body, or of the ground.
+/// Position and orientation of a body, or of the ground, as rows use them.
 struct Pose {
   const Vec3* position;
   const Mat3* R;

@@ -1,11 +1,11 @@
 // Solves for constraint impulses: S P = r with S = G M⁻¹ Gᵀ + Σ, sparse, symmetric, positive semi-definite.
 // M is block-diagonal (one block per body), so S couples two rows exactly when they share a body, and its
 // pattern is fixed by the topology: one symbolic analysis, then numeric factorizations only. Shafts are blocks of one
-// unknown, J⁻¹; rows in speeds (rate_row.hpp) stand behind the others and may share any number of bodies and shafts.
+// unknown, J⁻¹; rows in speeds (rate_row.hpp) come after the others and may share any number of bodies and shafts.
 //
-// Redundant rows make S singular. The factored matrix is S + εI, and the caller repeats P += (S + εI)⁻¹ r(P)
-// from P = 0 (the proximal-point iteration): P stays in the range of S, so it tends to the solution of
-// minimum Euclidean norm; the error in the range falls by ε/(σ + ε) each time.
+// Redundant rows make S singular. The factored matrix is S + εI, and the caller repeats P += (S + εI)⁻¹ r(P) from P = 0
+// (the proximal-point iteration): P stays in the range of S, so it tends to the solution of minimum Euclidean norm.
+// Each repetition reduces the error along a singular value σ by the factor ε/(σ + ε).
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -19,7 +19,7 @@
 
 namespace furrow::vehicle {
 
-/// Rows in speeds, numbered behind the other rows.
+/// Rows in speeds, numbered after the other rows.
 struct RateSides {
   int count = 0;  // rows
   std::span<const SpinSide> spins;
@@ -31,8 +31,8 @@ class SchurSolver {
   /// Symbolic analysis for rows with fixed bodies. @pre no row joins a body with itself; no side occurs twice
   void analyze(std::span<const Row> rows, const RateSides& rates = {});
 
-  /// Builds S from the rows' Jacobians at the bodies' present poses and factors it. compliance[i] ≥ 0 is
-  /// added to the diagonal; a negative value switches row i off (its impulse is then r_i itself: give it 0).
+  /// Builds S from the rows' Jacobians at the bodies' present poses and factors it. compliance[i] ≥ 0 is added to the
+  /// diagonal; a negative value switches row i off; its impulse is then r_i itself, so set r_i = 0.
   /// @return false when the factorization fails. @pre one Jacobian and one compliance for each row analysed
   bool factorize(std::span<const RowJacobian> jacobians, std::span<const Body> bodies,
                  std::span<const double> compliance, const RateSides& rates = {}, std::span<const Shaft> shafts = {});
@@ -50,7 +50,7 @@ class SchurSolver {
     int body;
     bool i_is_b, j_is_b;  // the shared body is B of the row
   };
-  // Of a pair in which at least one row is in speeds: which side of the row the shared body is.
+  // For a pair in which at least one row is in speeds: the side of each row on which the shared body is.
   struct SpinEntry {
     int i, j, value, body;
     int i_side, j_side;  // index into the sides, or kSideA, kSideB of other rows

@@ -1,7 +1,7 @@
-// A shaft: a rotor that turns about an axis fixed in the body that carries it. Its angular momentum along the axis,
-// p = J Ω, belongs to the shaft; all else of its mass and inertia is counted with the carrier. Ω is the absolute
-// angular speed about the axis, so that a torque M about the axis gives J dΩ/dt = M, and the carrier feels, besides
-// the reaction −M, the gyroscopic moment −ω × p a.
+// A shaft: a rotor that turns about an axis fixed in the body that carries it. The shaft holds its angular momentum
+// along the axis, p = J Ω; the rest of its mass and inertia is counted with the carrier. Ω is the absolute angular
+// speed about the axis, so a torque M about the axis gives J dΩ/dt = M. The reaction −M and the gyroscopic moment −ω ×
+// p a act on the carrier.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ void visit_fields(FieldsOf<ShaftState> auto& s, auto&& visit) {
 struct Shaft {
   std::string name;
   double inertia = 1.0;       // J about the axis, kg m²
-  int carrier = kGround;      // the body in whose bearings it turns
+  int carrier = kGround;      // the body that holds its bearings
   Vec3 axis = Vec3::UnitX();  // a, unit vector in the carrier's axes
   ShaftState state;
 };

@@ -175,7 +175,7 @@ Eigen::VectorXd Statics::multipliers() const {
 
 double Statics::unbalance() const { return (freedoms().transpose() * forces()).cwiseAbs().maxCoeff(); }
 
-// The multipliers turn with the rows, which gives the geometric part.
+// The geometric part arises because the multipliers turn with the rows.
 Eigen::MatrixXd Statics::stiffness(const Eigen::MatrixXd& N) const {
   const Eigen::VectorXd lambda = multipliers();
   Statics moved = *this;
@@ -201,12 +201,12 @@ Outcome Statics::settle(double weight, const ProgressCall& progress) {
   const double first = now, last = kBalanced * weight;
   double lowest = now;
   for (int iteration = 0; iteration < kMaxIterations && now > kBalanced * weight; ++iteration) {
-    // Newton's steps shorten the way in decades.
+    // Newton's steps shorten the distance by decades.
     lowest = std::min(lowest, now);
     tell("finding how it stands", std::clamp(std::log(first / lowest) / std::log(first / last), 0.0, 1.0));
     const Eigen::MatrixXd N = freedoms();
     Eigen::MatrixXd K = stiffness(N);
-    // Where it is not stable (a wheel in the air), as stiff as it takes to come down.
+    // If it is not stable (a wheel in the air), stiffness is added so that it comes down.
     const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues()[0];
     const double floor = 1e-4 * weight;
     if (least < floor) K.diagonal().array() += 0.5 * weight / kLongestStep * 0.02 + floor - least;

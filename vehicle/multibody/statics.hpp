@@ -1,7 +1,7 @@
-// Postures and equilibria of a system: what a vehicle's trim and its suspension's kinematics are solved with.
-// Coordinates are, for each body in turn, a displacement (m, W) and a small rotation (rad, W) from its present pose.
-// With the rows φ(x) = target of the system and those held besides, G = ∂φ/∂x, forces Q(x) of bodies at rest and an
-// orthonormal basis N of the null space of G:
+// Postures and equilibria of a system, for a vehicle's trim and its suspension's kinematics. Coordinates are, for each
+// body in turn, a displacement (m, W) and a small rotation (rad, W) from its present pose. With the rows φ(x) = target
+// of the system and the additional held rows, G = ∂φ/∂x, forces Q(x) of bodies at rest and an orthonormal basis N of
+// the null space of G:
 //
 //   posture      φ(x) = target          Newton with the shortest step, δ = G⁺ (target − φ)
 //   equilibrium  Nᵀ Q = 0               Newton with K = −Nᵀ ∂(Q + Gᵀλ)/∂x N at constant λ, Gᵀλ ≈ −Q, by central
@@ -19,7 +19,7 @@
 
 namespace furrow::vehicle {
 
-/// Held besides the system's own constraints.
+/// A row held in addition to the system's own constraints.
 struct HeldRow {
   std::string name;
   Row row;
@@ -31,7 +31,7 @@ using StaticForces = std::function<void(const System& system, Eigen::VectorXd& f
 
 /// A free vibration; `shape` in the coordinates of all bodies.
 struct Mode {
-  double frequency = 0.0;  // undamped, Hz; 0 where there is no stiffness
+  double frequency = 0.0;  // undamped, Hz; 0 without stiffness
   double damping = 0.0;    // vᵀ C v / (2 ω vᵀ M v)
   Eigen::VectorXd shape;   // vᵀ M v = 1
 };
@@ -48,9 +48,10 @@ class Statics {
   void set_target(int held, double target) { held_[held].target = target; }
   void set_forces(StaticForces forces) { forces_ = std::move(forces); }
 
-  /// Brings the bodies into a posture that meets all rows; their velocities become zero.
+  /// Moves the bodies to a posture that satisfies all rows; their velocities become zero.
   Outcome close();
-  /// Brings the bodies to rest in equilibrium. @param weight by which forces are judged, N @param progress may stop it
+  /// Brings the bodies to rest in equilibrium. @param weight scale for the residual force, N @param progress may stop
+  /// it
   Outcome settle(double weight, const ProgressCall& progress = {});
 
   int coordinate_count() const { return 6 * system_.body_count(); }
@@ -59,11 +60,11 @@ class Statics {
   Eigen::MatrixXd jacobian() const;
   /// N now: one column for each freedom.
   Eigen::MatrixXd freedoms() const;
-  /// dx for a rate 1 of a held row's target. @pre there is no other freedom
+  /// dx per unit change of a held row's target. @pre there is no other freedom
   Eigen::VectorXd tangent(int held) const;
   /// Q now.
   Eigen::VectorXd forces() const;
-  /// The force in each row that keeps the equilibrium, N or N m, by least squares.
+  /// Force in each row at the equilibrium, N or N m, by least squares.
   Eigen::VectorXd multipliers() const;
   /// Lowest first. @pre settled
   std::vector<Mode> modes() const;
@@ -85,7 +86,7 @@ class Statics {
 
 /// Row that keeps the offset of B's centre of mass from a point of A along an axis of A (both as they are now, W).
 Row offset_row(const System& system, int a, int b, const Vec3& axis);
-/// Rows that keep a body where it is: three offsets, three angles.
+/// Rows that hold a body in its place: three offsets, three angles.
 std::vector<HeldRow> held_body(const System& system, int body);
 /// φ now.
 double row_value(const System& system, const Row& row);

@@ -66,7 +66,7 @@ ForceLaw shock_absorber(const ShockOptions& options) {
             "shock absorber: its marks must lie further apart than the "
             "length over which it changes");
   require(o.blend_speed >= 0.0, "shock absorber: its blend speed must not be negative");
-  // The slope is taken through the origin, so that the implicit half of the step takes energy as well.
+  // The slope is the secant through the origin, so that the implicit half of the step dissipates energy, too.
   return [o](double x, double v, double) {
     const double c = shock_coefficient(o, x, v);
     return ElementForce{-c * v, c};

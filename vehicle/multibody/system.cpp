@@ -14,7 +14,7 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;  // a double counts no further
+constexpr std::int64_t kMostSteps = std::int64_t{1} << 53;  // largest count in a double
 
 const Vec3 kGroundPosition = Vec3::Zero();
 const Mat3 kGroundAxes = Mat3::Identity();

@@ -5,11 +5,11 @@
 //   M (v½ − v₀) = h/2 [f(x₀, v½) + G₀ᵀλ]     λ such that φ(x₁, t₁) = 0
 //   x₁ = x₀ + h v½,  q₁ = exp(h ω½) q₀        R½ J R½ᵀ ω½ = ℓ½ (see rotation.hpp)
 //   M (v₁ − v½) = h/2 [f(x₁, v½) + G₁ᵀμ]     μ such that G₁ v₁ + ∂φ/∂t = 0
-// Symmetric, so second order; springs are explicit (stable for h < 2 √(m/k)), dampers act by the implicit
-// midpoint rule (stable for any h); no drift, because nothing is integrated that a constraint does not bring
-// back. Shafts and rows in speeds (rate_set.hpp) are part of the same two solutions. Loads are constant over a step.
-// Reactions are means over the step, so that mass × change of velocity / h equals load + reaction to round-off: this
-// is what makes a drawbar pull corrected by m·a exact.
+// The rule is symmetric, so of second order. Springs are explicit (stable for h < 2 √(m/k)); dampers follow the
+// implicit midpoint rule (stable for any h). There is no drift, because every step satisfies the constraints. Shafts
+// and rows in speeds (rate_set.hpp) are part of the same two solutions. Loads are constant over a step. Reactions are
+// means over the step, so that mass × change of velocity / h equals load + reaction to round-off. A drawbar pull
+// corrected by m·a is therefore exact.
 //
 // H. C. Andersen, Rattle: a "velocity" version of the Shake algorithm, J. Comput. Phys. 52 (1983) 24–34,
 // doi:10.1016/0021-9991(83)90014-1.
@@ -38,14 +38,14 @@ class System {
  public:
   explicit System(const Vec3& gravity = standard_gravity()) : gravity_(gravity) {}
 
-  // Building; indices count from 0 and are those of bodies and joints added before. Joints and elements are placed in
-  // the bodies' present poses.
+  // Building. Indices count from 0 and refer to bodies and joints added before. Joints and elements are placed in the
+  // bodies' present poses.
   /// @pre mass > 0, inertia symmetric positive definite
   int add_body(const std::string& name, double mass, const Mat3& inertia, const BodyState& state);
   void set_mass_properties(int body, double mass, const Mat3& inertia);
   int add_joint(JointKind kind, const std::string& name, int a, int b, const JointPlace& place);
-  /// Imposes the free coordinate of a prismatic, cylindrical or revolute joint, zero where the joint was
-  /// placed.
+  /// Imposes the free coordinate of a prismatic, cylindrical or revolute joint; it is zero in the pose in which the
+  /// joint was placed.
   int add_motor(const std::string& name, int joint, MotionFunction motion);
   /// Acts on the free coordinate of a joint.
   int add_joint_element(const std::string& name, int joint, ForceLaw law);
@@ -59,22 +59,22 @@ class System {
   int add_shaft(const std::string& name, double inertia, int carrier, const Vec3& axis, double speed = 0.0);
   int add_rate_row(const RateRow& row, const RateControl& control = {});
   int add_rate_law(const RateRow& row, RateLaw law);
-  /// One law for several rows, which it takes in this order.
+  /// Adds one law for several rows, in this order.
   std::vector<int> add_rate_law(const std::vector<RateRow>& rows, RateLaw law);
-  /// From the next step on. Nothing is assembled again: see recheck_rank().
+  /// Sets a row's control from the next step on. Nothing is assembled again: see recheck_rank().
   void set_rate_control(int row, const RateControl& control) { rates_.set_control(row, control); }
   void set_rate_factor(int row, int term, double factor);
   void set_shaft_speed(int shaft, double speed) { rates_.set_speed(shaft, speed); }
-  /// Looks for redundant constraints with the rows in speeds as they are held now, at an event that changed them.
+  /// Finds redundant constraints with the rows in speeds as held now, after an event that changed them.
   void recheck_rank();
 
-  /// Puts a body somewhere; assemble() must follow.
+  /// Sets a body's state; assemble() must follow.
   void set_state(int body, const BodyState& state);
-  /// Sets the clock, projects positions and velocities onto the constraints (mass-weighted), and looks for
-  /// redundant constraints. @throws Error(physics) naming a constraint that cannot be satisfied.
+  /// Sets the clock, projects positions and velocities onto the constraints (mass-weighted), and finds redundant
+  /// constraints. @throws Error(physics) naming a constraint that cannot be satisfied.
   void assemble(double time);
 
-  /// Force and moment about the centre of mass, W, held until changed.
+  /// Sets force and moment about the centre of mass, W, until changed.
   void set_load(int body, const Vec3& force, const Vec3& moment);
 
   /// Advances by h, in integer steps: t = t₀ + i h while h stays the same.
@@ -123,7 +123,7 @@ class System {
   /// u of a row now, rad/s.
   double rate_speed(int row) const;
 
-  // What statics.hpp needs.
+  // For statics.hpp.
   const Vec3& gravity() const { return gravity_; }
   Pose pose(int body) const;
   const Row& constraint_row(int row) const {
@@ -154,7 +154,7 @@ class System {
   const std::vector<std::string>& redundant_names() const { return redundant_names_; }
 
   void save(Archive& archive) const;
-  /// Into a system built alike; no assemble() needed.
+  /// Restores into a system built in the same way; no assemble() needed.
   void restore(const Archive& archive);
 
  private:
@@ -181,7 +181,7 @@ class System {
   Row line_row(const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b) const;
   double row_rate(const Row& row, const RowJacobian& J) const;
   void finish_work(bool first_half);  // of tracked elements and rows in speeds
-  void turn_rotors();                 // carriers feel what their rotors' turn with them takes
+  void turn_rotors();                 // applies the gyroscopic moments of rotors to their carriers
   Outcome solve_half(bool first_half, double h, double end_time);
   bool rates_done(double& before, int iteration);
   bool dampers_done(double scale, double& before, int iteration);
@@ -196,7 +196,7 @@ class System {
   Outcome project_positions(double time);
   void find_redundancy();
   void remove_null_impulses();
-  void save_drives(Archive& archive) const;  // writes nothing where there is none of them
+  void save_drives(Archive& archive) const;  // writes nothing if there are none
   void restore_drives(const Archive& archive);
   Outcome check_finite() const;
   Outcome failure(const std::string& what, int row, double residual) const;
@@ -226,7 +226,7 @@ class System {
   std::vector<RowJacobian> jacobians_;
   std::vector<double> compliance_;
   std::vector<double> damping_;  // of element rows, this step
-  // A tracked element, with what its work in the present half step follows from.
+  // A tracked element, with the data for its work in the present half step.
   struct Tracked {
     int element = 0;
     ElementEnergy energy;

@@ -10,11 +10,11 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kRateLimit = 1e-9;  // of a held speed, relative to its scale, where round-off stops the iteration
-constexpr int kMaxRounds = 60;       // in which rows change between holding and slipping
+constexpr double kRateLimit = 1e-9;         // of a held speed, relative to its scale, if round-off stops the iteration
+constexpr int kMaxRounds = 60;              // in which rows change between holding and slipping
 constexpr double kDamperTolerance = 1e-13;  // of a damper's speed and flow, or
 constexpr double kDamperFloor = 1e-14;      // of the largest speed
-constexpr int kDamperPatience = 8;          // iterations after which dampers may be as near as round-off lets them
+constexpr int kDamperPatience = 8;          // iterations after which the round-off of dampers is accepted
 
 }  // namespace
 
@@ -84,7 +84,7 @@ double System::rate_speed(int row) const {
   return sum;
 }
 
-// A factor is part of what the row has of the shaft's carrier, too.
+// A factor also changes the row's term of the shaft's carrier.
 void System::set_rate_factor(int row, int term, double factor) {
   rates_.set_factor(row, term, factor);
   if (prepared_) rates_.update_axes(bodies_);
@@ -121,7 +121,7 @@ void System::turn_rotors() {
     if (const Vec3* p = rates_.rotor_momentum(i)) bodies_[i].angular_momentum -= bodies_[i].R * *p - base_[i].R * *p;
 }
 
-// Solves one half of the step, and again as long as rows change between holding and slipping.
+// Solves one half of the step, and repeats it while rows change between holding and slipping.
 Outcome System::solve_half(bool first_half, double h, double end_time) {
   for (int round = 0; round < kMaxRounds; ++round) {
     Outcome outcome = first_half ? solve_positions(h, end_time) : solve_velocities(end_time);
@@ -131,7 +131,7 @@ Outcome System::solve_half(bool first_half, double h, double end_time) {
   return Outcome::failure("cannot decide which of its brakes and clutches slip", "");
 }
 
-// Whether the rows in speeds are met, or their error is round-off and no longer falls.
+// Whether the rows in speeds are satisfied, or their error is round-off and no longer falls.
 bool System::rates_done(double& before, int iteration) {
   double worst = 0.0;
   const std::span<const double> compliance = std::span<const double>(compliance_).subspan(first_rate());
@@ -141,8 +141,8 @@ bool System::rates_done(double& before, int iteration) {
   return small || settled;
 }
 
-// Whether the damper rows are met: speed + flow = 0. Bodies are moved by what closes their joints, so that the rounding
-// of positions, over the length of the step, is in their speeds: far from the origin the error no longer falls.
+// Whether the damper rows are satisfied: speed + flow = 0. Closing the joints moves the bodies, so their speeds contain
+// the rounding of positions, divided by the step. Far from the origin the error therefore stops falling.
 bool System::dampers_done(double scale, double& before, int iteration) {
   const auto first = static_cast<int>(constraint_rows_.size()), last = static_cast<int>(rows_.size());
   FURROW_ASSERT(residual_.size() >= last, residual_.size(), last);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kPositionTolerance = 1e-12;  // m or rad, at the end of every step, or
 constexpr double kPositionRounding = 8.0;     // units of the last digit of the largest coordinate, if that is more
 constexpr double kVelocityTolerance = 4e-16;  // relative to the largest speed: iterate down to round-off
-constexpr double kVelocityLimit = 1e-9;       // relative to the largest speed, beyond it the constraints clash
+constexpr double kVelocityLimit = 1e-9;       // relative to the largest speed; above it constraints conflict
 constexpr int kMaxIterations = 60;
 constexpr int kCleaningIterations = 3;
 
@@ -156,8 +156,8 @@ Outcome System::move(double h) {
   return {};
 }
 
-// Quasi-Newton for φ(x₁(P), t₁) = 0: ∂φ/∂P = h G₁ M⁻¹ G₀ᵀ ≈ h S₀; the factor stays, each iteration gains
-// h|ω|.
+// Quasi-Newton for φ(x₁(P), t₁) = 0: ∂φ/∂P = h G₁ M⁻¹ G₀ᵀ ≈ h S₀; the factor is kept, and each iteration reduces the
+// error by h|ω|.
 Outcome System::solve_positions(double h, double end_time) {
   const int constraints = static_cast<int>(constraint_rows_.size());
   const int count = static_cast<int>(rows_.size());
@@ -190,14 +190,14 @@ Outcome System::solve_positions(double h, double end_time) {
   return failure("cannot satisfy its constraints", worst_row, worst);
 }
 
-/// Far from the origin positions are coarser than what constraints are met to near it.
+/// Far from the origin, the rounding of positions is larger than the tolerance of the constraints near it.
 double System::position_tolerance() const {
   double largest = 0.0;
   for (const Body& body : bodies_) largest = std::max(largest, body.state.position.cwiseAbs().maxCoeff());
   return std::max(kPositionTolerance, kPositionRounding * std::numeric_limits<double>::epsilon() * largest);
 }
 
-/// The largest speed that the bodies would have without constraints: what round-off is measured by where they keep the
+/// The largest speed that the bodies would have without constraints: the scale of round-off if the constraints hold the
 /// bodies at rest.
 double System::base_speed() const {
   double largest = 0.0;
@@ -250,9 +250,9 @@ Outcome System::solve_velocities(double end_time) {
   return {};
 }
 
-// Redundant rows leave P free by any N with Gᵀ N = 0, and round-off in the residuals feeds it. The motion does not
-// feel it, the reactions do: P' → P without N by the proximal-point iteration on (S + Σ)(P − P') from P' = 0, whose
-// residuals lie in the range of S.
+// With redundant rows, P is determined up to any N with Gᵀ N = 0, and round-off in the residuals makes N grow. N
+// changes the reactions but not the motion. The proximal-point iteration on (S + Σ)(P − P') from P' = 0, whose
+// residuals lie in the range of S, gives P' → P without N.
 void System::remove_null_impulses() {
   if (redundant_count_ == 0) return;
   const Eigen::VectorXd wanted = impulses_;
@@ -383,7 +383,7 @@ Outcome System::project_positions(double time) {
   return failure("cannot be assembled", worst_row, worst);
 }
 
-// Rank of G by a column-pivoted QR of its transpose; the columns left over name the redundant rows.
+// Rank of G by a column-pivoted QR of its transpose; the remaining columns are the redundant rows.
 void System::find_redundancy() {
   const int constraints = static_cast<int>(constraint_rows_.size());
   redundant_count_ = 0;

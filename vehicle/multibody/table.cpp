@@ -16,7 +16,8 @@ std::string text(double value) {
 }
 
 /// Slopes at the points for a monotone curve: the harmonic mean of the chords' slopes, weighted by the lengths of the
-/// intervals [Fritsch & Butland 1984, doi:10.1137/0905021], 0 where they differ in sign, the chord's own at the ends.
+/// intervals [Fritsch & Butland 1984, doi:10.1137/0905021], 0 if they differ in sign, the chord's own slope at the
+/// ends.
 std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
   const std::size_t n = x.size();
   std::vector<double> slopes(n);

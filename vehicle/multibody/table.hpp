@@ -1,4 +1,4 @@
-// A function given at points: between them straight lines, or cubic polynomials that rise and fall only where the
+// A function given at points. Between them it is straight or a cubic polynomial that rises and falls only where the
 // points do [Fritsch & Carlson 1980]. Its slope and its integral are exact, so that a force from a table has an energy.
 //
 // F. N. Fritsch, R. E. Carlson, Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17 (1980) 238–246,
@@ -12,12 +12,12 @@
 namespace furrow::vehicle {
 
 enum class TableCurve { linear, monotone_cubic };
-/// Beyond the first and last point: the value there, or the straight line with the slope there.
+/// Beyond the first and last point: the point's value, or the straight line with the point's slope.
 enum class TableEnd { constant, straight };
 
 class Table {
  public:
-  /// `name` is used in errors. @throws Error(physics) when there are less than two points, x does not rise or a value
+  /// `name` is used in errors. @throws Error(physics) when there are fewer than two points, x does not rise or a value
   /// is not finite
   Table(const std::string& name, std::vector<std::pair<double, double>> points, TableCurve curve = TableCurve::linear,
         TableEnd end = TableEnd::straight);

@@ -79,7 +79,7 @@ void DriveTrain::add_gears(System& system) {
       add_gear(system, gear.name, in, out, gear.ratio);
       continue;
     }
-    // A shaft with joints: the absolute speeds are equal, so that the carriers feel nothing of it.
+    // A shaft with joints: the absolute speeds are equal, so no torque acts on the carriers.
     const Vec3 axis = *system.pose(second.carrier).R * second.axis;
     system.add_rate_row({gear.name, {{out, 1.0}, {in, -1.0}}, {{first.carrier, second.carrier, axis, 1.0}}},
                         {.mode = RateMode::hold});

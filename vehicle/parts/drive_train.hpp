@@ -1,6 +1,6 @@
-// The driveline of a vehicle, built from its spec: shafts with what joins them, and what drives them. Reactions act on
-// the shafts' carriers: of engine, gearbox and gears on the chassis or an axle's housing, of wheel motors on what
-// carries the wheel's bearing.
+// The driveline of a vehicle, built from its spec: shafts, the parts that join them, and the drives. Reactions act on
+// the shafts' carriers: of engine, gearbox and gears on the chassis or an axle's housing, of wheel motors on the body
+// that holds the wheel's bearing.
 #pragma once
 
 #include <optional>
@@ -20,14 +20,14 @@ namespace furrow::vehicle {
 
 enum class Selector { drive, neutral, reverse };
 
-/// What a driver does.
+/// A driver's commands.
 struct VehicleInputs {
   double throttle = 0.0;  // 0 to 1; of wheel motors −1 to 1
   double brake = 0.0;     // 0 to 1
   double steering = 0.0;  // −1 to 1, left positive
   Selector selector = Selector::drive;
-  bool lock = false;  // of all differentials that can be
-  int gear = 0;       // forward gear to hold, from 1; 0: as the gearbox decides
+  bool lock = false;  // of all differentials that can be locked
+  int gear = 0;       // forward gear to hold, from 1; 0: the gearbox decides
 };
 
 class DriveTrain {
@@ -36,10 +36,11 @@ class DriveTrain {
   DriveTrain(System& system, const VehicleSpec& vehicle, int chassis, std::span<const Wheel> wheels);
 
   void set_inputs(System& system, const VehicleInputs& inputs);
-  /// Turns shafts and rotors as wheels do that spin like this, rad/s, in a forward gear from 1, or with 0 in the lowest
-  /// one that the gearbox would stay in. The engine idles at least. @pre before the first step; assemble() must follow
+  /// Turns shafts and rotors to match wheels with these spins, rad/s, in a forward gear from 1, or with 0 in the lowest
+  /// gear that the gearbox would keep. The engine turns at least at idle speed. @pre before the first step; assemble()
+  /// must follow
   void begin_rolling(System& system, std::span<const double> spins, int gear);
-  /// Before every step of size h: shifts, clutch.
+  /// To be called before every step of size h: operates shifts and clutch.
   Outcome advance(System& system, double h);
 
   /// Index of a shaft in the system. @pre there is one of this name
@@ -51,7 +52,7 @@ class DriveTrain {
   const std::optional<Gearbox>& gearbox() const { return gearbox_; }
   const std::vector<FrictionCoupling>& locks() const { return locks_; }
   const std::vector<WheelMotor>& motors() const { return motors_; }  // two for each axle that has them: left, right
-  /// Work of engine and motors since the start, J, and what converter, clutches and gearbox have taken.
+  /// Work of engine and motors since the start, J, and energy dissipated by converter, clutches and gearbox.
   double work(const System& system) const;
   double loss(const System& system) const;
 

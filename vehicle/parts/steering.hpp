@@ -1,7 +1,7 @@
-// The steering of an axle: what the tie rods' inner ends are on, and how it follows the steering wheel. The input s
-// runs from −1 (fully to the right) to 1 (fully to the left) and follows its target s* as
+// The steering of an axle: the body that holds the tie rods' inner ends, and its motion with the steering wheel. The
+// input s runs from −1 (fully to the right) to 1 (fully to the left) and follows its target s* as
 //   T² s″ + 2 T s′ + s = s*,
-// which is solved exactly, so that s and s′ are continuous whatever the step.
+// which is solved exactly, so that s and s′ are continuous for any step.
 #pragma once
 
 #include <memory>
@@ -35,9 +35,9 @@ class Steering {
   double coordinate(double time) const { return full_left_ * input(time).value; }
   /// The input and its rate at a time, s.
   Motion input(double time) const;
-  /// From `time` on. @pre −1 ≤ target ≤ 1
+  /// Sets the target from `time` on. @pre −1 ≤ target ≤ 1
   void set_target(double time, double target);
-  /// At rest at a value: for postures.
+  /// Sets the input at rest at a value, for postures.
   void put(double value);
 
   void save(Archive& archive) const;

@@ -1,4 +1,4 @@
-// Builds the bodies and joints of an axle into a system: from a spec to indices.
+// Adds the bodies and joints of an axle's spec to a system.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace furrow::vehicle {
 
-/// @param chassis body @param rods body that the tie rods' inner ends are on: the chassis, a link or a rack
+/// @param chassis body @param rods body that holds the tie rods' inner ends: the chassis, a link or a rack
 std::array<Wheel, 2> add_axle(System& system, const AxleSpec& axle, int index, int chassis, int rods,
                               const std::array<Wheel, 2>* host);
 

@@ -1,4 +1,4 @@
-// What the kinds of suspensions are built of, each by its own add_suspension() (vehicle/spec/suspension_spec.hpp):
+// Parts of the kinds of suspensions. Each kind has its own add_suspension() (vehicle/spec/suspension_spec.hpp):
 //
 //   double_wishbone  upright, spindle and two arms per side; a tie rod as a distance
 //   trailing_arm     arm and spindle per side
@@ -21,7 +21,7 @@ struct Kingpin {
   Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
 };
 
-/// A wheel's place in the system.
+/// Indices of a wheel's parts in the system.
 struct Wheel {
   std::string name;  // "front left"
   int axle = 0, side = kLeft;
@@ -29,17 +29,17 @@ struct Wheel {
       0;  // body that turns, with rim and, once added, tire; its centre of mass is the rim's centre, y the axle
   int carrier = 0;                   // body that the bearing sits in: upright, arm, housing or chassis
   int bearing = 0;                   // joint
-  bool travels = true;               // has a spring's freedom of its own
+  bool travels = true;               // has its own freedom on a spring
   std::optional<int> spring, shock;  // force elements
   std::optional<Kingpin> kingpin;
   const CornerSpec* corner = nullptr;
 };
 
-/// An axle under construction. What is built sets the wheels' carriers, spindles, bearings and struts.
+/// An axle under construction. Each add_suspension() sets the wheels' carriers, spindles, bearings and struts.
 struct AxleBuild {
   System& system;
   const AxleSpec& axle;
-  int chassis = 0, rods = 0;                   // bodies: the chassis, and what the tie rods' inner ends are on
+  int chassis = 0, rods = 0;                   // bodies: the chassis, and the holder of the tie rods' inner ends
   const std::array<Wheel, 2>* host = nullptr;  // wheels of the axle that carries these wheels' bearings
   std::array<Wheel, 2> wheels;                 // left, right
 };
@@ -49,15 +49,15 @@ int add_joint(System& system, JointKind kind, const std::string& name, int a, in
               const Vec3& axis = Vec3::UnitZ());
 void add_rod(System& system, const std::string& name, int a, int b, const Vec3& point_a, const Vec3& point_b);
 
-/// The body that turns, rim included, in the wheel's carrier.
+/// Adds the body that turns in the wheel's carrier, including the rim.
 void add_spindle(System& system, Wheel& wheel, const SpindleSpec& spindle);
 
-/// Parts of one side by the names that files give them.
+/// A part of one side, with its name in files.
 struct Part {
   const char* name;
   int body;
 };
-/// Spring and shock absorber between the chassis and one of the parts, the first one unless the spec says otherwise.
+/// Adds spring and shock absorber between the chassis and one of the parts, by default the first.
 void add_struts(AxleBuild& build, Wheel& wheel, const std::optional<SpringSpec>& spring,
                 const std::optional<ShockSpec>& shock, std::initializer_list<Part> parts);
 

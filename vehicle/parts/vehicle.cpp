@@ -33,7 +33,7 @@ Vehicle::Vehicle(const VehicleSpec& spec, const Vec3& gravity) : spec_(spec), sy
                         "' holds what others hold already, expected joints that leave the wheels their travel");
 }
 
-// Axles whose wheels sit on the arms of others come after these.
+// Axles whose wheels are on the arms of other axles come after those.
 void Vehicle::add_axles() {
   wheels_.resize(2 * spec_.axles.size());
   steerings_.resize(spec_.axles.size());

@@ -1,5 +1,5 @@
-// A vehicle: a multibody system built from its spec, with names for what others hold on to. Tires and soil are not
-// part of it; each tire gives a wrench on its rim and receives the rim's motion.
+// A vehicle: a multibody system built from its spec, with access to its parts. Tires and soil are not part of it; each
+// tire exerts a wrench on its rim and receives the rim's motion.
 #pragma once
 
 #include <memory>
@@ -17,10 +17,10 @@ namespace furrow::vehicle {
 
 class Vehicle {
  public:
-  /// Drawn: in the vehicle's frame, at rest, the engine idling.
-  /// @throws Error(physics) naming a joint that cannot be met or is redundant
+  /// Builds the vehicle as drawn: in the vehicle's frame, at rest, the engine idling.
+  /// @throws Error(physics) naming a joint that cannot be closed or is redundant
   explicit Vehicle(const VehicleSpec& spec, const Vec3& gravity = standard_gravity());
-  Vehicle(const Vehicle&) = delete;  // the system's laws know its parts
+  Vehicle(const Vehicle&) = delete;  // the system's laws refer to its parts
   Vehicle& operator=(const Vehicle&) = delete;
 
   const VehicleSpec& spec() const { return spec_; }
@@ -33,26 +33,26 @@ class Vehicle {
     FURROW_ASSERT(in_range(k, wheels_.size()), k, wheels_.size());
     return wheels_[k];
   }
-  /// Of each axle; none where it is not steered.
+  /// Steering of an axle; none if it is not steered.
   std::optional<Steering>& steering(int axle) { return steerings_[axle]; }
   const std::optional<Steering>& steering(int axle) const { return steerings_[axle]; }
   DriveTrain& drive() { return *drive_; }
   const DriveTrain& drive() const { return *drive_; }
-  /// Of each wheel; none where it has none.
+  /// Brake of a wheel; none if it has none.
   const std::optional<FrictionCoupling>& brake(int wheel) const { return brakes_[wheel]; }
 
   double mass() const;  // with the tires added, kg
   /// Origin of the vehicle's frame now, m, W.
   Vec3 origin() const;
-  /// Freedoms: of bodies and shafts less those that joints, motors and gears hold.
+  /// Number of freedoms: of bodies and shafts, minus those that joints, motors and gears hold.
   int freedoms() const;
 
   /// Adds a tire's rigid-body mass properties to the rim of wheel k.
   void add_tire_mass(int wheel, const MassProperties& tire);
   RimState rim(int wheel) const;
-  /// On the rim by the tire, about the rim's centre, W; held until changed.
+  /// Sets the tire's wrench on the rim, about the rim's centre, W, until changed.
   void set_wrench(int wheel, const Wrench& wrench);
-  /// Held until changed. @pre within their ranges
+  /// Sets the inputs until changed. @pre they are within their ranges
   void set_inputs(const VehicleInputs& inputs);
   /// Moves everything by a displacement, m.
   void move(const Vec3& by);

@@ -1,6 +1,6 @@
-// Where the energy of a vehicle is and went, each entry from its own account: bodies and springs from their state,
-// drives, clutches, brakes and shock absorbers from impulse times the mean of the speeds
-// before and after it (system.hpp).
+// The energies of a vehicle and the works on it, each computed on its own. Energies of bodies and springs follow from
+// their state. Works of drives, clutches, brakes and shock absorbers are impulse times the mean of the speeds before
+// and after it (system.hpp).
 #pragma once
 
 #include "protocol/core/fields.hpp"
@@ -16,7 +16,7 @@ struct VehicleEnergy {
   double drive_work = 0.0;      // of engine, with its drag, and motors
   double converter_heat = 0.0;  // of the fluid
   double clutch_heat = 0.0;     // of clutch and locks
-  double shift_heat = 0.0;      // what changes of gear took
+  double shift_heat = 0.0;      // dissipated by changes of gear
   double brake_heat = 0.0;
   double shock_heat = 0.0;
 

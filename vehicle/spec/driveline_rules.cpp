@@ -80,7 +80,7 @@ void check_spec(const DrivelineSpec& s, const JsonReader& reader) {
 
 namespace {
 
-/// Shafts by name, what joins them, and the rows in speeds that do so without slip.
+/// Named shafts, the parts that join them, and the rows in speeds that join them without slip.
 class ShaftGraph {
  public:
   ShaftGraph(const VehicleSpec& vehicle, const JsonReader& reader)
@@ -128,7 +128,7 @@ class ShaftGraph {
   }
   void join(int a, int b) { parent_[root(a)] = root(b); }
 
-  /// Adds a row in speeds; false when the rows before it say it already.
+  /// Adds a row in speeds; false if it follows from earlier rows.
   bool independent(std::vector<std::pair<int, double>> terms) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<int>(names_.size()));
     for (const auto& [index, factor] : terms) row[index] += factor;
@@ -190,7 +190,7 @@ class ShaftGraph {
       reader_.fail(key, "'" + d.name + "' closes a loop of gears, expected a train without loops");
   }
 
-  /// An output that nothing takes on runs free and leaves no torque to the other one.
+  /// Refuses an output that is not joined: it runs free, so the other output gets no torque.
   void check_outputs() const {
     std::multiset<std::string> used;
     const auto use = [&](const auto& part) { used.insert(part.in), used.insert(part.out); };

@@ -1,4 +1,4 @@
-// What a vehicle file says of its driveline: shafts by name, and what joins them. Tables of speeds are in rpm.
+// The driveline of a vehicle file: named shafts, and the parts that join them. Tables of speeds are in rpm.
 #pragma once
 
 #include <optional>
@@ -58,7 +58,7 @@ void visit_fields(FieldsOf<ConverterSpec> auto& s, auto&& visit) {
   visit(s.torque_ratio, needed("torque_ratio", "-", keys::kTable, "Pairs of speed ratio, 0 to 1, and torque ratio."));
 }
 
-/// A friction clutch that closes with the speed of its input, as a centrifugal one does.
+/// A friction clutch that closes with the speed of its input, like a centrifugal clutch.
 struct ClutchSpec {
   static constexpr SchemaName kSchema{"clutch", "A friction clutch that closes with the speed of its input."};
   std::string in, out;                      // shafts

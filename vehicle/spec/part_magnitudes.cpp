@@ -17,17 +17,17 @@ namespace {
 
 constexpr double kMostGyration = 1.5;  // radius, of the largest distance between wheels
 constexpr double kLeastRate = 0.05,
-                 kMostRate = 200;   // of a shock absorber, its coefficient over the mass, 1/s
+                 kMostRate = 200;   // of a shock absorber: coefficient over mass, 1/s
 constexpr double kMostLever = 2.0;  // of a torque, over the weight, m
 constexpr double kLeastBrake = 0.002,
-                 kMostBrake = 1.0;        // the same of one wheel's brake, m
-constexpr double kMostShaft = 0.1;        // of a shaft, its inertia over the mass, m²
+                 kMostBrake = 1.0;        // of one wheel's brake, over the weight, m
+constexpr double kMostShaft = 0.1;        // of a shaft: inertia over mass, m²
 constexpr double kMostWheelAngle = 10.0;  // camber and toe, degrees
 constexpr double kLeastLock = 2.0;        // of a Pitman arm, degrees
 
 using Oddities = std::vector<std::pair<std::string, std::string>>;
 
-/// Calls call(key, part) for every struct of a part, the part itself first.
+/// Calls call(key, part) for every struct in a part, the part itself first.
 template <class T, class Call>
 void each_part(const std::string& key, const T& part, const Call& call) {
   if constexpr (HasFields<T>) {
@@ -40,7 +40,7 @@ void each_part(const std::string& key, const T& part, const Call& call) {
   }
 }
 
-/// The same for all parts of a vehicle but those of its driveline, as call(key of the left side, key, part).
+/// Calls call(key of the left side, key, part) for all parts of a vehicle except its driveline.
 template <class Call>
 void each_part_of(const VehicleSpec& spec, const Call& call) {
   each_part("chassis", spec.chassis, [&](const std::string& key, const auto& part) { call(key, key, part); });
@@ -64,7 +64,7 @@ class PartMagnitudes {
  public:
   PartMagnitudes(double mass, double size) : mass_(mass), size_(size) {}
 
-  /// @param mirrored the key of the left side's part, with which the right side's says the same once
+  /// @param mirrored the key of the left side's part; equal oddities of the right side are reported once
   template <class T>
   void look(const std::string& mirrored, const std::string& key, const T& part) {
     mirrored_ = mirrored;

@@ -1,5 +1,5 @@
-// Values of bodies, shock absorbers, brakes, wheels and steerings that no rule forbids, but that are hardly meant: each
-// is compared with the mass and the size of the whole vehicle.
+// Values of bodies, shock absorbers, brakes, wheels and steerings that no rule forbids but that are hardly intended.
+// Each is compared with the mass and the size of the whole vehicle.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace furrow::vehicle {
 
-/// Keys, and what is odd about their values. The right side is named where it is odd in another way than the left one.
+/// Keys, and what is odd about their values. The right side is listed only if its problem differs from the left side's.
 /// @param mass of the whole vehicle without tires, kg
 /// @pre mass > 0
 std::vector<std::pair<std::string, std::string>> unlikely_parts(const VehicleSpec& spec, double mass);
@@ -18,8 +18,8 @@ std::vector<std::pair<std::string, std::string>> unlikely_parts(const VehicleSpe
 /// Key of the heaviest body, and its mass, kg.
 std::pair<std::string, double> heaviest_body(const VehicleSpec& spec);
 
-/// Refuses a vehicle that is hopelessly heavy for a tire, by the key of its heaviest body.
-/// @param mass of the whole vehicle, kg @param most that the tire never carries, N
+/// Refuses a vehicle that is much too heavy for a tire, with the key of its heaviest body.
+/// @param mass of the whole vehicle, kg @param most load that the tire cannot carry, N
 /// @throws Error(bad_input)
 void check_load(const VehicleSpec& spec, double mass, const std::string& tire, double most);
 

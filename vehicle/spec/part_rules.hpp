@@ -1,4 +1,4 @@
-// Rules that kinds of suspensions have in common.
+// Rules shared by the kinds of suspensions.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace furrow::vehicle {
 
-inline constexpr double kSamePoint = 1e-6;  // m, up to which two points are one
+inline constexpr double kSamePoint = 1e-6;  // m, up to which two points coincide
 
 // Each @throws Error(bad_input) naming file, key and what was expected.
 void check_apart(const JsonReader& reader, const char* key, const Vec3& point, const char* other_key,
                  const Vec3& other);
-/// The parts that spring and shock absorber may end on.
+/// Checks that spring and shock absorber end on one of the given parts.
 void check_struts(const JsonReader& reader, const std::optional<SpringSpec>& spring,
                   const std::optional<ShockSpec>& shock, const std::vector<std::string>& parts);
 

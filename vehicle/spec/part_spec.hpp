@@ -1,5 +1,5 @@
-// Parts of which a vehicle file makes suspensions. Points are in m, in the vehicle's frame: x forward, y left, z up. A
-// file gives them from the origin of their axle; the reader adds it. Every Vec3 in here is a point.
+// Parts of the suspensions in a vehicle file. Points are in m, in the vehicle's frame: x forward, y left, z up. A file
+// gives them relative to the origin of their axle; the reader adds this origin. Every Vec3 in this header is a point.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ void visit_fields(FieldsOf<BodySpec> auto& s, auto&& visit) {
   visit(s.inertia, keys::kInertia);
 }
 
-/// What turns with the wheel, without the wheel; its centre of mass is the wheel's centre.
+/// The parts that turn with the wheel, without the wheel. Their centre of mass is the wheel's centre.
 struct SpindleSpec {
   static constexpr SchemaName kSchema{"spindle", "The hub and what turns with it, without rim and tire."};
   Vec3 center = Vec3::Zero();   // m
@@ -49,8 +49,8 @@ void visit_fields(FieldsOf<SpindleSpec> auto& s, auto&& visit) {
   visit(s.toe_deg, key("toe_deg", "deg", above(-45).below(45), "Toe of the drawn wheel; positive: toe-in."));
 }
 
-/// Hinged to the chassis, with a ball at the upright. Its inertia is in axes of its own: x along the hinge from back to
-/// front, z normal to the plane of its three points, upward.
+/// An arm with a hinge on the chassis and a ball at the upright. Its inertia is in its own axes: x along the hinge from
+/// back to front, z normal to the plane of its three points, upward.
 struct ArmSpec {
   static constexpr SchemaName kSchema{"arm",
                                       "An arm that is hinged to the chassis, with a ball at the upright. Its inertia "
@@ -72,7 +72,7 @@ void visit_fields(FieldsOf<ArmSpec> auto& s, auto&& visit) {
   visit(s.upright, needed("upright", "m", keys::kPoint, "Ball joint at the upright, from the axle's origin."));
 }
 
-/// A massless rod; its inner end is on the steering link or the rack, of an axle that is not steered on the chassis.
+/// A massless rod. Its inner end is on the steering link or the rack, or on the chassis if the axle is not steered.
 struct TieRodSpec {
   static constexpr SchemaName kSchema{"tie_rod",
                                       "A massless rod. Its inner end is on the steering link or the rack, or on the "
@@ -84,12 +84,12 @@ void visit_fields(FieldsOf<TieRodSpec> auto& s, auto&& visit) {
   visit(s.outer, needed("outer", "m", keys::kPoint, "Outer end on the upright, from the axle's origin."));
 }
 
-/// Acts beyond `shortest` and `longest`, added to the spring.
+/// A stop that acts beyond `shortest` and `longest`, in addition to the spring.
 struct StopSpec {
   static constexpr SchemaName kSchema{"stop",
                                       "Stops that act below one length and above another, in addition to the spring."};
   double shortest = 0.0, longest = 0.0;  // m
-  Points force;                          // N against m beyond the mark
+  Points force;                          // N against m beyond these lengths
 };
 void visit_fields(FieldsOf<StopSpec> auto& s, auto&& visit) {
   using namespace allowed;
@@ -99,7 +99,7 @@ void visit_fields(FieldsOf<StopSpec> auto& s, auto&& visit) {
                         "Pairs of length beyond the mark, m, and force, N; begins with [0, 0] and rises."));
 }
 
-/// A coil spring: either a rate or a table of force against deflection, which is an odd function.
+/// A coil spring, with a rate or a table of force against deflection; the table is continued as an odd function.
 struct SpringSpec {
   static constexpr SchemaName kSchema{
       "spring", "A spring between the chassis and a part of the suspension; one of rate and force."};

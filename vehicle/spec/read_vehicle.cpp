@@ -24,7 +24,7 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kMostAxles = 16;
 
-/// What an axle's right side has otherwise than the left.
+/// Keys of an axle's right side that differ from the left.
 struct RightKeys {
   static constexpr SchemaName kSchema{"right",
                                       "Parts of the right side that are not the mirror image of the left side."};
@@ -75,7 +75,7 @@ void check_side(const JsonReader& reader, const SuspensionSpec& suspension, int 
                 fmt::format("lies at y = {}, expected a point on the {}", number_text(y), kSideNames[side]));
 }
 
-/// The right side, as the left but for what `right` says. @param reader of the axle
+/// The right side: the left side with the changes of `right`. @param reader of the axle
 CornerSpec right_corner(const AxleKeys& axle, JsonReader reader) {
   CornerSpec corner;
   corner.suspension =
@@ -106,7 +106,7 @@ AxleSpec read_axle(const JsonReader& reader) {
   axle.corners[kLeft] = {moved(keys.suspension, keys.origin), keys.wheel, keys.brake};
   axle.corners[kRight] = right_corner(keys, reader);
   if (!keys.steering) return axle;
-  // A Pitman arm's points are in axes of its own, its origin is in the vehicle's.
+  // A Pitman arm's points are in its own axes, its origin in the vehicle's frame.
   axle.steering =
       std::holds_alternative<RackSpec>(*keys.steering) ? moved(*keys.steering, keys.origin) : *keys.steering;
   if (!can(kHasTieRods, keys.suspension))
@@ -115,7 +115,7 @@ AxleSpec read_axle(const JsonReader& reader) {
   return axle;
 }
 
-/// Results write a name as one word.
+/// Checks that names also differ as one word, since results write them so.
 void check_name(const VehicleSpec& vehicle, const std::string& name, const JsonReader& reader, const std::string& key) {
   const auto word = [](std::string text) {
     std::replace(text.begin(), text.end(), ' ', '_');
@@ -129,7 +129,7 @@ void check_name(const VehicleSpec& vehicle, const std::string& name, const JsonR
                                                "' where results write it as one word, expected another name");
 }
 
-/// An axle whose wheels sit on the arms of another.
+/// Checks axles whose wheels are on the arms of another axle.
 void check_hosts(const VehicleSpec& vehicle, const JsonReader& reader) {
   for (std::size_t k = 0; k < vehicle.axles.size(); ++k) {
     const auto* fixed = std::get_if<FixedSpec>(&vehicle.axles[k].corners[kLeft].suspension);
@@ -193,7 +193,7 @@ nlohmann::ordered_json vehicle_schema() {
   list["items"] = writer.reference<AxleKeys>();
   add_key(root, axles, list);
   add_key(root, key("driveline"), writer.reference<DrivelineSpec>());
-  // null takes the brake of the left side away.
+  // null removes the brake of the left side.
   Json& brake = writer.definitions["right"]["properties"]["brake"];
   brake = {{"oneOf", {brake, {{"type", "null"}}}}, {"description", "Brake of the right wheel. null: none."}};
   root["definitions"] = writer.definitions;

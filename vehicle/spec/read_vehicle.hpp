@@ -1,5 +1,5 @@
-// Reads vehicle files (data/vehicle.schema.json describes them). The left side is given, the right side is its mirror
-// image unless the axle's key `right` says otherwise. Tire files are named, not read.
+// Reads vehicle files (data/vehicle.schema.json describes them). Files describe the left side; the right side is its
+// mirror image unless the axle has the key `right`. Tire files are not read.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// How fast each shaft of a driveline turns for one turn of its engine.
+// Speeds of a driveline's shafts for one turn of its engine.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace furrow::vehicle {
 
-/// In the order of the shafts, at engine speed 1 in a forward gear, counted from 0, with converter and clutch closed; 0
-/// where nothing reaches a shaft. @pre there is an engine
+/// Speeds in the order of the shafts, at engine speed 1 in a forward gear, counted from 0, with converter and clutch
+/// closed; 0 for a shaft that the engine does not drive. @pre there is an engine
 std::vector<double> shaft_speeds(const DrivelineSpec& line, std::size_t gear);
 
 }  // namespace furrow::vehicle

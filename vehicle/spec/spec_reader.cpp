@@ -8,7 +8,7 @@
 namespace furrow::vehicle::detail {
 namespace {
 
-constexpr double kMostCoordinate = 100.0;  // m: the longest vehicles are half of it
+constexpr double kMostCoordinate = 100.0;  // m: twice the longest vehicles
 
 }  // namespace
 

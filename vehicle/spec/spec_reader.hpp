@@ -1,6 +1,6 @@
-// Reads the structs of files of vehicles and drivers by their lists of keys, each checked as its key says, and then by
-// check_spec(), which the caller of read_spec() declares for each struct. Complaints are JsonReader's: file, key, what
-// was expected.
+// Reads the structs of vehicle and driver files by their lists of keys. Each value is checked by its key, and then each
+// struct by check_spec(), which the caller of read_spec() declares for it. JsonReader reports errors with file, key and
+// the expected value.
 #pragma once
 
 #include <concepts>
@@ -36,7 +36,7 @@ void take(JsonReader& reader, const Key& key, std::vector<std::string>& value);
 /// The path of one entry of a list: "gears[2]".
 std::string entry_path(const std::string& list, std::size_t index);
 
-/// Refuses the text under `type`, none of `types`.
+/// Refuses the text under `type`, which is not one of `types`.
 [[noreturn]] void refuse_type(JsonReader& reader, const std::vector<std::string>& types);
 
 template <HasFields T>
@@ -70,7 +70,7 @@ void take(JsonReader& reader, const Key& key, std::optional<T>& value) {
 
 }  // namespace detail
 
-/// Takes the keys of T, except those with the role role::by_hand; the reader may have others besides.
+/// Takes the keys of T, except those with the role role::by_hand; the reader may have further keys.
 template <HasFields T>
 void take_fields(JsonReader& reader, T& target) {
   visit_fields(target, [&](auto& value, const Key& key) {

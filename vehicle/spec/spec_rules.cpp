@@ -13,9 +13,9 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kMostGyration = 100.0;  // radius of gyration of a body, m: that of points from their origin
+constexpr double kMostGyration = 100.0;  // radius of gyration of a body, m: as large as coordinates may be
 
-// A body has moments of inertia of which none is larger than the sum of the other two; equal for flat bodies.
+// No principal moment of inertia of a body is larger than the sum of the other two; flat bodies have equality.
 void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
   const Vec3 J = Eigen::SelfAdjointEigenSolver<Mat3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(J.x() > 0.0))
@@ -36,7 +36,7 @@ void check_length(const JsonReader& reader, double shortest, double longest) {
                 fmt::format("is {}, expected more than shortest, {}", number_text(longest), number_text(shortest)));
 }
 
-/// Forces that rise with what they are given against.
+/// Checks that forces rise with their argument.
 void check_rising(const JsonReader& reader, const char* key, const Points& points) {
   for (std::size_t i = 1; i < points.size(); ++i)
     if (!(points[i].second > points[i - 1].second))
@@ -45,7 +45,7 @@ void check_rising(const JsonReader& reader, const char* key, const Points& point
                               number_text(points[i - 1].second)));
 }
 
-/// The part that a spring or shock absorber ends on.
+/// Checks the part that a spring or shock absorber ends on.
 void check_part(const JsonReader& reader, const char* strut, const std::optional<std::string>& on,
                 const std::vector<std::string>& parts) {
   if (!on || std::find(parts.begin(), parts.end(), *on) != parts.end()) return;

@@ -1,5 +1,5 @@
-// What must hold within each struct of a vehicle file, besides the types of its values. What several of them must agree
-// on is in read_vehicle.cpp and driveline_rules.cpp.
+// Rules for the values within each struct of a vehicle file. Rules across structs are in read_vehicle.cpp and
+// driveline_rules.cpp.
 #pragma once
 
 #include "protocol/files/json_reader.hpp"
@@ -37,7 +37,7 @@ void check_spec(const DifferentialSpec&, const JsonReader&);
 void check_spec(const MotorSpec&, const JsonReader&);
 void check_spec(const DrivelineSpec&, const JsonReader&);
 
-/// What several shafts of a driveline must agree on: names, carriers, loops, wheels.
+/// Checks rules across the shafts of a driveline: names, carriers, loops, wheels.
 void check_driveline(const VehicleSpec& vehicle, const JsonReader& driveline);
 
 }  // namespace furrow::vehicle

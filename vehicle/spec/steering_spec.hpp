@@ -1,4 +1,4 @@
-// What a vehicle file says of the steering of an axle. Points are in m.
+// The steering of an axle in a vehicle file. Points are in m.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 namespace furrow::vehicle {
 
 /// An arm on the chassis and an idler carry a link between them; the tie rods' inner ends are on the link. Points are
-/// from `origin` in axes that are pitched about y (x downward for a positive angle), in
-/// which arm and idler turn about z.
+/// relative to `origin` in axes that are pitched about y (x downward for a positive angle); arm and idler turn about z
+/// of these axes.
 struct PitmanArmSpec {
   static constexpr SchemaName kSchema{"pitman_arm",
                                       "An arm and an idler on the chassis with a link between them. Points are from "
@@ -40,7 +40,8 @@ void visit_fields(FieldsOf<PitmanArmSpec> auto& s, auto&& visit) {
   visit(s.response_time, keys::kResponseTime);
 }
 
-/// A rack that slides along y in the chassis; the tie rods' inner ends are on it. Points are from the axle's origin.
+/// A rack that slides along y in the chassis; the tie rods' inner ends are on it. Points are relative to the axle's
+/// origin.
 struct RackSpec {
   static constexpr SchemaName kSchema{"rack", "A rack that slides along y."};
   static constexpr const char* kType = "rack";

@@ -1,4 +1,4 @@
-// What a kind of suspension can do for other parts, by the members that it has.
+// Abilities of a kind of suspension, derived from its members.
 #pragma once
 
 #include <string>
@@ -11,15 +11,15 @@
 
 namespace furrow::vehicle {
 
-/// Can be steered.
+/// The kind can be steered.
 inline constexpr auto kHasTieRods = []<class Spec>(const Spec&) {
   return requires(Spec s) { s.tie_rod; };
 };
-/// Is one for both sides, and carries shafts.
+/// The kind has one housing for both sides, which carries shafts.
 inline constexpr auto kHasHousing = []<class Spec>(const Spec&) {
   return requires(Spec s) { s.housing; };
 };
-/// Can carry the bearings of another axle.
+/// The kind can carry the bearings of another axle.
 inline constexpr auto kHasArms = []<class Spec>(const Spec&) {
   return requires(Spec s) { s.arm; };
 };

@@ -1,5 +1,5 @@
-// What a vehicle file says of suspensions, wheels and brakes, in the frame of part_spec.hpp. A new kind of suspension
-// has a header of its own, and its name in SuspensionSpec.
+// Suspensions, wheels and brakes of a vehicle file, in the frame of part_spec.hpp. A new kind of suspension has its own
+// header, and its name in SuspensionSpec.
 #pragma once
 
 #include <optional>
@@ -37,7 +37,7 @@ void visit_fields(FieldsOf<DoubleWishboneSpec> auto& s, auto&& visit) {
 void add_suspension(AxleBuild& build, const Sides<DoubleWishboneSpec>& sides);
 
 /// An arm that is hinged to the chassis about the line through its two pivots and carries the wheel's bearing:
-/// trailing, semi-trailing, or without a spring one half of a walking beam (see FixedSpec).
+/// trailing, semi-trailing, or, without a spring, half of a walking beam (see FixedSpec).
 struct TrailingArmSpec {
   static constexpr SchemaName kSchema{
       "trailing_arm",
@@ -64,7 +64,7 @@ struct LinkSpec {
   static constexpr SchemaName kSchema{"link", "A massless rod between the chassis and the axle."};
   std::string name;
   Vec3 chassis = Vec3::Zero(), axle = Vec3::Zero();  // m
-  bool mirrored = true;                              // there is one on the right, too
+  bool mirrored = true;                              // whether the right side has one, too
 };
 void visit_fields(FieldsOf<LinkSpec> auto& s, auto&& visit) {
   using namespace allowed;
@@ -117,7 +117,7 @@ struct WheelSpec {
   double mass = 0.0;            // rim without tire, kg
   Mat3 inertia = Mat3::Zero();  // about the wheel's centre, kg m², y along the spin axis
   std::string tire;             // name of a tire file
-  bool rigid = false;           // the tire is not to deform
+  bool rigid = false;           // whether the tire is kept rigid
 };
 void visit_fields(FieldsOf<WheelSpec> auto& s, auto&& visit) {
   using namespace allowed;
@@ -127,7 +127,7 @@ void visit_fields(FieldsOf<WheelSpec> auto& s, auto&& visit) {
   visit(s.rigid, key("rigid", "", "The tire does not deform."));
 }
 
-/// Dry friction between the spindle and what carries its bearing.
+/// Dry friction between the spindle and the body that holds its bearing.
 struct BrakeSpec {
   static constexpr SchemaName kSchema{"brake", "Dry friction between the spindle and what carries its bearing."};
   double torque = 0.0;  // with the pedal fully down, N m

@@ -1,4 +1,4 @@
-// Rules for the entries of lists in files of vehicles and drivers, each with the same words wherever it is broken.
+// Rules for the entries of lists in vehicle and driver files, each with one message.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace furrow::vehicle {
 
 // Each @throws Error(bad_input) naming file, key, value and what was expected.
 void check_positive(const JsonReader& reader, const std::string& key, double value);
-/// Of the parts of a list, each with a `name`. @throws Error(bad_input) naming the second of two that are alike
+/// Checks that the parts of a list have different `name`s. @throws Error(bad_input) naming the second of two equal ones
 template <class Part>
 void check_names_once(const JsonReader& reader, const char* list, const std::vector<Part>& parts) {
   std::set<std::string> names;

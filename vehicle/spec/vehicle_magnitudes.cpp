@@ -25,7 +25,7 @@ constexpr double kMostFirst = 0.5;      // speed of the wheels over that of the 
 constexpr double kLeastGyration = 0.05,
                  kMostGyration = 1.5;  // radius, of the largest distance between wheels
 
-/// Of the gearbox's input, rpm; none where gears lie between it and the engine.
+/// Highest speed of the gearbox's input, rpm; none if there are gears between it and the engine.
 std::optional<double> highest_speed(const DrivelineSpec& driveline) {
   if (!driveline.engine || !driveline.gearbox) return std::nullopt;
   const std::string &from = driveline.engine->shaft, &to = driveline.gearbox->in;
@@ -34,7 +34,7 @@ std::optional<double> highest_speed(const DrivelineSpec& driveline) {
   return highest_speed(*driveline.engine);
 }
 
-/// The first gear, counted from 1, whose change up leads below the mark for a change down; 0: there is none.
+/// The first gear, counted from 1, whose upshift leads below the speed of the next downshift; 0: none.
 std::size_t hunting_gear(const GearboxSpec& box) {
   for (std::size_t k = 0; k + 1 < box.ratios.size(); ++k)
     if (box.ratios[k + 1] > box.ratios[k] && box.up_rpm * box.ratios[k] / box.ratios[k + 1] < box.down_rpm)
@@ -42,7 +42,7 @@ std::size_t hunting_gear(const GearboxSpec& box) {
   return 0;
 }
 
-/// Gears whose ratios or time for a change are hardly meant; keys below `driveline`.
+/// Gears whose ratios or shift time are hardly intended; keys below `driveline`.
 std::vector<std::pair<std::string, std::string>> unlikely_gears(const GearboxSpec& box) {
   std::vector<std::pair<std::string, std::string>> odd;
   if (std::adjacent_find(box.ratios.begin(), box.ratios.end(), std::greater_equal<>()) != box.ratios.end())
@@ -87,7 +87,7 @@ std::vector<std::pair<std::string, std::string>> unlikely_drives(const Driveline
   return odd;
 }
 
-/// An axle whose wheels the engine turns against those of the first one, in the lowest gear; empty: there is none.
+/// An axle whose wheels the engine turns opposite to the first axle's, in the lowest gear; empty if there is none.
 std::string against_the_first(const DrivelineSpec& line) {
   if (!line.engine) return {};
   const std::vector<double> speeds = shaft_speeds(line, 0);
@@ -105,7 +105,7 @@ std::string against_the_first(const DrivelineSpec& line) {
   return {};
 }
 
-/// A first gear in which the wheels turn almost as fast as the engine; empty: it has none such.
+/// A first gear in which the wheels turn almost as fast as the engine; empty if there is none.
 std::string too_fast(const DrivelineSpec& line) {
   if (!line.engine) return {};
   const std::vector<double> speeds = shaft_speeds(line, 0);

@@ -63,7 +63,7 @@ void for_each_vector(T& value, const Call& call) {
     if (value) for_each_vector(*value, call);
 }
 
-/// The same at the other side of the vehicle: y changes its sign.
+/// The mirror image at the other side of the vehicle: y changes its sign.
 template <class T>
 T mirrored(T value) {
   struct Mirror {
@@ -76,7 +76,7 @@ T mirrored(T value) {
   return value;
 }
 
-/// With all points moved by `by`, m.
+/// A copy with all points moved by `by`, m.
 template <class T>
 T shifted(T value, const Vec3& by) {
   struct Shift {

@@ -25,7 +25,7 @@ namespace furrow::calibrate::testing {
 
 using Curve = std::function<double(double x, std::span<const double> parameters)>;
 
-/// One fitted target y(x) of a function; a value that is not finite is no answer.
+/// One fitted target y(x) of a function; a value that is not finite counts as no answer.
 class CurveModel final : public CalibrationModel {
  public:
   CurveModel(Curve curve, std::vector<double> x, std::vector<double> y, double sigma) : curve_(std::move(curve)) {
@@ -60,7 +60,7 @@ inline const CalibrationKind& curve_kind() {
   return kind;
 }
 
-/// A study of such a model; the digest is of its data.
+/// A study of such a model; the digest covers its data.
 inline Calibration study_of(Curve curve, std::vector<double> x, std::vector<double> y,
                             std::vector<Parameter> parameters, int starts = 1, double sigma = 1.0) {
   Calibration c;
@@ -90,7 +90,7 @@ inline std::vector<double> steps(double from, double to, int count) {
 class StudyTest : public ::testing::Test {
  protected:
   using json = nlohmann::ordered_json;  // parameters in the order of the file
-  /// Where a study is changed, to what, and what is said of it.
+  /// Key of a study, its wrong value, and part of the message.
   using Wrong = std::vector<std::tuple<const char*, json, const char*>>;
 
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_.path() / name) << text; }

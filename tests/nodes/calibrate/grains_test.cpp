@@ -1,5 +1,4 @@
-// Grains fitted to the strength of a soil: what is wrong with such studies, and that a prediction is what the soil
-// tests give.
+// Grains fitted to the strength of a soil: errors of such studies, and agreement of predictions with the soil tests.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -96,7 +95,7 @@ TEST_F(CalibrateGrains, wrong_studies_are_refused_with_file_and_key) {
            {{{"quantity", "cohesion_Pa"}, {"value", 1.0}, {"sigma", 1.0}}},
            "key 'held_out[0].quantity': is cohesion_Pa a second time"},
       });
-  // The keys are those of this kind alone.
+  // Only the keys of this kind are allowed.
   for (const char* key : {"set", "tests", "evaluations"}) {
     json study{{"calibrate", "ring"}, {key, 1}};
     EXPECT_TRUE(holds(complaint(study), std::string("key '") + key + "': is unknown")) << key;
@@ -111,12 +110,12 @@ TEST_F(CalibrateGrains, a_K_below_what_grains_of_the_size_have_is_told_and_not_f
   EXPECT_TRUE(holds(c.model->notes()[0], "janosi_K_m of 2 mm cannot be reached with grains of 20 mm diameter"));
   EXPECT_EQ(c.model->targets(TargetSet::fitted).size(), 2u);
   EXPECT_EQ(c.model->targets(TargetSet::held_out).size(), 1u);
-  // Where too few are left, it is told why.
+  // If too few are left, the message gives the reason.
   json few = study;
   few["targets"].erase(std::size_t{0});
   EXPECT_TRUE(
       holds(complaint(few), "has 1 points, expected as many as there are parameters, 2; janosi_K_m of 2 mm cannot"));
-  // Where the size is a parameter, it can follow.
+  // If the size is a parameter, it can follow.
   study["parameters"]["radius"] = {{"lower", 1e-3}, {"upper", 0.012}, {"start", 0.01}};
   EXPECT_TRUE(load(study).model->notes().empty());
 }
@@ -152,7 +151,7 @@ TEST_F(CalibrateGrains, a_prediction_is_what_the_soil_tests_give_and_the_result_
   EXPECT_EQ(soil["size_spread"], 0.3);
 }
 
-/// A curve of `furrow soil` on the grains of the start, and a study that has it as its target.
+/// A curve of `furrow soil` on the initial grains, and a study with this target.
 class CalibrateGrainsOnCurves : public CalibrateGrains {
  protected:
   static json curve_study() {
@@ -197,7 +196,7 @@ TEST_F(CalibrateGrainsOnCurves, a_measured_curve_is_recovered_by_the_grains_that
     off = std::max(off, std::abs(there.values[k] / target.y[k] - 1.0));
     farther = std::max(farther, std::abs(elsewhere.values[k] / target.y[k] - 1.0));
   }
-  EXPECT_LT(off, 0.02);  // the plate is pushed a little less deep, so that its samples are others
+  EXPECT_LT(off, 0.02);  // the plate is pushed a little less deep, so its samples differ
   EXPECT_GT(farther, 0.2);
 }
 

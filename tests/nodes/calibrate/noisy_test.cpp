@@ -17,7 +17,7 @@ namespace {
 using namespace testing;
 using Figures = std::function<std::vector<double>(std::span<const double>)>;
 
-/// Normal deviates that depend on the parameters alone, as those of a simulation with fixed seeds do.
+/// Normal deviates that depend on the parameters alone, as in a simulation with fixed seeds.
 double deviate(std::span<const double> values, std::uint64_t seed, std::size_t figure) {
   std::uint64_t bits = seed * 0x9e3779b97f4a7c15u + figure;
   for (const double value : values)
@@ -84,7 +84,7 @@ std::vector<Parameter> soil_parameters() {
   return {{"rolling", "-", 0.0, 1.0, 0.2, false}, {"cohesion", "kPa", 0.0, 60.0, 30.0, false}};
 }
 
-/// A study of them; the figures that `figures` has need not be those of the data.
+/// A study of these figures; `figures` may differ from the figures of the data.
 Calibration soil_study(std::uint64_t seed, int evaluations, std::vector<double> data = {28.0, 1500.0, 0.014},
                        Figures figures = soil_like) {
   return noisy_study(std::move(figures), std::move(data), kSigma, kNoise, soil_parameters(), seed, evaluations);
@@ -167,7 +167,7 @@ TEST(OptimizeNoisy, true_parameters_lie_within_its_intervals_as_often_as_they_sa
   int within = 0, reached = 0;
   double off = 0.0;
   for (int k = 0; k < kTries; ++k) {
-    // The data have errors of their own.
+    // The data have their own errors.
     std::vector<double> data = exact;
     for (std::size_t q = 0; q < data.size(); ++q)
       data[q] += kSigma[q] * deviate(truth, 1000 + static_cast<std::uint64_t>(k), q);
@@ -198,7 +198,7 @@ TEST(OptimizeNoisy, the_same_study_gives_the_same_bits_and_keeps_to_its_budget) 
     EXPECT_LE(a.optimum.evaluations, evaluations);
     EXPECT_LE(model_of(first).asked.size(), static_cast<std::size_t>(evaluations));
     EXPECT_EQ(a.processor_time, 0.5 * static_cast<double>(model_of(first).asked.size()));
-    // It ends where it evaluated.
+    // The optimum is one of the evaluated points.
     EXPECT_TRUE(model_of(first).asked.contains(a.values));
   }
 }
@@ -245,7 +245,7 @@ TEST(OptimizeNoisy, a_target_that_cannot_be_reached_is_told_with_the_range) {
 }
 
 TEST(OptimizeNoisy, what_the_figures_do_not_tell_apart_is_named) {
-  // Only the sum of the two parameters shows.
+  // The figures depend only on the sum of the two parameters.
   const auto sum = [](std::span<const double> p) {
     return std::vector<double>{10.0 * (p[0] + p[1]), 5.0 * (p[0] + p[1])};
   };

@@ -22,8 +22,8 @@ namespace {
 using namespace testing;
 
 /// The flexible ring on a plate from its energy alone (tire/ring/ring_mechanics.hpp, (1) to (4)), with dense matrices,
-/// a penalty in place of contact and hoop tension from the length and the area of the polygon of segments: nothing of
-/// tire/ring but the numbers of the file takes part.
+/// a penalty instead of contact, and hoop tension from the length and the area of the polygon of segments. From
+/// tire/ring it uses only the numbers of the file.
 class DenseRing {
  public:
   explicit DenseRing(const tire::RingParams& p) : p_(p), n_(p.segments), phi_(2.0 * std::numbers::pi / n_) {
@@ -44,7 +44,7 @@ class DenseRing {
       if (!(low_ < draw_ && draw_ < high_)) break;
       (wall(draw_) < (1.0 - p.tension_share) * p.pressure * p.radius * p.width ? low_ : high_) = draw_;
     }
-    // The tension's tangent about the circle, ∫ (u'² − u²): Newton's method needs no better one.
+    // The tension's tangent about the circle, ∫ (u'² − u²): sufficient for Newton's method.
     const double strength = phi_ * p.tension_share * p.pressure * p.width, g = 0.5 / (1.0 - std::cos(phi_));
     taut_ = Eigen::MatrixXd::Zero(2 * n_, 2 * n_);
     for (int j = 0; j < n_; ++j) {
@@ -160,7 +160,7 @@ TEST_F(CalibrateRing, parameters_are_found_again_from_curves_of_another_program)
 TEST_F(CalibrateRing, the_belts_share_of_the_pressure_is_found_again) {
   file_["tension_share"] = 0.4;
   write_curve("low.csv", 1e5, 0.0, 1), write_curve("high.csv", 3e5, 0.0, 1);
-  file_.erase("tension_share");  // a file may leave it out: the start is 0
+  file_.erase("tension_share");  // optional in a file: the start is 0
   write("ring.json", file_.dump());
   const Calibration c = study({{"sidewall_1", {{"start", 6e5}}}, {"tension_share", json::object()}});
   const CalibrationResults results = calibrated(c);
@@ -182,7 +182,7 @@ TEST_F(CalibrateRing, intervals_cover_what_made_noisy_curves) {
       return e.low.value_or(INFINITY) <= truth && truth <= e.high.value_or(-INFINITY);
     };
     covered += holds(0, 8.84e5), covered += holds(1, 0.55);
-    EXPECT_NEAR(results.confidence.deviation, 1.0, 0.5);  // the noise is what the file says
+    EXPECT_NEAR(results.confidence.deviation, 1.0, 0.5);  // the noise is the file's
   }
   EXPECT_NEAR(covered / (2.0 * kTimes), 0.95, 0.08);  // three standard deviations
 }
@@ -205,7 +205,7 @@ TEST_F(CalibrateRing, the_fitted_file_presses_as_the_calibration_predicts) {
   EXPECT_EQ(fitted["sidewall"][0], results.values[0]);
 }
 
-// Stress is proportional to the modulus where the disc is as much stiffer: F(δ; cE) = c F(δ; E).
+// Stress is proportional to the modulus if the disc is stiffer by the same factor: F(δ; cE) = c F(δ; E).
 TEST_F(CalibrateRing, a_planar_tire_twice_as_stiff_is_found) {
   nlohmann::json planar =
       nlohmann::json::parse(std::ifstream(data_folder() / "tire" / "data" / "aligator_planar.json"));

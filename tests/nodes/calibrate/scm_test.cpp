@@ -1,5 +1,5 @@
-// The kind `scm`: soil parameters from curves of plate and shear tests, against the laws that made the curves and
-// beside the fits of `furrow soil`.
+// The kind `scm`: soil parameters from curves of plate and shear tests, compared with the laws that made the curves and
+// with the fits of `furrow soil`.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,7 +98,7 @@ TEST_F(CalibrateScm, starts_are_the_fits_of_the_soil_tests) {
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(c.parameters[k].start / truth[k], 1.0, 1e-2) << c.parameters[k].name;
 }
 
-// Weighted alike, c and φ of the joint fit differ from those of furrow soil by less than their errors.
+// With equal weights, c and φ of the joint fit differ from those of furrow soil by less than their errors.
 TEST_F(CalibrateScm, noisy_curves_are_met_within_the_errors) {
   write_curves(600.0, 7);
   json study = good();

@@ -67,7 +67,7 @@ TEST(CalibrateStatistics, intervals_cover_the_truth_at_their_rate) {
 }
 
 TEST(CalibrateStatistics, a_combination_that_data_do_not_determine_is_named) {
-  // Only the product a b and c can be known.
+  // Only the product a b and c can be identified.
   const auto product = [](double x, std::span<const double> p) { return p[0] * p[1] * x + p[2]; };
   std::vector<double> y;
   const std::vector<double> x = steps(0.0, 5.0, 12);
@@ -139,7 +139,7 @@ TEST(CalibrateStatistics, what_is_done_never_falls_back_from_start_to_start) {
 }
 
 TEST(CalibrateStatistics, starts_find_the_lower_of_two_leasts) {
-  // Two leasts in p: near 1 and, lower, near 8.
+  // Two minima in p: near 1 and, lower, near 8.
   const auto wells = [](double x, std::span<const double> p) {
     return x < 0.5 ? std::min(std::abs(p[0] - 1.0) + 0.5, std::abs(p[0] - 8.0)) : 0.1 * p[0];
   };

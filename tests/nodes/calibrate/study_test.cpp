@@ -1,4 +1,4 @@
-// Calibration studies: what is wrong with them, their table of evaluations, and continuing.
+// Calibration studies: their errors, their table of evaluations, and continuing.
 #include "nodes/calibrate/study.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST_F(CalibrateStudy, a_study_is_read_with_its_defaults) {
   EXPECT_EQ(c.parameters[0].start, 2.3534e5);  // of the tire's file
   EXPECT_TRUE(c.parameters[0].logarithmic);
   const Target& plate = c.model->targets(TargetSet::fitted).front();
-  EXPECT_EQ(plate.x, (std::vector<double>{0.01, 0.02, 0.03, 0.04}));  // a point without deflection tells nothing
+  EXPECT_EQ(plate.x, (std::vector<double>{0.01, 0.02, 0.03, 0.04}));  // a point without deflection has no information
   EXPECT_EQ(plate.sigma, std::vector<double>(4, 140.0));              // a hundredth of the largest
   EXPECT_EQ(plate.what, "plate, 200 kPa");
   EXPECT_EQ(c.model->targets(TargetSet::held_out).front().sigma, std::vector<double>(3, 20.0));
@@ -197,7 +197,7 @@ TEST_F(CalibrateStudy, evaluations_are_kept_to_the_bit_and_a_cut_line_is_left_ou
   EXPECT_THROW(EvaluationTable(folder_.path(), "digest", {"p", "q"}), Error);
 }
 
-/// Stops, once, after as many evaluations.
+/// Stops once, after this number of evaluations.
 struct Stopper {
   int left;
   void operator()(const std::string&, double) {

@@ -1,4 +1,4 @@
-// Tables as spreadsheets of other languages write them: refused for what they are.
+// Tables from spreadsheets in other languages are refused with the reason.
 #include "protocol/files/csv_file.hpp"
 
 #include <fstream>

@@ -27,7 +27,7 @@ TEST(Digits, value_and_error_end_at_the_same_place) {
   EXPECT_EQ(with_error(25.0, 3.21), "25.0 ± 3.2");
 }
 
-/// "3 ± 0 N" said nothing of the wheel of a laboratory.
+/// Regression: "3 ± 0 N" for the wheel of a laboratory.
 TEST(Digits, an_error_above_zero_is_never_written_as_zero) {
   for (double error = 1e-11; error < 1e9; error *= 3.7)
     EXPECT_NE(with_error(3.0, error).substr(with_error(3.0, error).find("± ") + 4).find_first_of("123456789"),

@@ -46,7 +46,7 @@ TEST(FileKind, only_what_is_certainly_of_another_kind_is_refused) {
   EXPECT_EQ(refused(soil, FileKind::tire),
             "x.json: is a soil, expected a tire (the key terrain.material of a scenario takes soils)");
   EXPECT_EQ(refused(soil, FileKind::soil), "");
-  EXPECT_EQ(refused(soil, FileKind::scenario), "");  // one that leaves all else as it is
+  EXPECT_EQ(refused(soil, FileKind::scenario), "");  // a scenario with all other keys at their defaults
   const json measured = json::parse(R"({"terrain": {"friction": 0.5}, "measured": {}})");
   EXPECT_EQ(refused(measured, FileKind::scenario),
             "x.json: is a soil, expected a scenario (the key terrain.material of a scenario takes soils)");

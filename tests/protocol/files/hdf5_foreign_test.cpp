@@ -29,7 +29,7 @@ class ForeignHdf5 : public ::testing::Test {
     ASSERT_TRUE(handle.ok());
     fill(handle);
   }
-  /// What reading the dataset `x` complains of, without the file's name; empty when it does not.
+  /// The error on reading the dataset `x`, without the file's name; empty if there is none.
   std::string complaint(const std::function<void(const Hdf5Reader&)>& read = [](const Hdf5Reader& in) {
     in.get<double>("x");
   }) const {
@@ -41,7 +41,7 @@ class ForeignHdf5 : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-/// A dataset "x" of which nothing is written unless there are values.
+/// A dataset "x"; nothing is written to it unless there are values.
 void put(hid_t out, const Shape& shape, hid_t type = H5T_NATIVE_DOUBLE, hid_t made = H5P_DEFAULT,
          const void* values = nullptr, const char* name = "x") {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
@@ -50,7 +50,7 @@ void put(hid_t out, const Shape& shape, hid_t type = H5T_NATIVE_DOUBLE, hid_t ma
   if (values) H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
 }
 
-/// How a dataset is made.
+/// Creation properties of a dataset.
 hid_t created(const Shape& chunk = {}) {
   const hid_t made = H5Pcreate(H5P_DATASET_CREATE);
   if (!chunk.empty()) H5Pset_chunk(made, static_cast<int>(chunk.size()), chunk.data());
@@ -92,7 +92,7 @@ TEST_F(ForeignHdf5, declared_and_never_written_takes_no_memory) {
   EXPECT_TRUE(holds(complaint(), "more than 2147483648 numbers"));
 }
 
-/// The size of a contiguous dataset is what the file says of it.
+/// The file states the size of a contiguous dataset.
 TEST_F(ForeignHdf5, sizes_beyond_the_end_of_the_file_are_not_believed) {
   const std::vector<double> values(1000, 1.0);
   make([&](hid_t out) { put(out, {1000}, H5T_NATIVE_DOUBLE, H5P_DEFAULT, values.data()); });
@@ -150,7 +150,7 @@ TEST_F(ForeignHdf5, datasets_of_anything_but_plain_numbers_are_refused_by_name) 
   EXPECT_EQ(complaint(), "lacks the dataset 'x'");
 }
 
-/// A thousand numbers where one is expected would be written over whatever stands behind it in memory.
+/// A thousand numbers instead of one would overwrite memory after the expected one.
 TEST_F(ForeignHdf5, attributes_must_be_one_number_or_one_short_text) {
   const auto attribute = [&](hid_t type, hsize_t count) {
     make([&](hid_t out) {

@@ -1,4 +1,4 @@
-// Objects of JSON files, key by key: every complaint names file, key, value and what is expected.
+// Objects of JSON files, key by key: every error names file, key, value and expected values.
 #include "protocol/files/json_reader.hpp"
 #include "tests/refusal.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What reading the object throws, without the file's name; empty when it does not.
+/// The error on reading the object, without the file's name; empty if there is none.
 template <class Read>
 std::string complaint(const json& object, const Read& read) {
   return without_file(refusal(ExitCode::bad_input,

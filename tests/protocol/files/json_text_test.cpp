@@ -1,4 +1,4 @@
-// JSON that people wrote: where a mistake stands.
+// JSON written by people: the positions of errors.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -101,7 +101,8 @@ TEST(JsonText, keys_that_nobody_could_type_are_refused) {
   EXPECT_TRUE(holds(complaint("{\"" + std::string(257, 'k') + "\": 1}"), "longer than 256 bytes"));
 }
 
-/// To find a key among ordered ones takes as long as there are keys: a million of them would take an hour.
+/// Finding a key in an ordered object takes a time proportional to its number of keys: a million keys would take an
+/// hour.
 TEST(JsonText, objects_of_more_keys_than_anybody_writes_are_refused) {
   const auto object = [](int keys) {
     std::string text;

@@ -1,4 +1,4 @@
-// Which known name was meant by one that is not known, and which unit by a value that is not usual.
+// Suggestions: a known name for an unknown one, and a unit for an unusual value.
 #include "protocol/files/nearest_words.hpp"
 
 #include <gtest/gtest.h>

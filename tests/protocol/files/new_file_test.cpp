@@ -1,4 +1,4 @@
-// Files in the making: nothing is seen of them until they are whole, and no link leads their bytes elsewhere.
+// Files while they are written: they are invisible until they are complete, and no link redirects their bytes.
 #include "protocol/files/new_file.hpp"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST(NewFile, an_hdf5_file_reaches_its_file_though_the_unknown_name_was_taken_by
   EXPECT_EQ(read_whole_file(victim), "mine");
 }
 
-/// No file may grow beyond this many bytes, as on a disk that is full, until room is made.
+/// Limits files to this number of bytes, as on a full disk, until space is made.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {
@@ -91,10 +91,10 @@ class FullDisk {
 };
 
 /// HDF5 itself leaks the 1 kB in which it gathers the metadata of a file that it cannot write (1.10.8,
-/// H5F__accum_write): what is allocated while this lives is no leak of ours.
+/// H5F__accum_write): memory allocated while this object lives is not our leak.
 struct LeaksOfTheLibrary {
 #ifdef __SANITIZE_ADDRESS__
-  herr_t collected = H5garbage_collect();  // what it has kept from before would be taken for this
+  herr_t collected = H5garbage_collect();  // memory that it kept from before would count as this leak
   __lsan::ScopedDisabler disabler;
 #endif
 };

@@ -1,4 +1,4 @@
-// Text of foreign files in messages: shown, never obeyed.
+// Text of foreign files in messages: control sequences are shown and not executed.
 #include "protocol/files/printable.hpp"
 
 #include <gtest/gtest.h>

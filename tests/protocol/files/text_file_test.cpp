@@ -1,4 +1,4 @@
-// Whole files: what is read is what was written, and what people wrote is bounded.
+// Whole files: reading returns the written text, and files of people are limited in size.
 #include "protocol/files/text_file.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ TEST(TextFile, a_user_s_text_is_a_regular_file_of_a_readable_size) {
   EXPECT_EQ(refusal(folder.path()), "is a directory, expected a text");
   EXPECT_EQ(refusal("/dev/null"), "is not a regular file, expected a text");
   EXPECT_EQ(refusal(folder.path() / "none"), "does not exist, expected a text");
-  // The kernel says that its files have no size; what they hold is read all the same.
+  // The kernel reports size zero for its files; their contents are read nevertheless.
   EXPECT_FALSE(read_text_file("/proc/self/status", "a text").empty());
 }
 

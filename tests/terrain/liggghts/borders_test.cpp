@@ -1,4 +1,4 @@
-// Where ranks part a bed whose grains are unequal along travel.
+// Borders between ranks in a bed with unequal numbers of grains along travel.
 #include <gtest/gtest.h>
 
 #include <array>

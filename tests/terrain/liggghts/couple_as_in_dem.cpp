@@ -1,6 +1,6 @@
-// A grain is dragged through its centre along the facets of a tire that resists its rolling: in the engine liggghts it
-// moves, and loads the vertices, as in the engine dem, and slides or rolls as theory says (rolling_couple_test.cpp).
-// On one rank; prints what differs and ends with 1.
+// A grain is dragged through its centre along the facets of a tire that resists its rolling. In the engine liggghts it
+// moves and loads the vertices as in the engine dem, and slides or rolls as in theory (rolling_couple_test.cpp). Runs
+// on one rank; prints differences and ends with 1.
 #include <mpi.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ struct Facets {
   }
 };
 
-/// The grain at the end of an interval, and what its facets got in it.
+/// The grain at the end of an interval, and the load on its facets in it.
 struct Seen {
   std::array<Vec3, 3> motion;   // position, velocity, spin
   std::vector<Vec3> on_vertex;  // N
@@ -152,7 +152,7 @@ class InLiggghts {
   std::unique_ptr<Engine> engine_;
 };
 
-/// Of motion and loads, over what they are.
+/// Relative difference of motion and loads.
 double difference(const Seen& one, const Seen& other) {
   double worst = 0.0, apart = 0.0, load = 0.0;
   for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// How the engine liggghts moves grains: against free flight, and four at a time against one at a time.
+// Motion of grains in the engine liggghts: against free flight, and four at a time against one at a time.
 #include "terrain/liggghts/plugin/grain_motion.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-// A grain rolls on the floor under a plate that presses on it, resists its rolling and moves along x, across the
-// borders between the ranks: its motion, and the forces on the plate, are those of one rank. A second time the borders
-// move beneath it. Each rank computes the case of one rank beside the other. Under mpirun; prints what differs and ends
+// A grain rolls on the floor, across the borders between the ranks, under a plate that presses on it, resists its
+// rolling and moves along x. Its motion and the forces on the plate must be those of one rank. In a second case the
+// borders move beneath it. Each rank also computes the case of one rank. Runs under mpirun; prints differences and ends
 // with 1.
 #include <mpi.h>
 
@@ -49,7 +49,7 @@ ContactMaterial plate_material() {
   return m;
 }
 
-/// The grain at one instant: of all ranks the one that owns it says so.
+/// The grain at one instant; the rank that owns it reports it.
 struct Seen {
   std::array<double, 9> motion{};  // position, velocity, spin
   std::array<double, 3> push{};    // on the plate, N
@@ -110,7 +110,7 @@ class Case {
   int rank_;
 };
 
-/// Largest difference of motion and push between the ranks' case and that of one rank, over what they are.
+/// Largest relative difference of motion and push between several ranks and one rank.
 double difference(const Seen& mine, const Seen& alone) {
   Seen sum;
   MPI_Allreduce(mine.motion.data(), sum.motion.data(), 9, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
@@ -126,7 +126,7 @@ double difference(const Seen& mine, const Seen& alone) {
   return worst;
 }
 
-/// @param move half-way, so that the grain changes its rank where it stands
+/// @param move whether the borders move half-way, so that the grain changes its rank at its place
 int run(bool move) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -1,4 +1,4 @@
-// The lists of the engine liggghts against a search over all pairs of grains, and what becomes of histories.
+// The lists of the engine liggghts against a search over all pairs of grains, and the histories in them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ TEST(PairLists, no_grains_have_no_pairs) {
   EXPECT_EQ(lists.rows(), 0);
 }
 
-/// The history of a pair as the lower of its numbers sees it.
+/// The history of a pair in the direction of its lower number.
 PairHistory of_lower(int i, int j, const PairHistory& h) { return i < j ? h : h.turned(); }
 
 PairHistory some_history(int i, int j) { return {{1.0 + i, 2.0 + j, -3.0, 0.5 + i}, {4.0 + j, 5.0, 6.0 + i, 0.0}}; }
@@ -107,7 +107,7 @@ TEST(PairLists, histories_are_kept_when_lists_are_made_again) {
   ASSERT_GT(touching.size(), 200U);
   std::vector<std::pair<int, int>> first;
   lists.for_touching([&](int i, int j, int) { first.emplace_back(i, j); });
-  // All grains move alike, by more than a cell: no pair parts, the order of the rows becomes another one.
+  // All grains move equally, by more than a cell: no pair parts, but the order of the rows changes.
   for (auto& at : crowd.place) at[0] += 0.3 * kReach, at[1] = -at[1];
   lists.make(crowd.grains());
   Pairs kept;

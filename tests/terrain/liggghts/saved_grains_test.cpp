@@ -1,4 +1,4 @@
-// What a saved state may say of the grains of a rank of engine liggghts: what cannot be is refused by name.
+// Saved grains of a rank of the engine liggghts: impossible values are refused with their names.
 #include <gtest/gtest.h>
 
 #include <array>

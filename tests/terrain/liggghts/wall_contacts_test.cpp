@@ -1,5 +1,5 @@
-// Walls under the grains of one rank of the engine liggghts: four at a time against the law for each alone, and what
-// becomes of histories when lists are made again and when grains change their numbers.
+// Walls under the grains of one rank of the engine liggghts: four at a time against the law for each alone. Histories
+// are kept when lists are made again and when grains change their numbers.
 #include "terrain/liggghts/wall_contacts.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The width of contact patches against the plates for which Bekker's b is known.
+// The width of contact patches against Bekker's b of plates.
 #include "terrain/scm/contact_patch.hpp"
 
 #include <gtest/gtest.h>

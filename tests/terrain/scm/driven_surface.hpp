@@ -1,4 +1,4 @@
-// A rigid surface that is moved over empirical soil with given velocities.
+// A rigid surface that moves over empirical soil with given velocities.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct DrivenSurface {
     material.friction = friction;
     ground.attach(surface.mesh, material, state());
   }
-  /// One interval.
+  /// Moves by one interval.
   void move(terrain::Terrain& ground, const Vec3& velocity, double spin, double dt, int substeps = 1) {
     const SurfaceState start = state(velocity, spin);
     const Outcome outcome = ground.advance({&start, 1}, dt, substeps, {&forces, 1}, {&sums, 1});
@@ -36,7 +36,7 @@ struct DrivenSurface {
   Vec3 moment() const { return test::moment_about(position, forces, state()); }
 };
 
-/// What the accounts leave over since the beginning, J.
+/// Residual of the accounts since the beginning, J.
 inline double residual(const terrain::Terrain& ground) {
   const TerrainEnergies e = ground.gather_state().energies;
   return e.stored() + e.losses() - e.surface_work - e.wall_work;

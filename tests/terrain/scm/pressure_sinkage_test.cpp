@@ -11,7 +11,7 @@ namespace {
 
 constexpr PressureLaw kLete{.k_c = 102e3, .k_phi = 5301e3, .n = 0.79, .unloading_rate = 5.03e8};
 
-/// Loads a node in `steps` steps to sinkage `to`; work done per area beside what is lost, J/m².
+/// Loads a node in `steps` steps to the sinkage `to`; sums work and losses per area, J/m².
 struct Way {
   double at = 0.0, pressure = 0.0, work = 0.0, lost = 0.0;
 

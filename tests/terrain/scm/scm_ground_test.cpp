@@ -91,14 +91,14 @@ TEST(ScmGround, a_plate_unloads_and_reloads_along_wongs_line_and_leaves_a_rut) {
   EXPECT_EQ(sunk, 200);
   EXPECT_NEAR(ground->gather_mean_height(0.4, 0.6, -0.05, 0.05), -rut, 1e-9);
   EXPECT_EQ(ground->gather_top_height(0.3, 0.7, -0.1, 0.1), 0.0);
-  // What is lost is the work less what came back.
+  // The loss is the work minus the returned part.
   const TerrainEnergies e = ground->gather_state().energies;
   EXPECT_EQ(e.stored(), 0.0);
   const double compaction =
       kArea * ((options.bekker_k_c / 0.1 + options.bekker_k_phi) * std::pow(z_u, 1.7) / 1.7 - 0.5 * p_u * p_u / k_u);
   EXPECT_NEAR(e.normal_damping_loss / compaction, 1.0, 0.01);
   EXPECT_LT(std::abs(testing::residual(*ground)), 0.01 * compaction);
-  // The second load meets nothing above the rut, then the line, then the curve.
+  // The second load has no force above the rut, then follows the line, then the curve.
   for (int i = 0; i < 150; ++i) tool.move(*ground, {0.0, 0.0, -speed}, 0.0, dt);
   EXPECT_NEAR(tool.sums.force.z() / (kArea * bekker(options, 0.1, 0.025 - 0.5 * speed * dt)), 1.0, 1e-9);
 }

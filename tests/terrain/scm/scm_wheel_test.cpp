@@ -1,9 +1,9 @@
 // A rigid wheel on empirical soil against the integrals of Bekker, Wong & Reece and Janosi
 // (terrain/soil/bekker_wong.hpp).
 //
-// The theory's stresses with the largest pressure at the lowest point (c₁ = c₂ = 0) are those of the engine but for
-// what springs back behind that point. With Wong & Reece's θ_m the largest pressure stands farther ahead, which soil
-// that is pressed node by node does not know: the pull is lower then.
+// With the largest pressure at the lowest point (c₁ = c₂ = 0), the theory's stresses are those of the engine, except
+// for the rebound behind that point. With Wong & Reece's θ_m the largest pressure is farther ahead and the pull is
+// lower. Soil that is pressed node by node does not have this effect.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ ScmOptions track() {
   options.length = 1.4;
   options.width = 0.2;
   options.grid_spacing = 0.005;
-  options.patch_width = kWheelWidth;  // as the theory has it
+  options.patch_width = kWheelWidth;  // as in the theory
   options.bekker_k_c = 0.99e3;
   options.bekker_k_phi = 1528.43e3;
   options.bekker_n = 1.1;

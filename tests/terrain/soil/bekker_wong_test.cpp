@@ -34,7 +34,7 @@ TEST(BekkerWong, resistance_of_bekkers_pressure_is_the_compaction_work) {
   }
 }
 
-/// Of a towed rigid wheel, m: W = (k_c + b k_φ) √(2R z₀) z₀ⁿ (3 − n)/3 for small z₀ [Bekker 1956; Wong 2008].
+/// Sinkage of a towed rigid wheel, m: W = (k_c + b k_φ) √(2R z₀) z₀ⁿ (3 − n)/3 for small z₀ [Bekker 1956; Wong 2008].
 double bekker_sinkage(const SoilStrength& s, const RigidWheel& w) {
   const double factor = (3.0 - s.n) * (s.k_c + w.width * s.k_phi) * std::sqrt(2.0 * w.radius);
   return std::pow(3.0 * w.load / factor, 2.0 / (2.0 * s.n + 1.0));

@@ -42,7 +42,7 @@ TEST(Fits, bekker_fit_ignores_what_no_logarithm_takes) {
 }
 
 TEST(Fits, bekker_weights_make_the_error_of_the_pressure_small) {
-  // Noise of one size at all depths: unweighted logarithms would be ruled by the small pressures at small sinkage.
+  // Noise of one size at all depths: the small pressures at small sinkage would dominate unweighted logarithms.
   const std::vector<PlateCurve> plates{bekker_curve(0.1, 15e3, 250e3, 0.7, 1.5e3, 1),
                                        bekker_curve(0.2, 15e3, 250e3, 0.7, 1.5e3, 2)};
   const BekkerFit fit = fit_bekker(plates);

@@ -1,4 +1,4 @@
-// Soil theory beside a run: what is in summary.json and soil.json is not believed.
+// Soil theory compared with a run: the values in summary.json and soil.json are checked.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -29,7 +29,7 @@ class SoilEstimate : public ::testing::Test {
              {"friction_angle_deg", 30.0}, {"janosi_K_m", 0.01}};
   }
 
-  /// What is told, or the error.
+  /// The printed text, or the error.
   std::string told(const Json& summary, const Json& soil) {
     std::ofstream(folder_.path() / "summary.json") << summary;
     std::ofstream(folder_.path() / "soil.json") << soil;

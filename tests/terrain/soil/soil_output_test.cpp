@@ -19,7 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 struct Truth {
   double value = 0.0, scatter = 0.0;  // of one test, or of one bed
 };
-/// What `furrow soil` says of cohesive grains, about, under the names of soil.json.
+/// Approximate results of `furrow soil` for cohesive grains, with the names of soil.json.
 const std::map<std::string, Truth> kTruth{{"cohesion_Pa", {6.8e3, 0.0}},     {"friction_angle_deg", {26.5, 0.0}},
                                           {"janosi_K_m", {0.02, 0.003}},     {"cone_index_Pa", {80e3, 8e3}},
                                           {"repose_angle_deg", {24.0, 1.0}}, {"k_c", {15e3, 3e3}},

@@ -1,4 +1,4 @@
-// The soil tests themselves on small boxes: balances that must hold, limits that are known.
+// The soil tests on small boxes: balances and known limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ ShearResult sheared(const dem::DemOptions& material, double normal_stress, doubl
   return direct_shear(Specimen(material, kShearBox, 1, ignore), test, ignore);
 }
 
-/// Signed volume of a closed mesh, or the flux of x through an open one: tells which way the triangles face.
+/// Signed volume of a closed mesh, or the flux of x through an open one: shows which way the triangles face.
 Vec3 area_vector(const Tool& tool) {
   Vec3 sum = Vec3::Zero();
   for (const auto& t : tool.mesh().triangles) {
@@ -81,14 +81,14 @@ TEST(DirectShear, lid_bears_its_load_and_the_floor_bears_lid_and_soil) {
   const ShearResult r = sheared(coarse(), 50e3);
   EXPECT_NEAR(r.normal_mean, 50e3, 0.03 * 50e3);
   EXPECT_LT(r.floor_error, 0.01);  // floor force = weight + load
-  EXPECT_LT(r.shear_error, 0.03);  // what pulls on the lid holds the lower plate
+  EXPECT_LT(r.shear_error, 0.03);  // the pull on the lid holds the lower plate
   EXPECT_GT(r.final_shear, 0.0);
   EXPECT_GT(r.janosi.K, 0.001);
   EXPECT_LT(r.janosi.K, 0.1);
 }
 
 TEST(DirectShear, strength_vanishes_for_frictionless_grains_without_cohesion) {
-  // What is left is the geometric resistance of frictionless spheres, tan φ = 0.1 [Peyneau & Roux 2008, φ = 5.76°,
+  // The remaining resistance is geometric, of frictionless spheres, tan φ = 0.1 [Peyneau & Roux 2008, φ = 5.76°,
   // doi:10.1103/PhysRevE.78.011307].
   dem::DemOptions smooth = coarse(0.0);
   smooth.friction = 0.0;
@@ -220,7 +220,7 @@ TEST(SoilTests, progress_may_stop_them) {
   EXPECT_THROW(run_soil_tests(quick(2), soil_plan(quick(2)), stop), Error);
 }
 
-/// The pressure on a cone grows with its depth: another depth would be another quantity.
+/// The pressure on a cone grows with its depth, so both indices need equal depths.
 TEST(SoilTests, the_quick_cone_index_is_of_the_same_depths) {
   SoilOptions whole = quick(1);
   whole.quick = false;
@@ -252,7 +252,7 @@ TEST(SoilTests, plates_in_metres_stand_on_beds_of_the_wanted_depths) {
   const SoilParameters p = soil_parameters(results, plan, 0.01);
   ASSERT_EQ(p.plates.size(), 4u);
   EXPECT_EQ(p.k_c.value, p.beds[1].k_c.value);
-  // Both fits are of the same points.
+  // Both fits use the same points.
   EXPECT_NEAR(p.plates[3].k.value * std::pow(0.025, p.plates[3].n.value),
               results.plate[1][1].result.curve.pressure.back(), 0.3 * results.plate[1][1].result.curve.pressure.back());
 }

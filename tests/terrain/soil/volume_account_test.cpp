@@ -55,7 +55,7 @@ TEST(VolumeAccount, grains_that_are_pressed_together_are_compacted) {
   EXPECT_NEAR(a.heaved, 0.0, 1e-12);
   EXPECT_NEAR(a.compacted, a.displaced, 0.03 * a.displaced);
   EXPECT_NEAR(a.residual(), 0.0, 0.03 * a.displaced);
-  // π/6 of a lattice of spheres that touch, on points half a radius apart; what overlaps counts once.
+  // π/6 for a lattice of touching spheres, on points half a radius apart; overlaps count once.
   EXPECT_NEAR(a.solid_before, std::numbers::pi / 6.0, 0.03);
   EXPECT_GT(a.solid_after, a.solid_before + 0.02);
 }

@@ -1,8 +1,8 @@
 // The eight impact tests of Chung & Ooi, Benchmark tests for verifying discrete element modelling codes at particle
 // impact level, Granular Matter 13:643–656 (2011), doi:10.1007/s10035-011-0277-0.
 //
-// The curves are points read off the paper's figures, as published with the verification data of Kratos Multiphysics
-// (DEMApplication, basic_benchmarks/paper_data), thinned. Where the figures show two materials on one curve, one is
+// The curves are points read off the paper's figures, thinned. They were published with the verification data of Kratos
+// Multiphysics (DEMApplication, basic_benchmarks/paper_data). If a figure shows two materials on one curve, one is
 // kept.
 #pragma once
 
@@ -16,7 +16,7 @@ struct Point {
 
 inline constexpr const char* kSource = "Chung & Ooi 2011 doi:10.1007/s10035-011-0277-0";
 
-// Materials: Young's modulus (Pa), Poisson's ratio, and density (kg/m³) beside them.
+// Materials: Young's modulus (Pa), Poisson's ratio, and density (kg/m³) in the comments.
 inline constexpr Elastic kGlass{4.8e10, 0.20}, kLimestone{2.0e10, 0.25};          // 2800, 2500: test 1
 inline constexpr Elastic kAluminium2{7.0e10, 0.30}, kMagnesium{4.0e10, 0.35};     // 2699, 1800: test 2
 inline constexpr Elastic kAluminiumOxide{3.8e11, 0.23}, kCastIron{1.0e11, 0.25};  // 4000, 7000: tests 3, 4
@@ -32,8 +32,8 @@ inline constexpr Point kTest1Force[] = {{29.05, 0.4503}, {73.81, 1.508},  {109.0
 inline constexpr Point kTest2History[] = {{84.85, 2.212},   {169.57, 5.894},  {246.61, 9.100},
                                           {318.92, 10.997}, {373.00, 11.357}, {427.16, 10.722},
                                           {501.73, 8.460},  {579.30, 5.091},  {644.26, 2.332}};
-// Test 4: angle of incidence (degrees), tangential restitution; spin after (rad/s); rebound angle of the contact
-// patch (degrees). Aluminium oxide, and aluminium alloy where the two differ.
+// Test 4: angle of incidence (degrees), tangential restitution; spin after (rad/s); rebound angle of the contact patch
+// (degrees). Aluminium oxide, and aluminium alloy if the two differ.
 inline constexpr Point kTest4Restitution[] = {{10.158, 0.6870}, {14.990, 0.6244}, {20.059, 0.6161}, {25.050, 0.6343},
                                               {30.119, 0.6837}, {35.030, 0.7372}, {40.020, 0.7809}, {50.000, 0.8451},
                                               {59.980, 0.8929}, {69.960, 0.9316}, {80.020, 0.9662}, {85.010, 0.9827}};

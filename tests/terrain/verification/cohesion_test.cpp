@@ -1,7 +1,7 @@
 // Cohesion, F_n = F_e − F_c with F_c = π r² c_t while in contact: pull-off, rest, and sliding strength without load.
 //
-// Forces between moved grains are measured on grains of 2000 t that keep the velocity they are given, undamped: what a
-// step changes of it is the force.
+// Forces between moved grains are measured on undamped grains of 2000 t that keep their given velocity: its change in a
+// step gives the force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -103,7 +103,7 @@ TEST(Cohesion, grain_hangs_from_a_ceiling_if_cohesion_exceeds_its_weight) {
 /// Two grains hold each other by cohesion alone and are moved sideways: Mindlin's spring up to μ F_e = μ F_c.
 TEST(Cohesion, pair_without_net_load_slips_at_friction_times_cohesion_force) {
   EngineGrains few = heavy("mindlin");
-  few.options.friction = 0.05;  // a short way to slip, on which the line of centres hardly turns
+  few.options.friction = 0.05;  // a short distance to slip, over which the line of centres hardly turns
   const auto k = few.pair<terrain::dem::MindlinLaw>();
   const double limit = few.options.friction * cohesion_force();
   const double delta = rest_overlap(k.stiffness, cohesion_force());

@@ -1,4 +1,4 @@
-// What contacts must not create: momentum, angular momentum with spin, and without damping or friction energy.
+// Contacts must not create momentum, angular momentum (with spin) or, without damping and friction, energy.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,8 +15,8 @@ using terrain::dem::GrainSolver;
 
 constexpr double kSpacing = 0.0124;  // m, of the grid that grains start from
 
-/// `count` grains in a ball-like clump in the middle of a bin too wide for them to meet its walls, all with random
-/// velocity and spin, drawn towards the middle.
+/// `count` grains in a round clump in the middle of a bin, too wide for them to meet its walls. All have random
+/// velocity and spin and are drawn towards the middle.
 terrain::dem::GrainSolver clump(EngineGrains few, int count, double speed) {
   few.options.length = few.options.width = 1.2;
   const int side = static_cast<int>(std::ceil(std::cbrt(count)));
@@ -84,7 +84,7 @@ TEST(Conservation, crowd_keeps_momentum_and_angular_momentum_with_spin) {
       }
 }
 
-/// Frictionless and undamped the kinetic energy after an oblique collision is that before; at the integrator's order.
+/// Without friction and damping, an oblique collision keeps the kinetic energy, to the integrator's order.
 TEST(Conservation, elastic_collision_keeps_its_energy) {
   Worst worst("mindlin, elastic, frictionless", "kinetic energy after a pair's collision", 1e-5, "energy balance");
   for (const double offset : {0.0, 0.004, 0.008, 0.011}) {  // m, of the lines of flight
@@ -103,7 +103,7 @@ TEST(Conservation, elastic_collision_keeps_its_energy) {
   }
 }
 
-/// With friction but no damper a sticking contact gives its shear energy back, less what the unloading spring loses;
+/// With friction but no damper, a sticking contact returns its shear energy, minus the loss of the unloading spring;
 /// energy is never created.
 TEST(Conservation, no_collision_creates_energy) {
   Worst worst("mindlin, elastic, friction", "kinetic energy gained in a collision", 1e-5, "second law");

@@ -1,8 +1,8 @@
-// Grains moved over creases, warped quads and vertex fans through the whole solver, friction and history included:
-// the force is continuous along the way and tends to the plane's with the angle. (The geometry alone, by bisection:
+// Grains moved over creases, warped quads and vertex fans through the whole solver, friction and history included: the
+// force is continuous along the path and tends to the plane's as the angle vanishes. (The geometry alone, by bisection:
 // surface_contact_test.cpp.)
 //
-// The grain has 2000 t and keeps the velocity it is given, undamped: what a step changes of it is the force.
+// The undamped grain of 2000 t keeps its given velocity: its change in a step gives the force.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ EngineGrains carried() {
   return few;
 }
 
-/// Forces on a grain whose centre goes along path(0 … 1) in `steps` steps, in shares of the plane's normal force.
+/// Forces on a grain whose centre moves along path(0 … 1) in `steps` steps, over the plane's normal force.
 std::vector<Vec3> forces_along(const testing::Surface& surface, const std::function<Vec3(double)>& path, int steps) {
   const EngineGrains few = carried();
   const terrain::dem::ContactCoefficients k = few.coefficients().floor;
@@ -46,7 +46,7 @@ std::vector<Vec3> forces_along(const testing::Surface& surface, const std::funct
   const double plane = few.floor_stiffness() * std::pow(kOverlap, 1.5);
   std::vector<Vec3> forces;
   for (int step = 0; step < steps; ++step) {
-    // Towards the path and not along it: errors of the last step are made good.
+    // Towards the path and not along it, to correct errors of the last step.
     const Vec3 given = (kPlace + path((step + 1.0) / steps) - terrain::dem::position(s, 0)) / dt;
     s.grains().velocity[0] = terrain::dem::quad(given);
     s.grains().spin[0] = {};
@@ -62,7 +62,7 @@ double largest_jump(const std::vector<Vec3>& forces, std::size_t from) {
   return jump;
 }
 
-/// The way on which a grain has the overlap kOverlap with the nearer flank of a crease along y, or its ridge.
+/// The path on which a grain has the overlap kOverlap with the nearer flank of a crease along y, or with its ridge.
 Vec3 over_crease(double half, double x) {
   const double arm = kRadius - kOverlap;
   if (half < 0.0 && std::abs(x) < arm * std::sin(-half)) return {x, 0.0013, std::sqrt(arm * arm - x * x)};
@@ -94,14 +94,14 @@ TEST(Creases, force_over_a_crease_is_the_planes_turned_by_half_the_angle) {
   }
 }
 
-/// A continuous force changes half as much in steps of half the length; a jump does not. The last quarter of friction's
-/// build-up is left out.
+/// In steps of half the length, a continuous force changes half as much; a jump does not. The last quarter of
+/// friction's build-up is left out.
 void expect_continuous(const std::string& name, const testing::Surface& surface,
                        const std::function<Vec3(double)>& path, Worst& worst) {
   constexpr int kSteps = 8000;
   const auto coarse = forces_along(surface, path, kSteps), fine = forces_along(surface, path, 8 * kSteps);
   const double jump = largest_jump(coarse, kSteps / 8), smaller = largest_jump(fine, kSteps);
-  // What does not fall to an eighth: (8 small − large)/7 of a jump, 0 of a slope.
+  // The part that does not fall to an eighth: (8 small − large)/7 for a jump, 0 for a slope.
   worst.add(std::max(0.0, (8.0 * smaller - jump) / 7.0), 0.0, 1.0, name);
 }
 
@@ -149,7 +149,7 @@ TEST(Creases, force_over_creases_warped_quads_and_fans_is_continuous) {
   }
 }
 
-/// As the roughness of a warped sheet goes, the force tends to the plane's in proportion.
+/// As the roughness of a warped sheet vanishes, the force tends to the plane's in proportion.
 TEST(Creases, force_over_warped_quads_tends_to_the_planes) {
   Worst worst("warped quads, mindlin", "force off the plane's, by 3/2 roughness/overlap", 1.5,
               "linear in the roughness");

@@ -1,4 +1,4 @@
-// A few grains as the engine runs them: the law between grains in single precision, all else in double.
+// A few grains as in the engine: the law between grains in single precision, everything else in double.
 #pragma once
 
 #include "tests/terrain/few_grains.hpp"
@@ -10,7 +10,7 @@ struct EngineGrains : terrain::dem::FewGrains {
   EngineGrains() { precision = terrain::dem::Precision::mixed; }
 };
 
-/// A surface that stays where it is.
+/// Attaches a surface that does not move.
 inline void attach(terrain::dem::GrainSolver& s, const testing::Surface& surface,
                    const terrain::dem::ContactCoefficients& k) {
   s.surfaces().attach(surface.mesh, {}, k, testing::at_rest(surface));

@@ -35,7 +35,7 @@ double solver_restitution(const EngineGrains& few, double speed, int steps) {
   return (terrain::dem::velocity(s, 1) - terrain::dem::velocity(s, 0)).x() / speed;
 }
 
-/// The same by Runge–Kutta integration of m δ̈ = −max(0, √δ (k δ + g δ̇)), m the reduced mass.
+/// The ratio by Runge–Kutta integration of m δ̈ = −max(0, √δ (k δ + g δ̇)), m the reduced mass.
 double integrated_restitution(double k, double g, double m, double speed) {
   const double h = 2.94 * std::pow(5.0 * m * speed * speed / (4.0 * k), 0.4) / speed / 50000;
   double x = 1e-9 * h * speed, u = speed;

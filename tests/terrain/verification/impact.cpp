@@ -59,7 +59,7 @@ State advanced(const State& s, const State& by, double h) {
   return out;
 }
 
-/// What is left of the spring once spring and damper have been cut at the Coulomb limit.
+/// Limits spring and damper to the Coulomb limit, and sets the remaining spring.
 void cut(const Law& law, State& s) {
   const double sliding = s[2] - (law.radius - s[0]) * s[3];
   s[4] = total_shear(law, s, sliding) + law.shear_damping * std::pow(s[0], 0.25) * sliding;
@@ -83,7 +83,7 @@ terrain::dem::ContactCoefficients solver_coefficients(const ImpactCase& c) {
   sphere.friction = partner.friction = c.friction;
   sphere.restitution = partner.restitution = c.restitution;
   auto k = terrain::dem::mix(sphere, partner, terrain::dem::Partner::surface, grain, {}).of<terrain::dem::MindlinLaw>();
-  // The engine's surfaces are flat; a round partner is one with another R*.
+  // The engine's surfaces are flat; a round partner is represented by its R*.
   const double share = 1.0 / (1.0 + c.radius / c.partner_radius);
   k.stiffness *= std::sqrt(share), k.shear_stiffness *= std::sqrt(share);
   k.damping *= std::pow(share, 0.25), k.shear_damping *= std::pow(share, 0.25);

@@ -1,5 +1,5 @@
-// One sphere hits a plane: through the solver, by an integration of the same equations that shares no code with it,
-// and by closed forms. The plane is the bin's floor or a tilted triangle mesh.
+// One sphere hits a plane. The impact is computed by the solver, by an integration of the same equations without shared
+// code, and by closed forms. The plane is the bin's floor or a tilted triangle mesh.
 //
 // Along the plane's x axis and about its y axis, with approach u = δ̇ > 0 and arm a = R − δ:
 //   m u̇ = −F_e,  m v̇ = F_t,  I ω̇ = −a F_t,  sliding velocity v_s = v − a ω.
@@ -38,7 +38,7 @@ struct Motion {
   double tangential = 0.0;  // of the centre, m/s
   double spin = 0.0;        // rad/s; rolling along +x is positive
 
-  /// Of the surface where it touches, without its deformation, m/s.
+  /// Sliding velocity at the contact, without deformation, m/s.
   double sliding(double radius) const { return tangential - radius * spin; }
 };
 
@@ -55,7 +55,7 @@ const char* name_of(Ground ground);
 /// Called after each step with overlap, m, time since first touch, s, and normal force, N.
 using Watch = std::function<void(double, double, double)>;
 
-/// Through the solver, law mindlin; `steps`: of the elastic contact's duration.
+/// Impact by the solver with the law mindlin; `steps`: number in the elastic contact's duration.
 Rebound solver_impact(const ImpactCase& impact, const Motion& before, Ground ground, int steps,
                       const Watch& watch = {});
 

@@ -2,8 +2,8 @@
 // slip.
 //
 // Each case is judged three times: against an integration of the same equations to 1e-3 of full scale, against the
-// rigid-body rebound wherever the sphere slides throughout, and against the published points. Those depend on what a
-// code does to the tangential spring and damper while it sticks; where sticking matters the test says so.
+// rigid-body rebound wherever the sphere slides throughout, and against the published points. These depend on a code's
+// tangential spring and damper during sticking; the tests in which this matters say so.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ std::string title(int test, Ground ground, const Material& material) {
   return "C&O test " + std::to_string(test) + ", " + name_of(ground) + ", " + material.name;
 }
 
-/// What the solver made of a case against what the equations say, the velocities in shares of the incoming speed.
+/// The solver's result of a case against the equations, with velocities over the incoming speed.
 class AgainstIntegration {
  public:
   AgainstIntegration(const std::string& name, double tolerance)
@@ -147,8 +147,8 @@ TEST(ObliqueImpact, chung_ooi_2011_test_5_constant_normal_speed) {
 void test_6(const std::string& name, const ImpactCase& impact, Ground ground,
             std::span<const verification::chung_ooi::Point> restitution) {
   AgainstIntegration integrated(name, 1e-3);
-  // At the end of a contact the damper may pull, which friction does not feel: at e = 0.5 its impulse
-  // μ ∫ max(F_e, 0) dt is 3 % above the rigid body's μ (1 + e) m v_n.
+  // At the end of a contact the damper may pull, which does not change friction: at e = 0.5 its impulse μ ∫ max(F_e, 0)
+  // dt is 3 % above the rigid body's μ (1 + e) m v_n.
   Worst slide(name, "-beta sliding throughout", 0.035, kSliding);
   Worst published(name, "beta sliding throughout", 0.04, kDigitised);
   for (const verification::chung_ooi::Point& p : restitution) {
@@ -178,8 +178,8 @@ TEST(ObliqueImpact, chung_ooi_2011_test_6_constant_normal_speed_and_varied_spin)
   }
 }
 
-// The solver's grains are of one material. The large sphere, 125,000 times heavier, stays at rest; what is left of it
-// is its curvature, R* = 5/6 R, which the contact coefficients are given by hand.
+// The solver's grains are of one material. The large sphere, 125,000 times heavier, stays at rest. Only its curvature
+// matters, R* = 5/6 R, which is set in the contact coefficients by hand.
 TEST(ObliqueImpact, chung_ooi_2011_test_8_on_a_sphere_five_times_larger) {
   const Material alloy{"aluminium alloy", chung_ooi::kAluminium, 2700.0};
   for (const Ground ground : {Ground::plane, Ground::mesh})
@@ -219,7 +219,7 @@ Motion pair_impact(const ImpactCase& impact, double speed, double spin_1, double
   return {-v.x(), v.z(), terrain::dem::spin(solver, 0).y()};
 }
 
-/// Spins ω and −ω: the surfaces meet at the same velocity, so nothing may happen to spin or path.
+/// Spins ω and −ω: the surfaces meet at the same velocity, so neither spin nor path may change.
 TEST(ObliqueImpact, chung_ooi_2011_test_7_of_equal_spheres_with_opposite_spins_keeps_the_spins) {
   const Material alloy{"aluminium alloy", chung_ooi::kAluminium, 2700.0};
   const Material copper{"copper", chung_ooi::kCopper, 8900.0};
@@ -239,7 +239,7 @@ TEST(ObliqueImpact, chung_ooi_2011_test_7_of_equal_spheres_with_opposite_spins_k
 }
 
 /// Equal spins: by symmetry each sphere rebounds as from a rigid plane half-way, test 6. The line of centres turns a
-/// little meanwhile, by the friction's displacement over R, about 1e-4.
+/// little, by the friction's displacement over R, about 1e-4.
 TEST(ObliqueImpact, of_equal_spheres_with_equal_spins_is_that_on_a_rigid_plane) {
   const Material alloy{"aluminium alloy", chung_ooi::kAluminium, 2700.0};
   const ImpactCase impact = impact_case(0.1, alloy, 0.5, 0.4);
@@ -269,8 +269,8 @@ TEST(ObliqueImpact, without_slip_matches_the_hypergeometric_solution) {
   }
 }
 
-/// The damper may pull at the end of a contact, that is what makes the restitution exactly e; friction feels the
-/// pressing part alone, μ ∫ max(F_e, 0) dt. A known deviation from the rigid body, recorded with its size.
+/// The damper may pull at the end of a contact, so that the restitution is exactly e. Friction follows the pressing
+/// part alone, μ ∫ max(F_e, 0) dt. This is a known deviation from the rigid body, recorded with its size.
 TEST(ObliqueImpact, friction_impulse_exceeds_the_rigid_bodys_by_the_dampers_pull) {
   for (const auto& [e, tolerance] : {std::pair{0.2, 0.11}, {0.5, 0.035}, {0.7, 0.012}, {0.9, 0.002}})
     for (const Ground ground : {Ground::plane, Ground::mesh}) {

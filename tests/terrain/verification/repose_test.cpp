@@ -122,7 +122,7 @@ TEST(Repose, hertz_tanh_heap_flows_on) {
   run(s, 1.5);
   const double early = mean_height(s), angle = angle_of(s);
   run(s, 1.5);
-  // It would take all day to see it flat; a tenth in as long again is not rest.
+  // Waiting until it is flat takes too long; a change by a tenth in the same time again is not rest.
   EXPECT_LT(angle_of(s), angle);
   EXPECT_LT(mean_height(s), 0.9 * early);
   verify("collapsed column, hertz_tanh", "mean height sinks by over 10 % from 1.5 to 3 s", mean_height(s) < 0.9 * early,

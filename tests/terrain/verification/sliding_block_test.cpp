@@ -1,4 +1,4 @@
-// Long ways over a flat triangulated plane: no triangle edge may be felt in force or history.
+// Long paths over a flat triangulated plane: no triangle edge may change force or history.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,8 @@ using terrain::dem::GrainSolver;
 
 constexpr double kRadius = 0.006;  // m
 
-/// A flat sheet of 7 mm cells, turned and put anywhere, its cells at no special place below the path along its x axis.
+/// A flat sheet of 7 mm cells, turned and moved arbitrarily; its cells have no special position below the path along
+/// its x axis.
 testing::Surface plane_at(const Vec3& foot, const Quat& turn) {
   testing::Surface s = testing::sheet(-0.0313, -0.0332, 0.007, 90, 9, [](double, double) { return 0.0; });
   for (Vec3& x : s.vertex) x = foot + turn * x;
@@ -62,7 +63,8 @@ TEST(SlidingBlock, feels_no_edge_in_half_a_metre) {
   EXPECT_GT(terrain::dem::position(s, 0).x(), 0.59);
 }
 
-/// Static friction of 2/7 of the downhill weight must act all the way; history lost at one edge would show.
+/// Static friction of 2/7 of the downhill weight must act along the whole path, so history lost at one edge would be
+/// visible.
 TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
   EngineGrains few;
   few.options.friction = 0.6;
@@ -88,7 +90,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
     ASSERT_EQ(s.step(dt), -1);
     const Vec3 force = (s.accounts().surface_impulse - before) / dt;
     before = s.accounts().surface_impulse;
-    if (step < 5000) continue;  // the spring is drawn and its start-up has died out
+    if (step < 5000) continue;  // the spring is stretched and its start-up has died out
     const std::string where = brief((terrain::dem::position(s, 0) - foot).dot(down)) + " m";
     friction.add(-force.dot(down), mass * (pull - rolling), 0.0, where);
     normal.add(force.dot(up), load, 0.0, where);
@@ -98,7 +100,7 @@ TEST(SlidingBlock, sphere_rolls_half_a_metre_down_a_mesh_at_five_sevenths_g) {
          1e-3, "5/7 g sin(a) t^2/2, with the arm r - delta");
 }
 
-/// A grain of 2000 t that keeps its velocity draws Mindlin's spring while its contact crosses edges and a vertex.
+/// A grain of 2000 t that keeps its velocity stretches Mindlin's spring while its contact crosses edges and a vertex.
 TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) {
   for (const bool through_vertex : {false, true}) {
     EngineGrains few;
@@ -108,7 +110,7 @@ TEST(SlidingBlock, sticking_contact_keeps_its_spring_across_edges_and_vertices) 
     const terrain::dem::ContactCoefficients k = few.coefficients().floor;
     const double mass = few.mass();
     const double overlap = 1e-4, speed = 0.02, dt = 1e-5, height = 0.05;
-    // Cells of 10 mm: the way of 16 mm crosses diagonals and two cell borders, or runs through vertices.
+    // Cells of 10 mm: the path of 16 mm crosses diagonals and two cell borders, or runs through vertices.
     terrain::dem::GrainSolver s = few.make({{0.296, through_vertex ? 0.0 : 0.0037, height + kRadius - overlap}});
     testing::Surface mesh = testing::sheet(0.2, -0.05, 0.01, 20, 10, [=](double, double) { return height; });
     attach(s, mesh, k);

@@ -34,7 +34,7 @@ TEST(AncfTireBalance, momentum_and_angular_momentum_change_by_contact_gravity_an
     const tire::Field before = tire.integrator().q();
     const SurfaceState start = rolling.surface();
     NodalForces f = ground_forces(tire);
-    if (n % 7 == 0) {  // something on a bead disc too
+    if (n % 7 == 0) {  // a force on a bead disc, too
       f.vertex.push_back(tire.mesh().vertex_count - 1);
       f.force.push_back(Vec3(3, -20, 8));
     }
@@ -64,7 +64,7 @@ TEST(AncfTireBalance, momentum_and_angular_momentum_change_by_contact_gravity_an
   }
 }
 
-/// What 0.04 s of a tire that rolls on a ground do with its energy.
+/// Energies of a tire over 0.04 s of rolling on a ground.
 struct RolledEnergy {
   double work = 0.0;    // of rim and ground, J
   double stored = 0.0;  // J

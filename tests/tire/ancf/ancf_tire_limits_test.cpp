@@ -1,4 +1,4 @@
-// What a tire does at the edges of its range: changing and missing pressure, the rim, forces that are not finite.
+// A tire at the limits of its range: changing and missing pressure, the rim, forces that are not finite.
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 

@@ -143,7 +143,7 @@ TEST(AncfTire, pressed_on_a_plane_it_carries_350_to_800_newtons_per_millimetre) 
   const double load = rolling.tire.spindle_wrench().force.z();
   double sunk = 0.0;
   for (const Vec3& x : rolling.surface().position) sunk = std::max(sunk, -x.z());
-  const double deflection = rolling.depth - 0.5 * sunk;  // less about half the penalty ground's own
+  const double deflection = rolling.depth - 0.5 * sunk;  // minus about half the penalty ground's deflection
   EXPECT_GT(load / deflection, 350e3);
   EXPECT_LT(load / deflection, 800e3);
 }

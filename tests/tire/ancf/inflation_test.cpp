@@ -1,4 +1,4 @@
-// Static inflation: residual, symmetry, proportion. How much a crown grows: tests/tire/verification.
+// Static inflation: residual, symmetry, proportion. Tests of the crown's growth are in tests/tire/verification.
 #include "tire/ancf/inflation.hpp"
 
 #include <gtest/gtest.h>

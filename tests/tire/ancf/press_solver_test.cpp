@@ -1,4 +1,5 @@
-// Static pressing: force and potential belong together, one path up and down, wrinkled tires come to rest.
+// Static pressing: force is the derivative of the potential, loading and unloading coincide, wrinkled tires come to
+// rest.
 #include "tire/ancf/press_solver.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +77,7 @@ TEST(PressSolver, a_ground_that_the_tire_sticks_to_is_held_in_every_direction) {
       EXPECT_NEAR(s(k, l), 0.0, 1e-6 * std::sqrt(s(k, k) * s(l, l))) << k << " " << l;
   }
   EXPECT_LT(s(1, 1), s(0, 0));  // a tire is softest sideways
-  // A layer so soft that the tire is rigid beside it: its springs side by side.
+  // A contact layer so soft that the tire is rigid in comparison: springs in parallel.
   const double soft = 1e-6;
   double area = 0.0, turning = 0.0;
   for (const tire::PressSample& p : solver->footprint()) area += p.area, turning += p.area * (p.x * p.x + p.y * p.y);
@@ -107,7 +108,7 @@ TEST(PressSolver, at_camber_force_and_overturning_moment_are_derivatives_of_the_
     EXPECT_NEAR((solver->potential() - before) / (2.0 * step) / middle.force, 1.0, 1e-5);
     EXPECT_EQ(middle.rim.force.z(), middle.force);
     EXPECT_NEAR(middle.rim.force.y(), 0.0, 1e-12 * middle.force);  // no friction
-    // The wheel is turned about its centre, which stays at its height: what turns it does the work −M dγ.
+    // The wheel is turned about its centre, which keeps its height: the turning moment does the work −M dγ.
     double turned[2];
     for (const int side : {0, 1}) {
       const auto other = solver_of(file, tilted(flat, camber + (side == 0 ? -turn : turn)));
@@ -171,7 +172,7 @@ TEST(PressSolver, a_torus_touches_a_tilted_plate_where_geometry_says) {
   file.pressure = 1.0;
   const double ring = 0.35, section = 0.195;  // radii of the half torus, m
   const tire::ShellMesh mesh = tire::make_shell_mesh(file);
-  for (const int aside : {1, 2}) {  // rows of nodes beside the middle: one of them is the lowest
+  for (const int aside : {1, 2}) {  // rows of nodes next to the middle: one of them is the lowest
     const Vec3 node = mesh.position[static_cast<std::size_t>(mesh.rows / 2 + aside)];
     const double camber = std::atan2(node.y(), node.z() - ring);
     ASSERT_GT(camber, 0.05);
@@ -186,7 +187,7 @@ TEST(PressSolver, an_axisymmetric_tire_has_no_runout) {
   const auto solver = solver_of(small_file("hmmwv_lumped.json", 30, 6), {});
   EXPECT_EQ(solver->press(0.0).failed_factorizations, 0);
   EXPECT_LT(solver->runout(), 1e-12);
-  EXPECT_LT(solver->director_runout(), 1e-7);  // acos of what rounding leaves
+  EXPECT_LT(solver->director_runout(), 1e-7);  // acos of a rounding error
 }
 
 TEST(PressSolver, a_wrinkled_tire_comes_to_a_stable_rest) {

@@ -62,7 +62,7 @@ TEST(Prony, a_stretched_panel_relaxes_as_the_sum_of_exponentials) {
   for (int n = 0; n < 3000; ++n) {
     const double force = norm(panel.go(strain, h, 0.0, energies)) / settled;
     lost += energies.relaxed, stored += energies.stored;
-    double exact = 1.0;  // strain rises evenly over the first step
+    double exact = 1.0;  // strain rises at a constant rate over the first step
     for (const auto& [g, tau] : kTwo) exact += g * std::exp(-n * h / tau) * -std::expm1(-h / tau) * tau / h;
     EXPECT_NEAR(force, exact, 1e-12) << "step " << n;
     double sudden = 1.0;  // at the middle of the rise
@@ -70,7 +70,7 @@ TEST(Prony, a_stretched_panel_relaxes_as_the_sum_of_exponentials) {
     EXPECT_NEAR(force, sudden, 1e-5) << "step " << n;
     EXPECT_GE(energies.relaxed, 0.0);
   }
-  // All that the branches took, ½ g D̂ E² each at first, is lost in the end.
+  // The whole energy of the branches, at first ½ g D̂ E² each, is lost in the end.
   tire::Field none;
   elastic.shell.strains(elastic.start, none);
   const double whole = elastic.shell.account(elastic.stretched(strain), none).elastic;

@@ -218,7 +218,7 @@ TEST(ShellCarcass, pressure_resultant_of_an_open_surface_follows_stokes) {
   EXPECT_LT((loops.moment - moment).norm(), 1e-10 * scale);
 }
 
-/// Puts the elastic tangent at q into the sectors of the factor that are named.
+/// Adds the elastic tangent at q to the given sectors of the factor.
 void add_tangent(const Ring& ring, const ShellMass& mass, const Field& q, const std::vector<int>& sectors,
                  ShellFactor& factor) {
   const auto element = std::make_unique<BatchTangent>();

@@ -1,5 +1,4 @@
-// Contact forces that answer to the tire's motion: stability above the step of forces that come late, restart,
-// equilibrium.
+// Contact forces that follow the tire's motion: stability above the stable step of late forces, restart, equilibrium.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace {
 
 constexpr double kStiffness = 4e5, kDamping = 20.0;  // of the ground under each vertex, N/m, N s/m
 
-/// Springs and dashpots at z = 0 that move the vertices as a terrain does, and answer one interval late.
+/// Springs and dashpots at z = 0 that act on the vertices like a terrain, one interval late.
 class Springs {
  public:
   explicit Springs(const tire::Tire& tire) {

@@ -142,7 +142,7 @@ TEST(ShellMatrices, enhanced_strains_have_zero_mean_over_the_element) {
     mean += p.volume * p.enhanced_map;
     volume += p.volume;
   }
-  // Exact in fixed axes; material axes turn by half a pitch over the element, so a few per cent are left.
+  // Exact in fixed axes; material axes turn by half a pitch over the element, so the error is a few per cent.
   EXPECT_LT(mean.norm() / volume, 0.05 / (g0.col(0).squaredNorm()));
 }
 

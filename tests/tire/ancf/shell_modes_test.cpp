@@ -14,7 +14,7 @@ namespace {
 constexpr double kRadius = 0.4, kLength = 0.3, kThickness = 2e-3;  // m
 constexpr double kModulus = 1e7, kShear = 4e6, kDensity = 1000.0;  // Pa, kg/m³
 
-/// An isotropic tube of one layer in place of the tire, without pressure.
+/// An isotropic tube of one layer instead of the tire, without pressure.
 tire::TireFile tube(int columns, int width) {
   tire::TireFile file = small_file("hmmwv_lumped.json", columns, width);
   file.rim_radius = file.radius = kRadius, file.rim_width = kLength;

@@ -1,6 +1,6 @@
-// Shell elements on any quadrilateral mesh with clamped and prescribed coordinates: what element tests and published
-// shell problems need. Elements and their matrices are those of the tire; assembly and statics are the test's own.
-// Coordinates: 6 per node, position then director.
+// Shell elements on any quadrilateral mesh with clamped and prescribed coordinates, for element tests and published
+// shell problems. The tests use the tire's elements and matrices, and their own assembly and statics. Coordinates: 6
+// per node, position then director.
 #pragma once
 
 #include <Eigen/Dense>
@@ -18,7 +18,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 tire::ShellLayer isotropic_layer(double thickness, double young, double poisson);
 
-/// E_L along the fibre, transversely isotropic elsewhere but for G_TT.
+/// E_L along the fibre; otherwise transversely isotropic, except for G_TT.
 struct Ply {
   double e_l = 0.0, e_t = 0.0, g_lt = 0.0, g_tt = 0.0;  // Pa
   double nu_lt = 0.0, nu_tt = 0.0;
@@ -90,7 +90,7 @@ class ShellPatch {
   std::vector<int> place_;  // of an element's entries in the pattern's values
 };
 
-/// Which coordinates are unknown. Everything is, until fixed.
+/// The unknown coordinates: all that are not fixed.
 class Supports {
  public:
   explicit Supports(int nodes) : fixed_(6 * nodes, 0) {}
@@ -107,9 +107,9 @@ class Supports {
 Sparse restrict_to(const Sparse& k, const std::vector<int>& free);
 Vector restrict_to(const Vector& v, const std::vector<int>& free);
 
-/// Statics along a path λ = 0 … 1 of loads λ F and prescribed coordinates. Newton's method with stresses as
-/// unknowns of their own: the geometric stiffness takes stresses that are extrapolated linearly from the iterate
-/// before, which keeps bending of thin shells convergent in large steps; the solution is the same.
+/// Statics along a path λ = 0 … 1 of loads λ F and prescribed coordinates. Newton's method has stresses as separate
+/// unknowns: the geometric stiffness uses stresses extrapolated linearly from the previous iterate. Bending of thin
+/// shells then converges in large steps; the solution is the same.
 ///   Magisano, Leonetti, Garcea (2017), Advantages of the mixed format in geometrically nonlinear analysis of beams
 ///   and shells using solid finite elements, Int. J. Numer. Methods Eng. 109, doi:10.1002/nme.5322.
 class StaticPath {
@@ -119,15 +119,15 @@ class StaticPath {
 
   /// Sets prescribed coordinates at λ.
   void prescribe(std::function<void(double, Vector&)> motion) { motion_ = std::move(motion); }
-  /// Goes on from a known equilibrium.
+  /// Continues from a known equilibrium.
   void start(const Vector& q, double lambda) { q_ = q, lambda_ = lambda; }
-  /// Goes to λ, in smaller steps where Newton's method fails. @returns false when it got stuck
+  /// Moves to λ, in smaller steps if Newton's method fails. @returns false when the steps become too small
   bool go_to(double lambda);
 
   const Vector& q() const { return q_; }
   double lambda() const { return lambda_; }
   int iterations() const { return iterations_; }
-  /// Internal forces less loads: zero on free coordinates, reactions on the others.
+  /// Internal forces minus loads: zero on free coordinates, reactions on the others.
   Vector reactions() const { return patch_.forces(q_) - lambda_ * load_; }
 
  private:

@@ -88,7 +88,7 @@ TEST(ShellPatch, rigid_motion_by_a_large_rotation_has_no_energy) {
   EXPECT_LT(patch.energy(q), 1e-20 * kYoung);
 }
 
-/// Length 1 m, width 0.1 m, along x. The clamp lets thickness and width breathe.
+/// Length 1 m, width 0.1 m, along x. The clamp leaves thickness and width free.
 double cantilever_tip(int elements, double height, double force) {
   const ShellPatch strip(plate_mesh(elements, 1, 1.0, 0.1), {isotropic_layer(height, kYoung, 0.3)});
   Vector load = Vector::Zero(strip.coordinates());

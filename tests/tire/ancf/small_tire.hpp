@@ -32,7 +32,7 @@ inline NodalForces ground_forces(const tire::Tire& tire) {
   return f;
 }
 
-/// A rim that rolls at `speed` and sinks from just above the ground; smooth in time.
+/// A rim that rolls at `speed` and moves down from just above the ground, smoothly in time.
 inline RimState rolling_rim(double time, double radius, double speed, double depth) {
   RimState r;
   const double share = std::min(1.0, time / 0.02);
@@ -62,7 +62,7 @@ struct Rolling : LedTire {
   }
 };
 
-/// Momentum and angular momentum about the origin by the consistent mass.
+/// Momentum and angular momentum about the origin, with the consistent mass.
 inline std::pair<Vec3, Vec3> momenta(const tire::AncfTire& tire) {
   const tire::ShellLayout& layout = tire.integrator().layout();
   const tire::Field &q = tire.integrator().q(), &v = tire.integrator().v();
@@ -77,7 +77,8 @@ inline std::pair<Vec3, Vec3> momenta(const tire::AncfTire& tire) {
   return {linear, angular};
 }
 
-/// Rolls 120 intervals, saves, and continues for 80 with the tire and with another, restored: the same bits.
+/// Rolls 120 intervals, saves, and continues for 80 with the tire and with a restored one. Checks that both have the
+/// same bits.
 /// @param prepare called with a tire and the interval's number before each interval
 template <class Prepare>
 void expect_restart_bit_for_bit(const tire::TireFile& file, Prepare prepare) {

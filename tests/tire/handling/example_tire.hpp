@@ -1,4 +1,4 @@
-// A tire with every coefficient of the formula in use, for tests; its numbers are made up within the usual.
+// A tire that uses every coefficient of the formula, for tests. Its numbers are invented, within usual ranges.
 #pragma once
 
 #include "tire/handling/coefficients.hpp"
@@ -114,7 +114,7 @@ inline MagicFormula example_tire() {
   return t;
 }
 
-/// The same with what Magic Formula 6.1 adds, at a pressure that is not the nominal one.
+/// The tire with the additions of Magic Formula 6.1, at a pressure other than the nominal one.
 inline MagicFormula later_tire() {
   MagicFormula t = example_tire();
   t.version61 = true;

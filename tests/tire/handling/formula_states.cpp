@@ -1,5 +1,5 @@
-// Writes a tire property file that uses every coefficient, random states within and around its ranges, and what
-// tire/handling says of them: for formula_peer_test.py, which evaluates the same file on its own.
+// Writes a tire property file that uses every coefficient, random states within and around its ranges, and the forces
+// of tire/handling in them. formula_peer_test.py evaluates the same file independently.
 //
 // usage: formula_states FILE.tir STATES.csv [FILE.tir that is there already, or 6.1]
 #include <algorithm>

@@ -44,7 +44,7 @@ RimState rolling(double depth, double speed, double spin, double toe, double cam
   return rim;
 }
 
-/// A rim whose motion goes on, its tire and the ground that gives it what it states.
+/// A rim that continues its motion, its tire, and the ground that applies the tire's stated forces.
 class Rolling {
  public:
   Rolling(HandlingTire& tire, const RimState& start) : tire_(tire), rim_(start), trajectory_(start) {
@@ -105,7 +105,7 @@ TEST(HandlingTire, steady_rolling_gives_the_formula_at_the_rims_slips) {
   }
 }
 
-/// Half a turn about z away, a wheel that rolls backward rolls forward and leans the other way.
+/// Seen after half a turn about z, a wheel that rolls backward rolls forward and leans the other way.
 TEST(HandlingTire, rolling_backward_is_rolling_forward_seen_from_the_other_side) {
   for (const auto& [slip, toe, camber] : {std::tuple{0.3, 0.0, 0.0}, {-0.3, 0.02, 0.0}, {0.0, 0.05, 0.05}}) {
     const double depth = 0.018, speed = 5.0, spin = (1.0 + slip) * speed / rolling_radius(example_tire(), depth);
@@ -316,7 +316,7 @@ TEST(HandlingTire, standing_wheel_holds_its_place) {
   EXPECT_NEAR(tire.spindle_wrench().force.y(), held, 1e-9 * std::abs(held)) << "2 s later";
 }
 
-/// A spinning wheel does not wind its patch up: turned back, it holds at once.
+/// A spinning wheel does not wind up its patch: when it turns back, it holds at once.
 TEST(HandlingTire, spinning_on_the_spot_stays_within_the_range_of_slip) {
   HandlingTire tire = make();
   Rolling run(tire, rolling(0.018, 0.0, 30.0, 0.0, 0.0));
@@ -466,7 +466,7 @@ TEST(HandlingFile, takes_the_scenarios_pressure_where_its_coefficients_have_one)
   expect_refused(ExitCode::bad_input, {"key 'tire.pressure'", "one pressure"}, [&] { read_tire(options); });
 }
 
-/// What the numbers of a file cannot be, and what of it is not followed, is told of the file by name.
+/// Impossible numbers of a file, and parts of it that are not used, are reported with their names.
 TEST(HandlingFile, unlikely_values_are_told_by_section_and_key) {
   const auto told = [](const MagicFormula& formula) {
     TireOptions options;

@@ -52,7 +52,7 @@ TEST(MagicFormula, peak_is_d) {
   }
 }
 
-/// At very large slip the sine's argument goes to C π/2 where E < 1.
+/// At very large slip the sine's argument tends to C π/2 if E < 1.
 TEST(MagicFormula, asymptote_is_d_times_the_sine_of_c) {
   MagicFormula t = symmetric_tire();
   const double end =
@@ -79,7 +79,7 @@ TEST(MagicFormula, is_odd_in_slip_and_slip_angle_without_shifts) {
       }
 }
 
-/// A mirrored wheel: α, γ change their signs, and with them F_y, M_x and M_z, where the formula has no ply steer.
+/// A mirrored wheel: α, γ change their signs, and with them F_y, M_x and M_z, if the formula has no ply steer.
 TEST(MagicFormula, camber_and_slip_angle_mirror_together) {
   const MagicFormula t = symmetric_tire();
   for (const double angle : {-0.1, 0.02, 0.2})
@@ -112,8 +112,8 @@ TEST(MagicFormula, combined_slip_without_the_other_slip_is_pure) {
   EXPECT_LT(both.fx, 0.95 * alone.fx);
 }
 
-/// Within the ellipse of the peaks at any slips, the pure forces where the other slip is none, and along the slip where
-/// both slide.
+/// Forces are within the ellipse of the peaks at any slips. They equal the pure forces if the other slip is zero, and
+/// are along the slip if both slide.
 TEST(MagicFormula, without_coefficients_of_combined_slip_it_keeps_within_the_friction_ellipse) {
   MagicFormula t = symmetric_tire();
   t.longitudinal.rbx1 = t.lateral.rcy1 = 0.0;
@@ -145,7 +145,7 @@ TEST(MagicFormula, without_coefficients_of_combined_slip_it_keeps_within_the_fri
         EXPECT_LE(std::abs(f.fy), std::abs(y.fy) * (1.0 + 1e-12));
       }
     EXPECT_GT(most, 0.9);
-    // The slopes at no slip stay: neither small slip weakens the other's force.
+    // The slopes at zero slip do not change: neither small slip weakens the other's force.
     const HandlingForces small = evaluate(t, {.load = load, .slip = 1e-5, .slip_angle = 1e-5}),
                          alone = evaluate(pure, {.load = load, .slip = 1e-5, .slip_angle = 1e-5});
     EXPECT_NEAR(small.fx, alone.fx, 1e-6 * std::abs(alone.fx));
@@ -153,7 +153,7 @@ TEST(MagicFormula, without_coefficients_of_combined_slip_it_keeps_within_the_fri
   }
 }
 
-/// Of 6.1: without pressure change and camber it is 5.2 where the curve of K_yα is that of an atan of 2.
+/// Without pressure change and camber, 6.1 equals 5.2 if the curve of K_yα is that of an atan of 2.
 TEST(MagicFormula, version_6_1_without_its_terms_is_5_2) {
   MagicFormula old = example_tire();
   old.lateral.phy3 = 0.0;
@@ -172,7 +172,7 @@ TEST(MagicFormula, version_6_1_without_its_terms_is_5_2) {
       }
 }
 
-/// K and the peaks carry the terms of pressure in closed form, and dF_y/dγ at no slip is K_yγ0 (4.E30).
+/// K and the peaks contain the terms of pressure in closed form, and dF_y/dγ at zero slip is K_yγ0 (4.E30).
 TEST(MagicFormula, version_6_1_depends_on_pressure_and_camber_as_its_equations_say) {
   MagicFormula t = later_tire();
   const double dpi = 0.2, df = -0.25, load = 3000.0;
@@ -200,7 +200,8 @@ TEST(MagicFormula, relaxation_of_6_1_is_slip_stiffness_over_that_of_the_carcass)
   EXPECT_EQ(relaxation_lengths(t, 0.0, 0.0).longitudinal, 0.0);
 }
 
-/// Through its points, with the energy of its area; inverse of each other; C_z under the nominal load of 6.1.
+/// The spring passes through its points and has the energy of its area; force and deflection are inverse functions; C_z
+/// under the nominal load of 6.1.
 TEST(MagicFormula, spring_follows_the_curve_of_the_file) {
   MagicFormula t = example_tire();
   EXPECT_EQ(spring_force(t, 0.01), 2200.0);
@@ -249,7 +250,7 @@ TEST(MagicFormula, holds_the_ends_of_its_ranges_and_scales_with_loads_beyond_the
   EXPECT_EQ(evaluate(t, {.load = 18000.0}).fz, 18000.0);
 }
 
-/// Of every load the peaks go down in the ratio of the frictions, the slope at no slip does not.
+/// For every load the peaks are reduced in the ratio of the frictions; the slope at zero slip is not.
 TEST(MagicFormula, on_a_smoother_ground_its_peaks_are_the_ground_s_and_its_stiffnesses_its_own) {
   const MagicFormula t = symmetric_tire();
   const auto peaks = [](const MagicFormula& tire, double load) {
@@ -273,7 +274,7 @@ TEST(MagicFormula, on_a_smoother_ground_its_peaks_are_the_ground_s_and_its_stiff
   const MagicFormula rough = on_ground_of(t, 2.0);
   EXPECT_EQ(rough.scaling.lmux, t.scaling.lmux);
   EXPECT_EQ(rough.scaling.lmuy, t.scaling.lmuy);
-  // Between the two axes of a tire it tells them apart.
+  // With a friction between its two peaks, only the higher one is reduced.
   const double between = 0.5 * (t.scaling.lmux * t.longitudinal.pdx1 + t.scaling.lmuy * t.lateral.pdy1);
   EXPECT_LT(on_ground_of(t, between).scaling.lmux, t.scaling.lmux);
   EXPECT_EQ(on_ground_of(t, between).scaling.lmuy, t.scaling.lmuy);

@@ -1,4 +1,4 @@
-// Tables of sweeps on hard ground, and what is written of them in the layout of TYDEX.
+// Tables of sweeps on hard ground, and their files in the layout of TYDEX.
 #include "tire/handling/sweep_table.hpp"
 #include "tests/refusal.hpp"
 
@@ -67,7 +67,7 @@ TEST(SweepTable, wrong_tables_are_refused_by_line) {
   EXPECT_TRUE(holds(complaint(head), "expected one at each load"));
 }
 
-/// Names in columns 1 to 10, units in 41 to 50, as many numbers as channels [TYDEX 1.3].
+/// Names are in columns 1 to 10, units in 41 to 50; a line has one number for each channel [TYDEX 1.3].
 TEST(Tydex, has_the_layout_of_its_release) {
   const auto points = read_sweep_table(written(std::string(kHead) + kRows));
   std::istringstream lines(tydex_text("lumped", example_tire(), points, {"fitted for slip -0.1 to 0.1"}));

@@ -1,4 +1,4 @@
-// Tire property files: what is written is read back, and what is wrong is refused by name.
+// Tire property files: written files are read back, and errors are refused with their names.
 #include "tire/handling/tir_file.hpp"
 #include "tests/refusal.hpp"
 
@@ -24,7 +24,7 @@ std::string replaced(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-/// Without the section of that name.
+/// The file without the section of that name.
 std::string without(const std::string& section) {
   std::string text = whole();
   const std::size_t at = text.find("[" + section + "]");
@@ -44,7 +44,7 @@ TEST(TirFile, reads_back_what_it_wrote_bit_for_bit) {
   EXPECT_EQ(parse_tir(text, "a.tir").longitudinal.pdx2, t.longitudinal.pdx2);
 }
 
-/// Comments, quotes, line ends, names in small letters, and sections that only other programs know.
+/// Comments, quotes, line ends, names in small letters, and sections of other programs.
 TEST(TirFile, takes_layouts_of_others) {
   std::string text = whole();
   for (const auto& [from, to] : {std::pair<std::string, std::string>{"[UNITS]\n", "$------ units\n[units]\n"},
@@ -123,7 +123,7 @@ std::string remarks(const std::string& text) {
   return all;
 }
 
-/// Free text in sections that nobody reads, marks of other programs, a byte order mark, Latin-1 in comments.
+/// Free text in unread sections, marks of other programs, a byte order mark, Latin-1 in comments.
 TEST(TirFile, passes_over_what_it_does_not_read) {
   std::string text = whole();
   for (const auto& [from, to] : {std::pair<std::string, std::string>{"[MDI_HEADER]\n", "\xef\xbb\xbf[MDI_HEADER]\n"},
@@ -167,7 +167,7 @@ TEST(TirFile, refuses_what_is_missing_together) {
       << complaint(text);
 }
 
-/// A range that ends at or beyond 0 would be a force that is not there.
+/// A range that does not contain 0 on both sides would give a force that does not exist.
 TEST(TirFile, a_range_without_room_on_a_side_of_0_is_taken_as_symmetric) {
   for (const auto& [from, to, key] :
        {std::tuple<std::string, std::string, std::string>{"KPUMAX             = 1.2", "KPUMAX = 0",
@@ -211,7 +211,7 @@ TEST(TirFile, coefficients_that_are_left_out_are_none_and_factors_one) {
   EXPECT_EQ(parse_tir(text, "a.tir").scaling.lmux, 1.0);
 }
 
-/// Damaged files are read or refused with a sentence, and nothing else.
+/// Damaged files are read, or refused with a sentence.
 TEST(TirFile, survives_damage) {
   std::mt19937 random(1);
   const std::string text = whole();

@@ -1,4 +1,4 @@
-// Contact of the planar tire: its laws, what lies in the ground, corners in the tire, against closed forms.
+// Contact of the planar tire against closed forms: its laws, points in the ground, corners in the tire.
 #include "tire/planar/planar_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ TEST(PlanarContact, nodes_in_the_ground_are_pushed_out_and_rubbed) {
 
 TEST(PlanarContact, a_corner_in_the_tire_pushes_its_side_as_a_force_at_the_corner_does) {
   const PlanarMesh m = square();
-  // A needle whose point stands 0.04 m in the lower side, at x = 0.5.
+  // A needle whose point is 0.04 m inside the lower side, at x = 0.5.
   RubbingContact contact(m, PlanarGround({{0.499, -3.0}, {0.5, 0.04}, {0.501, -3.0}}), {1e4, 0.5});
   PlanarState s{m.position, PlanarField(5)};
   for (double& v : s.v.x) v = -2.0;
@@ -118,7 +118,7 @@ TEST(PlanarContact, a_corner_in_the_tire_pushes_its_side_as_a_force_at_the_corne
   EXPECT_NEAR(force.z[1], 0.25 * 400.0, 1e-9);
   EXPECT_NEAR(force.z[2], 0.75 * 400.0, 1e-9);
   EXPECT_NEAR(force.x[1] + force.x[2], 200.0, 1e-9);  // friction, against its sliding
-  // The side may be pushed as far as out of the corner, by the mass of its point: 1/(0.25²/1 + 0.75²/4).
+  // The force may push the side until it leaves the corner, with the mass of its point: 1/(0.25²/1 + 0.75²/4).
   contact.load(s, mass, 1.0, force = PlanarField(5));
   const double point = 1.0 / (0.0625 + 0.5625 / 4.0);
   EXPECT_NEAR(contact.touches()[0].force, std::min(400.0, 2.0 * point * 0.04), 1e-9);

@@ -1,4 +1,4 @@
-// The triangles of the planar tire against closed forms, and what must hold for any of them.
+// The triangles of the planar tire against closed forms, and general properties of elements.
 #include "tire/planar/planar_elements.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(PlanarElements, a_stretched_triangle_pulls_its_nodes_together) {
       force_at(PlanarElements(m, std::array{kRubber}, {}), mapped(m.position, 1.1 * turn(0.0)), PlanarField(3));
   EXPECT_GT(std::min(f.x[0], f.z[0]), 0.0);  // towards the others
   EXPECT_LT(std::max(f.x[1], f.z[2]), 0.0);
-  // Half of T n of each side that meets in the corner, T = p I: sides are 1.1 m long.
+  // Half of T n of each side at the corner, T = p I: sides are 1.1 m long.
   const double p = PlanarElements(m, std::array{kRubber}, {}).stress(mapped(m.position, 1.1 * turn(0.0)), 0).xx;
   EXPECT_NEAR(f.x[0], 0.5 * p * 1.1, 1e-9 * p);
   EXPECT_NEAR(f.x[1], -0.5 * p * 1.1, 1e-9 * p);
@@ -275,7 +275,7 @@ PlanarMesh strip(double length, double height, int along, int through) {
   return m;
 }
 
-/// How far a strip bends that linear stresses on its ends bend, beside M (1 − ν²)/(E I) of plane strain.
+/// Bending of a strip by linear stresses on its ends, relative to M (1 − ν²)/(E I) of plane strain.
 double bending(double poisson_ratio, bool averaged, int size) {
   const double length = 1.0, height = 0.2, e = 3e5, moment = 1.0;
   const int along = 10 * size, through = 2 * size;
@@ -302,8 +302,8 @@ double bending(double poisson_ratio, bool averaged, int size) {
 
 TEST(PlanarElements, averaged_volumes_take_the_locking_out_of_bending_near_incompressibility) {
   // Pure bending in plane strain, [Timoshenko & Goodier, art. 21] with E/(1 − ν²).
-  // Pure bending in plane strain: a beam's, with E/(1 − ν²) [Timoshenko & Goodier, art. 21]. A mesh twice as fine is
-  // three to four times nearer to it, locked triangles are not.
+  // Pure bending in plane strain: a beam's, with E/(1 − ν²) [Timoshenko & Goodier, art. 21]. A mesh twice as fine has a
+  // third to a quarter of the error, but not with locked triangles.
   for (const bool averaged : {false, true}) {
     const double coarse = 1.0 - bending(0.3, averaged, 2), fine = 1.0 - bending(0.3, averaged, 4);
     EXPECT_LT(fine, 0.06) << averaged;

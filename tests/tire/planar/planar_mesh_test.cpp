@@ -20,10 +20,10 @@ double area(const PlanarMesh& m, int e) {
   return 0.5 * ((p.x[b] - p.x[a]) * (p.z[c] - p.z[a]) - (p.x[c] - p.x[a]) * (p.z[b] - p.z[a]));
 }
 
-/// Of a regular polygon with n corners on a circle.
+/// Area of a regular polygon with n corners on a circle.
 double polygon(double radius, int n) { return 0.5 * n * radius * radius * std::sin(2.0 * std::numbers::pi / n); }
 
-/// Every inner edge is run through once in each direction; the others are returned.
+/// Checks that triangles run through every inner edge once in each direction. @returns the other edges
 std::set<std::pair<int, int>> edges_of_one_triangle(const PlanarMesh& m) {
   std::set<std::pair<int, int>> once;
   for (const auto& t : m.triangles)

@@ -46,7 +46,7 @@ double turning(const PlanarMaterial& m) {
   return k * std::sqrt(planar_moduli(m, PlanarLaw::consistent).mu / m.density) / (2.0 * std::numbers::pi);
 }
 
-/// Breathing: u_r likewise with ω = k √((λ + 2μ)/ρ), and (λ + 2μ) u′ + λ u/r = 0 outside.
+/// Breathing: u_r has the same form with ω = k √((λ + 2μ)/ρ), and (λ + 2μ) u′ + λ u/r = 0 outside.
 double breathing(const PlanarMaterial& m) {
   const PlanarModuli moduli = planar_moduli(m, PlanarLaw::consistent);
   const double lambda = 2.0 * moduli.kappa, stiff = lambda + 2.0 * moduli.mu;

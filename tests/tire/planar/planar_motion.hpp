@@ -1,7 +1,7 @@
-// Explicit integration of planar triangles and whatever loads them.
+// Explicit integration of planar triangles and their loads.
 //
-// Semi-implicit Euler: v += (F/m) h, then x += v h. It keeps linear and angular momentum to round-off. Runge and
-// Kutta's method of fourth order is four times the work.
+// Semi-implicit Euler: v += (F/m) h, then x += v h. It keeps linear and angular momentum to round-off. The Runge–Kutta
+// method of fourth order needs four times the work.
 #pragma once
 
 #include <functional>
@@ -16,16 +16,16 @@ struct PlanarState {
 
 class PlanarMotion {
  public:
-  /// Adds what acts from outside on nodes to a force. @param step s, that contact limits its force by
+  /// Adds the external loads on nodes to a force. @param step s, by which contact limits its force
   using Loads = std::function<void(const PlanarState& state, double step, PlanarField& force)>;
 
   PlanarMotion(PlanarElements elements, PlanarState start,
                PlanarIntegrator integrator = PlanarIntegrator::semi_implicit_euler);
 
   void set_loads(Loads loads) { loads_ = std::move(loads); }
-  /// Mass that a node carries besides its own, kg.
+  /// Adds mass to a node, kg.
   void add_mass(int node, double mass) { mass_[node] += mass; }
-  /// A node's velocity in this direction stays as set_velocity() says.
+  /// Keeps a node's velocity in these directions at the value of set_velocity().
   void hold(int node, bool x, bool z);
   void set_velocity(int node, double x, double z) { state_.v.x[node] = x, state_.v.z[node] = z; }
 
@@ -34,9 +34,9 @@ class PlanarMotion {
 
   const PlanarState& state() const { return state_; }
   const PlanarElements& elements() const { return elements_; }
-  const std::vector<double>& mass() const { return mass_; }  // kg, with what was added
-  /// Sum that acted on nodes in the last step (the first stage of a Runge–Kutta step); of a held node: what the holder
-  /// must resist, N.
+  const std::vector<double>& mass() const { return mass_; }  // kg, with added masses
+  /// Sum of the forces on nodes in the last step (in the first stage of a Runge–Kutta step), N. On a held node, the
+  /// holder resists this force.
   const PlanarField& force() const { return force_; }
   double kinetic_energy() const;  // J
 

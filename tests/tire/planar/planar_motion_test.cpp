@@ -1,4 +1,4 @@
-// Explicit integration of planar triangles: what it conserves, its order, and the largest step.
+// Explicit integration of planar triangles: conserved quantities, order, and the largest step.
 #include "tests/tire/planar/planar_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(PlanarMotion, energy_is_kept_without_viscosity_and_falls_with_it) {
     }
     return most / begin;
   };
-  // Euler's energy swings with the step, and does not drift; Runge and Kutta's falls with its fifth power.
+  // Euler's energy oscillates in proportion to the step, without drift; Runge–Kutta's falls with its fifth power.
   const double coarse = largest_change(kBoth[0], 0.2), fine = largest_change(kBoth[0], 0.1);
   EXPECT_LT(coarse, 0.02);
   EXPECT_LT(fine, 0.6 * coarse);
@@ -123,7 +123,7 @@ TEST(PlanarMotion, the_limit_of_one_triangle_is_exact_with_viscosity_and_when_pr
     const PlanarElements damped(mesh, std::array{material}, {});
     const double limit = step_limit(damped, mesh.position);
     EXPECT_LT(limit, step_limit(elastic, mesh.position));
-    for (const PlanarIntegrator kind : kBoth) {  // Runge and Kutta's method bears it as well
+    for (const PlanarIntegrator kind : kBoth) {  // the Runge–Kutta method is stable at it, too
       PlanarMotion motion(damped, {mesh.position, random_planar(3, 1e-6, 2)}, kind);
       const double begin = motion.kinetic_energy();
       for (int k = 0; k < 500; ++k) ASSERT_TRUE(motion.step(0.99 * limit));
@@ -166,7 +166,7 @@ TEST(PlanarMotion, held_nodes_move_as_told_and_added_mass_is_accelerated) {
     const int steps = 400;
     for (int k = 0; k < steps; ++k) ASSERT_TRUE(motion.step(h));
     EXPECT_NEAR(motion.state().x.x[mesh.centre], 0.5 * h * steps, 1e-12);
-    EXPECT_NEAR(motion.state().v.z[mesh.centre], -gravity * h * steps, 1e-9);  // all fall alike
+    EXPECT_NEAR(motion.state().v.z[mesh.centre], -gravity * h * steps, 1e-9);  // all fall equally
     double mass = 0.0;
     for (const double one : motion.mass()) mass += one;
     EXPECT_NEAR(momenta(motion).z, -mass * gravity * h * steps, 1e-9 * mass);

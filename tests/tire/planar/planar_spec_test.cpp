@@ -1,4 +1,4 @@
-// The planar tire as a tire: its file, what is wrong with files, and what furrow press finds.
+// The planar tire as a tire: its file, errors in files, and results of furrow press.
 #include "tire/planar/planar_spec.hpp"
 #include "tests/refusal.hpp"
 

@@ -38,13 +38,13 @@ TEST(PlanarStatic, ground_and_axle_are_in_balance_and_the_force_is_the_derivativ
     energy(0.06);
     EXPECT_NEAR((after - before) / (2 * h), s.force(), 1e-5 * s.force());
     EXPECT_GT(s.force(), 1e4);
-    // The axle: what the triangles around the centre node ask of it.
+    // The axle carries the forces of the triangles around the centre node.
     PlanarElements elements = s.elements();
     PlanarField f(s.shape().size());
     EXPECT_TRUE(elements.force(s.shape(), PlanarField(f.size()), f));
     EXPECT_NEAR(f.z[0], s.force(), 1e-7 * s.force());
     EXPECT_NEAR(f.x[0], 0.0, 1e-7 * s.force());
-    // Where the way leads back, so does the force.
+    // When the centre returns, so does the force.
     const double there = s.force();
     energy(0.02), energy(0.06);
     EXPECT_NEAR(s.force(), there, 1e-7 * there);

@@ -1,4 +1,4 @@
-// The planar tire under the interface of tires: momentum, energy, the static test as a peer, exact continuation.
+// The planar tire with the interface of tires: momentum, energy, comparison with the static test, exact continuation.
 #include "tire/planar/planar_tire.hpp"
 #include "tests/refusal.hpp"
 #include "tire/planar/planar_spec.hpp"
@@ -69,7 +69,7 @@ TEST(PlanarTire, a_free_wheel_that_spins_keeps_its_angular_momentum_and_needs_no
     ASSERT_TRUE(tire->advance(motion, {}, 1).ok);
     rim.orientation = motion.end().orientation;
   }
-  // Settled in the growth by centrifugal forces: a rigid motion, without force, moment or loss.
+  // After growth by centrifugal forces it moves rigidly, without force, moment or loss.
   const Wrench w = tire->spindle_wrench();
   EXPECT_LT(w.force.norm(), 1e-6);
   EXPECT_LT(w.moment.norm(), 0.02);
@@ -78,7 +78,7 @@ TEST(PlanarTire, a_free_wheel_that_spins_keeps_its_angular_momentum_and_needs_no
 TEST(PlanarTire, pressed_slowly_it_comes_to_the_static_test) {
   PlanarFile f = file(36);
   f.params.tire.viscosity = 2e3;
-  f.params.disc.young_modulus = 1e11;  // of the peer, as hard as a rim
+  f.params.disc.young_modulus = 1e11;  // of the static test, as hard as a rim
   f.params.friction = 0.0;
   PlanarStatic peer(f.params, PlanarGround::plate(f.params.size.radius));
   const double deflection = 0.03;
@@ -112,7 +112,7 @@ TEST(PlanarTire, its_surface_is_the_shape_that_it_was_described_with) {
 }
 
 TEST(PlanarTire, what_cannot_go_on_says_so) {
-  // Fifty tons on one node drive it to the rim, or through its triangles.
+  // Fifty tons on one node push it to the rim, or turn its triangles inside out.
   expect_limits_are_told(options(), kStep, {{36, 37}, std::vector<Vec3>(2, Vec3(0.0, 0.0, 2.5e5))}, "try");
 }
 

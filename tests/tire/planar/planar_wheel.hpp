@@ -1,5 +1,5 @@
-// A planar wheel in motion: disc and tire of triangles on rigid ground, its centre node linked to a vehicle, driven and
-// braked by couples on the disc's rim.
+// A planar wheel in motion: disc and tire of triangles on rigid ground. Its centre node is linked to a vehicle; couples
+// on the disc's rim drive and brake it.
 //
 // The couple M about +y (forward rolling turns that way) acts as forces M (z, −x)/Σr² on the rim's nodes, x and z from
 // their middle: a pure couple in every shape.
@@ -12,7 +12,8 @@
 
 namespace furrow::tire {
 
-/// What the vehicle does to the wheel's centre. A held direction moves with its velocity, others by the force.
+/// The vehicle's action on the wheel's centre. A held direction moves with the velocity, the other directions by the
+/// force.
 struct PlanarLink {
   bool hold_x = false, hold_z = false;
   double velocity_x = 0.0, velocity_z = 0.0;  // of held directions, m/s
@@ -22,7 +23,7 @@ struct PlanarLink {
 class PlanarWheel {
  public:
   /// Undeformed with its centre at (x, z), moving with the velocity (m/s) and the spin (about +y, rad/s) given.
-  /// @param axle_mass of what moves with the centre, kg
+  /// @param axle_mass of the parts that move with the centre, kg
   PlanarWheel(const PlanarParams& params, PlanarGround ground, PlanarPoint centre, PlanarPoint velocity, double spin,
               double axle_mass, double gravity);
   PlanarWheel(const PlanarWheel&) = delete;
@@ -33,7 +34,7 @@ class PlanarWheel {
   void link(const PlanarLink& link);
   void set_couple(double couple) { couple_ = couple; }  // about +y, N m
 
-  /// One step. @returns failure when a triangle turned inside out, or is pressed so thin that the step is too large
+  /// Makes one step. @returns failure when a triangle is turned inside out, or so thin that the step is too large
   Outcome advance();
 
   const PlanarMesh& mesh() const { return mesh_; }

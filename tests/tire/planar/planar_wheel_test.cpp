@@ -70,7 +70,7 @@ TEST(PlanarWheel, impulses_of_ground_and_weight_are_what_its_momentum_gains) {
     }
     EXPECT_GT(highest, 5.0 * wheel.mass() * kGravity);
     EXPECT_GT(wheel.centre_velocity().z, -1.0);
-    // Sums of the first stages are those of Runge and Kutta's method to the first order.
+    // Sums of the first stages equal those of the Runge–Kutta method to first order.
     const double share = kind == PlanarIntegrator::semi_implicit_euler ? 1e-10 : 0.03;
     const double weight = wheel.mass() * kGravity * steps * wheel.step();
     EXPECT_NEAR(momentum(wheel, true) - x, ground_x, share * std::abs(x));

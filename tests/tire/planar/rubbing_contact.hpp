@@ -1,9 +1,9 @@
 // Contact of a planar tire in motion with rigid ground, in steps of Δt. As at rest (tire/planar/planar_contact.hpp),
 // but
 //   F = c h,   d = ½ F/m Δt² + v_n Δt,   F ← F h/d where d > h,   F_f = min(f F, |v_t| m/Δt),                   (1)
-// v_n > 0 separating: a force pushes no farther than out of the ground, and friction against the sliding velocity v_t
-// no more than to rest. A corner of the ground pushes a side of the tire; its mass m is that of the point of the side,
-// 1/m = (1 − s)²/m_a + s²/m_b.
+// with v_n > 0 if they separate. A force pushes a node at most out of the ground, and friction against the sliding
+// velocity v_t at most stops it. A corner of the ground pushes a side of the tire; m is then the mass of the side's
+// point, 1/m = (1 − s)²/m_a + s²/m_b.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,7 @@ class RubbingContact : public PlanarContact {
  public:
   using PlanarContact::PlanarContact;
 
-  /// Finds what touches and adds (1).
+  /// Finds all touches and adds the forces (1).
   void load(const PlanarState& state, const std::vector<double>& mass, double step, PlanarField& force);
   double force_x() const;  // on the tire, N
 };

@@ -1,5 +1,5 @@
-// The ring in motion in its plane: conserved quantities, order of what the account leaves over, waves of a ring that
-// spins against closed forms, the static equilibrium as a peer.
+// The ring in motion in its plane: conserved quantities, order of the energy residual, waves of a spinning ring against
+// closed forms, comparison with the static equilibrium.
 #include "tire/ring/ring_carcass.hpp"
 #include "tests/refusal.hpp"
 
@@ -24,7 +24,7 @@ RingMotion motion(double damping) {
   return {.rim_radius = 0.21, .mass = 20.0, .spin_inertia = 2.2, .damping = damping};
 }
 
-/// Puts displacements and velocities into a ring on a rim at the angle 0 that spins.
+/// Sets displacements and velocities of a ring on a spinning rim at the angle 0.
 void set_state(RingCarcass& ring, const RingField& q, const PlanarField& w, double spin) {
   Archive archive;
   ring.place(0.0, spin, {});
@@ -62,10 +62,10 @@ TEST(RingCarcass, a_free_ring_that_spins_settles_in_its_growth_and_needs_nothing
     EXPECT_LT(std::hypot(sums.impulse_x, sums.impulse_z), 1e-6 * h);
     EXPECT_LT(std::abs(sums.turn_impulse), 1e-6 * h);
     EXPECT_LT(std::abs(sums.dissipation), 1e-12);
-    // The rule's lag: its steps take from the rim's turn what they lose, and both are left out of the tire's account.
+    // The rule's lag: its steps take their losses from the rim's turn, and the tire's account leaves out both.
     EXPECT_NEAR(sums.rim_work, sums.numerical_loss, 1e-6 * sums.numerical_loss);
   }
-  // m Ω² (R + u) is what sidewall and air bear, at a u that is alike all around.
+  // Sidewall and air carry m Ω² (R + u), at a uniform u.
   RingMechanics mechanics(p);
   RingField q = mechanics.zero(), force = q;
   const double u = ring.displacement().u[0], segment = ring.tread_mass() / 48.0;
@@ -93,7 +93,7 @@ TEST(RingCarcass, in_free_fall_with_its_rim_nothing_acts) {
 
 /// A rim that shakes and turns unevenly while forces come and go on the lower half.
 struct Ride {
-  double momentum = 0.0, turn = 0.0;  // what balances leave over, of the sum of all impulses
+  double momentum = 0.0, turn = 0.0;  // residuals over the sum of all impulses
   double residual = 0.0, numerical = 0.0, dissipation = 0.0, solver = 0.0, work = 0.0;  // J
 
   explicit Ride(double h, RingGas gas = RingGas::exact, double tension = 0.0) {
@@ -131,7 +131,8 @@ struct Ride {
       EXPECT_TRUE(ring.step(h, {way, angle(t + h)}, load, gravity, one).ok);
       const PlanarPoint p1 = ring.momentum(), s1 = ring.first_moment();
       double ix = 20.0 * h * gravity.x - one.impulse_x, iz = 20.0 * h * gravity.z - one.impulse_z;
-      // About the centre, which is accelerated: weight and inertia at the middle of the way of the belt's mass.
+      // About the centre, which accelerates: weight and inertia act at the middle of the displacement of the belt's
+      // mass.
       const double ax = gravity.x - (way.x - c0.x) / h, az = gravity.z - (way.z - c0.z) / h;
       double turning = h * 0.5 * ((s0.z + s1.z) * ax - (s0.x + s1.x) * az) - one.turn_impulse;
       for (int j = 0; j < 64; ++j) {
@@ -190,7 +191,7 @@ double wave_gap(const RingParams& p, double mass, int n, double spin, double ome
   return a * b - c * c;
 }
 
-/// The root of the smallest size on one side of zero.
+/// The root of smallest magnitude on one side of zero.
 double wave_frequency(const RingParams& p, double mass, int n, double spin, double direction) {
   const auto f = [&](double omega) { return wave_gap(p, mass, n, spin, direction * omega); };
   double low = 1.0, step = 1.0;
@@ -224,7 +225,7 @@ TEST(RingCarcass, waves_on_a_spinning_ring_have_the_frequencies_of_the_closed_fo
         for (int j = 0; j < kSegments; ++j) {
           const double angle = j * ring.ring().angle(), phase = n * angle;
           q.u[j] = growth + size * std::cos(phase), q.v[j] = size * share * std::sin(phase);
-          // Rates of cos(nθ − ωt) and sin(nθ − ωt), and what the rim's turn adds: (Ω v, −Ω (R + u)).
+          // Rates of cos(nθ − ωt) and sin(nθ − ωt), and the rim's turn adds (Ω v, −Ω (R + u)).
           const double a = size * omega * std::sin(phase) + spin * q.v[j];
           const double b = -size * share * omega * std::cos(phase) - spin * (p.radius + q.u[j]);
           const double sine = -std::sin(angle), cosine = std::cos(angle);
@@ -271,7 +272,7 @@ TEST(RingCarcass, pressed_slowly_it_comes_to_the_static_equilibrium) {
     fell += h * speed;
     force = sums.impulse_z / h, depth_of_force = sum > 0.0 ? deep / sum : 0.0;
   }
-  // The ground gives way by what the segments lie in it, weighted by their forces.
+  // Depth of the segments in the ground, weighted by their forces.
   EXPECT_LT(depth_of_force, 0.03 * deflection);
   RingSolver peer(p, RingGround::plate(p.radius));
   ASSERT_TRUE(peer.solve({0.0, p.radius - deflection + depth_of_force}).converged);

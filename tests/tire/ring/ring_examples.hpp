@@ -18,13 +18,13 @@ inline RingParams truck_ring(int segments = 480) {
   return p;
 }
 
-/// Its belt holds a share of the pressure by hoop tension.
+/// A ring whose belt carries a share of the pressure by hoop tension.
 inline RingParams with_tension(RingParams p, double share = 0.5) {
   p.tension_share = share;
   return p;
 }
 
-/// Its forces are linear in displacements: no pressure, a linear sidewall and linearised air.
+/// A ring whose forces are linear in displacements: no pressure, a linear sidewall and linearised air.
 inline RingParams linear_ring(int segments = 480) {
   RingParams p = truck_ring(segments);
   p.pressure = p.sidewall_2 = p.sidewall_3 = 0.0;
@@ -40,7 +40,7 @@ inline RingField random_field(const RingMechanics& ring, double size, unsigned s
   return q;
 }
 
-/// Coefficient of cos(wave θ) in u and of sin(wave θ) in v.
+/// The field u cos(wave θ) in the radial and v sin(wave θ) in the tangential direction.
 inline RingField wave(const RingMechanics& ring, int wave, double u, double v) {
   RingField q = ring.zero();
   for (int j = 0; j < ring.segments(); ++j)

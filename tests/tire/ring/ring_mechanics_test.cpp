@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// The same ring without its belt.
+/// The ring without its belt.
 RingParams without_belt(RingParams p) {
   p.bending = p.shear = 0.0;
   return p;
@@ -40,7 +40,7 @@ RingField product(const RingTangent& k, const RingField& x) {  // K x with air
   return y;
 }
 
-/// σ = 1: the belt alone holds the pressure, and grows nowhere.
+/// σ = 1: the belt alone carries the pressure and does not grow.
 TEST(RingMechanics, the_inflated_ring_is_in_balance_without_round_off_and_its_sidewall_holds_what_the_belt_leaves) {
   for (const RingGas gas : {RingGas::exact, RingGas::linearised})
     for (const double share : {0.0, 0.4, 1.0})

@@ -48,7 +48,7 @@ TEST(RingModes, frequencies_converge_to_those_of_the_continuous_ring) {
     }
     EXPECT_LT(before, 1e-3);
   }
-  // Orders 0 and 1, whose waves the differences hold exactly.
+  // Orders 0 and 1, for which the differences are exact.
   const RingParams p = linear_ring(16);
   const ModesResults r = RingModes(p, motion(), {}).modes({.orders = 1, .count = 2}, {});
   for (const Mode& mode : r.modes)
@@ -66,7 +66,7 @@ TEST(RingModes, orders_together_have_the_frequencies_of_the_whole_ring) {
   }
   std::sort(by_order.begin(), by_order.end());
   RingMechanics ring(p);
-  Eigen::MatrixXd stiffness(2 * kSegments, 2 * kSegments);  // by differences of the gradient, which is its own check
+  Eigen::MatrixXd stiffness(2 * kSegments, 2 * kSegments);  // by differences of the gradient, an independent check
   const double size = 1e-6;
   for (int c = 0; c < 2 * kSegments; ++c) {
     RingField q = ring.zero(), up = q, down = q;
@@ -94,8 +94,8 @@ TEST(RingModes, shapes_are_those_of_the_belt_on_a_rim_that_does_not_move) {
     EXPECT_EQ(mode.shape[0], (std::array<std::complex<double>, 3>{}));
     EXPECT_NEAR(std::max(std::abs(mode.shape[1][0]), std::abs(mode.shape[1][2])), 1.0, 1e-12);
   }
-  // In order 1 a stiff belt shifts as it is. Upwards that is radial cos θ and tangential −sin θ, θ from the top
-  // forwards.
+  // In order 1 a stiff belt shifts without deformation. Upwards this is radial cos θ and tangential −sin θ, θ from the
+  // top forwards.
   const auto& shift = r.modes[2].shape[1];
   EXPECT_NEAR(std::abs(shift[0]) / std::abs(shift[2]), 1.0, 0.01);
   EXPECT_NEAR(std::arg(shift[0] / shift[2]), 0.5 * pi, 1e-9);

@@ -1,4 +1,4 @@
-// Equilibrium of the flexible ring on the ground: closed forms, its conditions, and how it depends on N.
+// Equilibrium of the flexible ring on the ground: closed forms, its conditions, and its dependence on N.
 #include "tire/ring/ring_solver.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Force after pressing to a deflection in equal steps, each of which has to be found.
+/// Force after pressing to a deflection in equal steps; checks that each equilibrium is found.
 double pressed(RingSolver& solver, double deflection, int steps, double x = 0.0) {
   for (int k = 1; k <= steps; ++k) {
     const RingReport report = solver.solve({x, solver.ring().radius() - deflection * k / steps});
@@ -83,7 +83,7 @@ TEST(RingSolver, a_ground_that_one_segment_sticks_to_feels_its_compliance) {
   }
 }
 
-/// The same by one dense system: all displacements, and what holds them, as unknowns.
+/// The ground stiffness from one dense system: all displacements and holding forces are unknowns.
 Eigen::Matrix2d stuck_densely(const RingSolver& solver) {
   const RingMechanics& ring = solver.ring();
   const int n = ring.segments();
@@ -98,7 +98,7 @@ Eigen::Matrix2d stuck_densely(const RingSolver& solver) {
       k(2 * j, c) = row[0], k(2 * j + 1, c) = row[1];
     }
   }
-  std::vector<Eigen::MatrixXd> holds;  // way of the belt along x and z where it is held
+  std::vector<Eigen::MatrixXd> holds;  // displacement of the belt along x and z where it is held
   const auto hold = [&](int first, const std::vector<double>& share) {
     Eigen::MatrixXd way = Eigen::MatrixXd::Zero(2, 2 * n);
     for (int i = 0; i < static_cast<int>(share.size()); ++i) {
@@ -172,7 +172,7 @@ TEST(RingSolver, a_stiff_belt_moves_as_a_rigid_ring_that_can_grow) {
   EXPECT_NEAR(pressed(solver, 1e-5, 1), expected, 1e-3 * expected);
 }
 
-/// Without a belt and with air enough for constant pressure every segment stands for itself.
+/// Without a belt, and with enough air for constant pressure, segments are independent.
 RingParams separate_segments(int n) {
   RingParams p = linear_ring(n);
   p.bending = p.shear = 0.0;
@@ -259,7 +259,7 @@ TEST(RingSolver, with_a_settled_contact_set_the_steps_converge_quadratically) {
       int seen = 0;
       for (int k = 1; k < report.steps; ++k) {
         if (!report.same_set[k] || report.residuals[k] < 1e-3) continue;
-        ++seen;  // residuals in N; the bound is that of a first step of 1 N
+        ++seen;  // residuals in N; the bound holds for a first step of 1 N
         EXPECT_LT(report.residuals[k + 1], 2e-4 * report.residuals[k] * report.residuals[k] + 1e-6)
             << k << ": " << report.residuals[k] << " to " << report.residuals[k + 1];
       }

@@ -1,4 +1,4 @@
-// The flexible ring as a tire: its file, what is wrong with files, and what furrow press finds.
+// The flexible ring as a tire: its file, errors in files, and results of furrow press.
 #include "tire/ring/ring_spec.hpp"
 #include "tests/refusal.hpp"
 #include "tests/temporary_folder.hpp"
@@ -130,7 +130,7 @@ TEST(RingSpec, cleats_of_any_size_and_place_and_profiles) {
   EXPECT_LT(aside.loading.back().force, middle);
   for (const PressSample& s : aside.footprint) EXPECT_NEAR(s.x, 0.1, 0.0251);
   press.obstacle = {};
-  press.obstacle.profile = {{-0.025, 0.3}, {0.025, 0.3}};  // the bar again, elsewhere in height
+  press.obstacle.profile = {{-0.025, 0.3}, {0.025, 0.3}};  // the bar again, at another height
   EXPECT_NEAR(pressed(options(), press).loading.back().force, middle, 1e-6 * middle);
   press.obstacle.profile = {{-1, 0}, {-0.1, 0}, {0.0, 0.02}, {0.1, 0.0}, {1, 0}};
   EXPECT_GT(pressed(options(), press).loading.back().force, 1000.0);

@@ -22,7 +22,7 @@ RingTension tension(int segments) {
 
 RingField zero(int n) { return {std::vector<double>(n), std::vector<double>(n)}; }
 
-/// Displacements that put every segment at a point of the plane, given by its angle from straight down.
+/// Displacements that move every segment to a point of the plane, given as a function of its angle from straight down.
 template <class Point>
 RingField placed(int n, Point point) {
   RingField q = zero(n);
@@ -58,7 +58,7 @@ TEST(RingTension, growth_changes_length_and_area_of_a_regular_polygon) {
     for (const double growth : {-0.1, 1e-3, 0.05}) {
       RingField q = zero(n);
       for (double& u : q.u) u = growth;
-      const double expected = -0.5 * n * std::sin(2.0 * pi / n) * growth * growth;  // of first order is nothing
+      const double expected = -0.5 * n * std::sin(2.0 * pi / n) * growth * growth;  // no term of first order
       EXPECT_NEAR(t.energy(q), kStrength * expected, 1e-12 * kStrength * std::abs(expected));
     }
   }
@@ -96,7 +96,7 @@ TEST(RingTension, small_waves_have_the_stiffness_n_squared_less_one) {
       const double error = std::abs(per_radian - (order * order - 1.0));
       EXPECT_LT(error, std::max(0.26 * before, 1e-9)) << order << ' ' << n;
       before = error;
-      // The pressure follows the belt: its tangential displacement costs nothing in the limit.
+      // The pressure follows the belt: a tangential displacement has no energy in the limit.
       const double along = tangent_row(k, tangential, 0.0, n / 3)[1] / (2.0 * pi / n) / 1e-4 / kStrength;
       EXPECT_LT(std::abs(along), std::pow(order + 1, 4) * 10.0 / n / n);
     }
@@ -109,7 +109,7 @@ TEST(RingTension, force_and_tangent_are_derivatives_to_round_off) {
     const RingTension t = tension(n);
     RingParams p = truck_ring(n);
     const RingMechanics ring(p);
-    // About a ring that is bent strongly.
+    // About a strongly bent ring.
     RingField q = placed(n, [](double angle) { return std::pair(0.46 * std::sin(angle), -0.31 * std::cos(angle)); });
     q = along(q, random_field(ring, 2e-3, seed), 1.0);
     const RingField change = random_field(ring, 1e-4, seed + 10), test = random_field(ring, 1.0, seed + 20);

@@ -1,4 +1,4 @@
-// The flexible ring under the interface of tires: momentum, energy, exact continuation, what cannot go on.
+// The flexible ring with the interface of tires: momentum, energy, exact continuation, failures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,14 +54,14 @@ TEST(RingTire, its_moment_is_that_of_the_forces_on_a_rim_at_rest) {
   const NodalForces f = loads(surface, rim, 0.0);
   const Vec3 force = tire->mass_properties().mass * tire->gravity() + test::sum(f);
   const Vec3 moment = test::moment_about(rim.position, f, surface);
-  // The belt sags under its own weight: what is left of the moment is that of its first moment of mass.
+  // The belt sags under its own weight: the remaining moment is that of its first moment of mass.
   EXPECT_LT((tire->spindle_wrench().force - force).norm(), 1e-4 * force.norm());
   EXPECT_LT((tire->spindle_wrench().moment - moment).norm(), 1e-3 * moment.norm());
 }
 
 TEST(RingTire, a_restored_tire_continues_bit_for_bit) {
   expect_exact_continuation(options(), kStep);
-  // Also under another pressure than that of its file.
+  // Also with a pressure other than its file's.
   const auto one = make_tire(options()), other = make_tire(options());
   RimTrajectory rim(rim_at(0.0));
   one->place(rim.end());

@@ -61,7 +61,7 @@ TEST(Beam, cantilever_under_an_end_force) {
 }
 
 TEST(Beam, cantilever_under_an_end_moment) {
-  // M L²/(2 E I), and −ν times that curvature across; the clamp lets width and thickness breathe.
+  // M L²/(2 E I), and −ν times that curvature across; the clamp leaves width and thickness free.
   const int n = 4, m = 4;
   for (const double height : {0.05, 0.005, 0.0005}) {
     const double moment = 1e-6 * 2e7 * 0.1 * std::pow(height, 3) / 12;

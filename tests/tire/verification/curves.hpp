@@ -1,5 +1,5 @@
 // Load–deflection curves of the verification suite. With the environment variable FURROW_VERIFICATION_CURVES set, every
-// point is appended to that file: case, curve, load, deflection, reference (empty where none is known).
+// point is appended to that file: case, curve, load, deflection, reference (empty if there is none).
 #pragma once
 
 #include <optional>

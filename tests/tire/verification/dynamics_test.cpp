@@ -89,7 +89,7 @@ class Stepper {
         for (std::size_t e = 0; e < stress.size(); ++e) stress[e] = 0.5 * (stress[e] + e0[e]);
       stress = patch_.stresses(stress);
       const Vector r = mass_ * (v - v0) / h + patch_.forces(middle, stress) - weight_;
-      // B(q_m) in place of B(q') keeps it symmetric.
+      // B(q_m) instead of B(q') keeps it symmetric.
       const double share = theta_ < 1 ? 0.5 : 1.0;
       const Sparse k = mass_ / (theta_ * h * h) + patch_.tangent(middle, stress, share, 0.5);
       const Sparse part = restrict_to(k, free_);

@@ -111,7 +111,7 @@ TEST(Laminate, extension_twist_coupling) {
     }
 }
 
-/// Central deflection over that under the same load by the closed form.
+/// Central deflection relative to the closed form under the same load.
 double plate_deflection(const std::vector<tire::ShellLayer>& layers, int n) {
   const double k = std::numbers::pi;
   const ShellPatch plate(plate_mesh(n, n, 1.0, 1.0), layers);

@@ -1,4 +1,4 @@
-// Classical laminate theory, and the same with the thickness strain of the element.
+// Classical laminate theory, also with the thickness strain of the element.
 //   Jones (1999), Mechanics of Composite Materials, ch. 4; Reddy (2004), Mechanics of Laminated Composite Plates and
 //   Shells, § 7.3 (Navier solutions of the first-order theory).
 #pragma once

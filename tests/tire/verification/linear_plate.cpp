@@ -8,7 +8,7 @@
 namespace furrow::test {
 namespace {
 
-constexpr int kAround = 6, kAcross = 4;  // contact points of an element, as PressSolver has them on a plate
+constexpr int kAround = 6, kAcross = 4;  // contact points of an element, as in PressSolver on a plate
 constexpr int kMaxChanges = 200, kMaxLoadSteps = 60;
 
 double start_radius(const InflatedCarcass& ring) {

@@ -1,9 +1,9 @@
-// A plate pressed on an inflated tire that answers linearly, u = C f with C = K⁻¹ of the tangent K as inflated:
+// A plate pressed on an inflated tire with a linear response, u = C f with C = K⁻¹ of the tangent K as inflated:
 //   depth_s = δ − g_s − Σ_n w_sn u_n,   f_n = Σ_s w_sn κ A_s ⟨depth_s⟩,
-// points s, gaps g_s and stiffness κ as PressSolver has them. K is inverted order by order (cyclic.hpp), so neither the
+// points s, gaps g_s and stiffness κ as in PressSolver. K is inverted order by order (cyclic.hpp), so neither the
 // assembly nor the solution of PressSolver is used; the active points are found by a primal–dual active set.
 //   Hintermüller, Ito & Kunisch (2002), SIAM J. Optim. 13:865, doi:10.1137/S1052623401383558.
-// It is the limit of PressSolver for small deflections. It knows no wrinkles, and exists where K is not definite too.
+// It is the limit of PressSolver for small deflections. It has no wrinkles, and also exists if K is not definite.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ class LinearPlate {
   LinearPlate(const InflatedCarcass& ring, double reach);
 
   struct Answer {
-    bool found = false;       // whether the active set came to rest
+    bool found = false;       // whether the active set converged
     double deflection = 0.0;  // δ, m
     double force = 0.0;       // N
     double tangent = 0.0;     // dF/dδ, N/m

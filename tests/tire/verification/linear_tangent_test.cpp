@@ -1,5 +1,5 @@
-// The inflated tire beside its own tangent: what inflate() and PressSolver find must begin as the tangent says. This
-// checks the solvers, not the tire: a wrong stiffness would be wrong in both.
+// The inflated tire compared with its own tangent: for small loads, inflate() and PressSolver must agree with it. This
+// checks the solvers and not the tire, since both use the same stiffness.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -84,7 +84,7 @@ struct Case {
   int columns, width;
 };
 
-/// With FURROW_LINEAR_PLATE_CSV set, a line of that file.
+/// With FURROW_LINEAR_PLATE_CSV set, writes a line of that file.
 void record(const Case& c, const LinearPlate::Answer& answer) {
   const char* path = std::getenv("FURROW_LINEAR_PLATE_CSV");
   if (path == nullptr || *path == '\0') return;

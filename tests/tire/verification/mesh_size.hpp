@@ -1,4 +1,4 @@
-// How many elements a case has, in words.
+// The number of elements of a case, as text.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What every element must do: constant states on distorted meshes, no force under rigid motion, forces and tangent that
-// are derivatives, and the vectorised ring equal to an assembly element by element.
+// Properties of every element: constant states on distorted meshes, no force under rigid motion, forces and tangent
+// that are derivatives. The vectorised ring must equal an assembly element by element.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -182,7 +182,7 @@ TEST(Patch, forces_and_tangent_are_derivatives) {
 
 TEST(Patch, ring_of_the_tire_equals_the_assembly_element_by_element) {
   tire::TireFile file = small_file("hmmwv_lumped.json", 12, 8);
-  file.bead.layers = file.sidewall.layers = file.tread.layers;  // one layup, as a patch has
+  file.bead.layers = file.sidewall.layers = file.tread.layers;  // one layup, as in a patch
   file.pressure = 0.0;
   const tire::ShellMesh ring = tire::make_shell_mesh(file);
   const tire::ShellCarcass shell(file, ring);

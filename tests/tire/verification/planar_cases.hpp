@@ -1,4 +1,4 @@
-// The planar tire of the Aligator 4×4 as its file says, pressed on a plate: what the study of it needs.
+// The planar tire of the Aligator 4×4 from its file, pressed on a plate, for its study.
 #pragma once
 
 #include <utility>
@@ -11,7 +11,7 @@ namespace furrow::test {
 /// tire/data/aligator_planar.json
 tire::PlanarParams aligator();
 
-/// On another mesh, finer or coarser alike all over.
+/// The tire with a mesh that is uniformly finer or coarser.
 tire::PlanarParams meshed(tire::PlanarParams params, int around);
 
 struct Compression {
@@ -23,7 +23,7 @@ struct Compression {
   double regression() const;
 };
 
-/// On a plate, without friction, in equal steps. Fails the test where there is no equilibrium.
+/// Presses the tire on a plate, without friction, in equal steps. Fails the test if there is no equilibrium.
 Compression compressed(const tire::PlanarParams& params, double deflection, int points);
 
 }  // namespace furrow::test

@@ -10,7 +10,7 @@
 namespace furrow::test {
 namespace {
 
-constexpr double kGravity = 9.81, kFelt = 0.02;  // m/s²; share of the load by which a force differs when felt
+constexpr double kGravity = 9.81, kFelt = 0.02;  // m/s²; change of force, over the load, that counts as contact
 
 struct Mass {
   double y = 0.0, v = 0.0;

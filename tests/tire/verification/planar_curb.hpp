@@ -1,10 +1,11 @@
-// A quarter car that drives over a curb at a constant speed, on a planar tire and, beside it, on a spring and a damper
-// that know of the ground only how high it is under the wheel's centre.
+// A quarter car that drives over a curb at a constant speed, once on a planar tire and once on a spring and a damper.
+// These depend only on the ground's height under the wheel's centre.
 //
-// Displacements y of axle and y' of body count from rest on the flat; down on the axle, up on the body acts
+// Displacements y of axle and y' of body are relative to rest on the flat. The force down on the axle and up on the
+// body is
 //   F = m' g + k (y − y') + c (ẏ − ẏ').                                                                         (1)
-// The tire of the simple model pushes the axle up with (m + m') g + k_t (w − y) − c_t ẏ, w the ground's height: it
-// pulls as well as it pushes.
+// The tire of the simple model pushes the axle up with (m + m') g + k_t (w − y) − c_t ẏ, w the ground's height: it can
+// also pull.
 #pragma once
 
 #include <vector>
@@ -30,7 +31,7 @@ struct CurbLine {
 
 struct CurbRun {
   std::vector<CurbLine> lines;
-  double first_touch = 0.0, simple_first = 0.0;  // x where the curb is first felt, m
+  double first_touch = 0.0, simple_first = 0.0;  // x of the first contact with the curb, m
   double airborne = 0.0;                         // time without contact, s
   double step = 0.0;                             // s
   struct Picture {
@@ -41,7 +42,7 @@ struct CurbRun {
   tire::PlanarMesh mesh;
 };
 
-/// @param pictures x of the wheel's centre at which its shape is kept. @param every so many steps a line is kept
+/// @param pictures x of the wheel's centre at which its shape is kept. @param every number of steps between kept lines
 CurbRun drive_over_curb(const tire::PlanarParams& tire, const QuarterCar& car, const std::vector<double>& pictures,
                         int every);
 

@@ -1,6 +1,6 @@
-// The planar tire beside what its source reports: Štiavnický, Enhanced tire model for vibration analysis of vehicle,
-// Science & Military 2/2010. Radii, mesh and disc are ours (tire/data/aligator_planar.json), so numbers that depend on
-// them are printed beside the source's and not judged.
+// The planar tire compared with the results of its source: Štiavnický, Enhanced tire model for vibration analysis of
+// vehicle, Science & Military 2/2010. Radii, mesh and disc are ours (tire/data/aligator_planar.json), so numbers that
+// depend on them are printed next to the source's and not judged.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ constexpr double kDeflection = 0.08;         // m
 constexpr double kMeasured = 639782.0;       // N/m, radial stiffness of the Aligator's tire
 constexpr double kPapersModulus = 295740.0;  // Pa, at ν = 0.45 in the source's mesh
 
-/// The file that an environment variable names, with its header; a stream that goes nowhere without.
+/// The file that an environment variable names, with its header; a closed stream if the variable is not set.
 std::ofstream table(const char* variable, const char* header) {
   std::ofstream out;
   if (const char* path = std::getenv(variable); path != nullptr && *path != '\0') out.open(path);
@@ -192,7 +192,7 @@ TEST(Planar, a_curb_is_climbed_before_the_centre_is_there_and_nearly_left_behind
   EXPECT_GT(before, 0.3 * car.curb);
   EXPECT_NEAR(simple_before, 0.0, 1e-9);
   EXPECT_GT(highest, car.curb);
-  // The source's wheel may leave the ground; with these values it keeps less than a quarter of its load.
+  // The source's wheel may leave the ground; with these values its load falls below a quarter.
   EXPECT_LT(lightest, 0.25 * (car.axle + car.body) * 9.81);
   EXPECT_LT(largest_way, simple_largest_way);  // it climbs continuously
   EXPECT_NEAR(run.lines.back().simple_axle, car.curb, 0.1);

@@ -30,7 +30,7 @@ struct Row {
   double load, first, second;
 };
 
-/// Judges two deflections along one path; the error is taken of the largest deflection in the table.
+/// Judges two deflections along one path; errors are relative to the largest deflection in the table.
 struct Judge {
   std::string name, mesh;
   const char* names[2];
@@ -101,7 +101,7 @@ void hemisphere(int n, double tolerance) {
                        "MacNeal & Harder 1985 doi:10.1016/0168-874X(85)90003-4");
   StaticPath path(patch, supports, load);
   const Judge judge{"pinched hemisphere", size(n, n), {"outward", "inward"}, tolerance};
-  ASSERT_TRUE(path.go_to(0.01));  // where a quartic element has been published, independent of the table
+  ASSERT_TRUE(path.go_to(0.01));  // a quartic element has been published here, independent of the table
   const char* quartic = "Elmer, Shell_OpenHemisphere_High_Order_Blending, p = 4";
   verification::verify("pinched hemisphere, 1 % of the load", "outward, " + size(n, n), path.q()[6 * a] - 10, 0.184936,
                        tolerance, quartic);

@@ -1,6 +1,6 @@
-// The stiffness of a hardly pressed tire against a ground that it sticks to, beside that of the inflated tire's
-// tangent. The tangent is inverted order by order (tire/ancf/shell_modes.hpp): neither the assembly nor the solution of
-// PressSolver is used, only the list of points that touch.
+// The stiffness of a slightly pressed tire against a ground to which it sticks, compared with the inflated tire's
+// tangent. The tangent is inverted order by order (tire/ancf/shell_modes.hpp). Only the list of touching points comes
+// from PressSolver, neither assembly nor solution.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace furrow::test::sticking_ground_test {
 namespace {
 
-constexpr int kAround = 6, kAcross = 4;  // contact points of an element, as PressSolver has them on a plate
+constexpr int kAround = 6, kAcross = 4;  // contact points of an element, as in PressSolver on a plate
 constexpr int kAside = 3;                // columns on either side of the lowest node
 
 /// Displacements of the nodes near the lowest one by forces on them, along x, y and z of the rim, m/N.
@@ -39,7 +39,7 @@ Eigen::MatrixXd compliance(const InflatedCarcass& ring) {
   return whole;
 }
 
-/// Longitudinal, lateral, vertical, torsional, with the points that touch at their places on the inflated tire.
+/// Longitudinal, lateral, vertical, torsional stiffness, with the touching points at their places on the inflated tire.
 Eigen::Vector4d linear_stiffness(const InflatedCarcass& ring, const std::vector<tire::PressSample>& touching) {
   const Eigen::MatrixXd flexible = compliance(ring);
   const int rows = ring.mesh.rows - 2, first = ring.mesh.columns / 2 - kAside;

@@ -1,4 +1,4 @@
-// Natural frequencies of inflated tires by circumferential order, and where the layered tire is no stable static body.
+// Natural frequencies of inflated tires by circumferential order, and pressures at which the layered tire is unstable.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ std::vector<int> unstable_orders(int columns, int width, double pressure) {
   return list;
 }
 
-/// Lowest pressure at which the layered tire is not stable any more, by bisection to 500 Pa.
+/// Lowest pressure at which the layered tire is unstable, by bisection to 500 Pa.
 double first_unstable(const std::function<bool(const InflatedCarcass&)>& is_stable) {
   double stable = 20e3, unstable = 50e3;
   while (unstable - stable > 500) {
@@ -86,7 +86,7 @@ double first_unstable(const std::function<bool(const InflatedCarcass&)>& is_stab
   return unstable;
 }
 
-/// By the static solver, whose tangent is assembled of all elements: a tire at rest is accepted at once.
+/// Stability by the static solver, whose tangent is assembled from all elements: it accepts a stable tire at once.
 bool factor_of_the_whole_ring_exists(const InflatedCarcass& ring) {
   struct NotAtOnce {};
   tire::PressSolver solver(ring.file, ring.mesh, ring.q, {});
@@ -110,7 +110,7 @@ TEST(LayeredTire, is_no_stable_static_body_at_full_pressure) {
   ASSERT_FALSE(at_fifty.empty());
   verification::verify("layered tire at 50 kPa", "lowest unstable order, 90 x 24", at_fifty.front(), 45, 0.05,
                        "directors tilted alternately from column to column");
-  // Where the alternating tilt sets in: by the eigenvalue of its order, and by the whole ring's factor.
+  // Start of the alternating tilt, by the eigenvalue of its order and by the whole ring's factor.
   const double by_order = first_unstable([](const InflatedCarcass& ring) { return ring.smallest_eigenvalue(45) >= 0; });
   verification::verify("layered tire", "pressure at which the alternating tilt sets in, Pa, 90 x 24", by_order,
                        first_unstable(factor_of_the_whole_ring_exists), 0.03,

@@ -48,8 +48,8 @@ std::vector<TorusPoint> inflated_torus(int columns, int width, double thickness)
 
 TEST(Torus, membrane_forces) {
   //   N_meridian = p a (2 b + a cos θ)/(2 (b + a cos θ)),  N_around = p a/2
-  // need edges free of shear. The clamped beads bend the meridian, which shifts the constant of integration; what holds
-  // for any edge is N_meridian/a + N_around cos θ/r = p.
+  // need edges free of shear. The clamped beads bend the meridian, which shifts the constant of integration; for any
+  // edge, N_meridian/a + N_around cos θ/r = p.
   const char* theory = "membrane theory (Flugge 1973, ch. 2)";
   for (const double thickness : {2e-3, 0.5e-3})
     for (const int width : {12, 24, 48}) {

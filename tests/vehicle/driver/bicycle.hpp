@@ -29,7 +29,7 @@ struct Bicycle {
     view.yaw = yaw;
     return view;
   }
-  /// For a time dt along a circle of this curvature.
+  /// Moves for a time dt along a circle of this curvature.
   void roll(double curvature, double dt) {
     const double half = 0.5 * curvature * speed * dt;
     const double chord = speed * dt * (std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
@@ -44,8 +44,8 @@ inline double curvature_of(const vehicle::DriverInputs& inputs, const vehicle::D
   return std::tan(inputs.steering * car.steering_lock) / car.wheelbase;
 }
 
-/// Asks the driver and moves, `steps` times; calls each(time, driver, bicycle) after every answer.
-/// @param response curvature that comes of the one that the steering asks for
+/// Calls the driver and moves, `steps` times; calls each(time, driver, bicycle) after every call of the driver.
+/// @param response actual curvature as a function of the commanded one
 template <class Each>
 void follow(vehicle::Driver& driver, Bicycle& bicycle, int steps, double dt, const Each& each, double response = 1.0) {
   for (int i = 0; i < steps; ++i) {

@@ -1,4 +1,4 @@
-// What a driver knows of the shipped vehicles; drivers written out and read again.
+// Drivers' data of the shipped vehicles; drivers written and read again.
 #include "vehicle/driver/driver_car.hpp"
 
 #include <gtest/gtest.h>

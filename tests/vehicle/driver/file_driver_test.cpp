@@ -1,4 +1,4 @@
-// Drivers as a whole: open loops, and how they continue after they were saved.
+// Whole drivers: open loops, and continuation after saving.
 #include "vehicle/driver/file_driver.hpp"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ using namespace furrow::vehicle;
 
 namespace {
 
-/// All at once: a path with bends that ends, a speed that cannot be reached, a stop on the way and a stop at the end.
+/// All cases together: a path with bends that ends, a speed that cannot be reached, a stop on the way and a stop at the
+/// end.
 DriverSpec everything(const SteeringLaw& law) {
   DriverSpec spec;
   spec.inputs.gear = {{0.0, 1}, {2.0, gear_request::automatic}, {9.0, 2}};
@@ -33,7 +34,7 @@ DriverSpec everything(const SteeringLaw& law) {
 constexpr double kStep = 1e-2;  // s
 constexpr int kSteps = 2400;
 
-/// A bicycle with mass and drag, that the brakes hold.
+/// A bicycle with mass and drag, which the brakes can hold.
 void move(Bicycle& bicycle, const DriverInputs& inputs) {
   const DriverCar car = test_car();
   const double drag = 100.0 * bicycle.speed * bicycle.speed;
@@ -106,7 +107,7 @@ TEST(FileDriver, goes_on_bit_for_bit_wherever_it_was_saved) {
       steering = inputs.steering;
       move(bicycle, inputs);
     }
-    // It was in the middle of everything.
+    // The drive contained full throttle, braking, holding and turning.
     EXPECT_TRUE(full && braked && held && turning) << full << braked << held << turning;
     EXPECT_TRUE(driver->record().path_ended);
     for (int start = 0; start < kSteps; start += 37) {

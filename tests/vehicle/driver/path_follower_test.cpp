@@ -17,7 +17,7 @@ using namespace furrow::vehicle;
 
 namespace {
 
-constexpr double kAtOnce = 1e6;  // rate of steering without a limit that matters, 1/s
+constexpr double kAtOnce = 1e6;  // rate of steering, practically unlimited, 1/s
 
 DriverSpec along(const PathShape& shape, const SteeringLaw& law, double rate = kAtOnce) {
   DriverSpec spec;
@@ -42,7 +42,7 @@ TEST(PurePursuit, comes_back_to_a_straight_by_its_linear_equation) {
   });
 }
 
-// A vehicle that turns by the share g of the curvature asked for goes round a circle with R'² = R² + D² (1/g − 1).
+// A vehicle that turns with the share g of the commanded curvature drives a circle with R'² = R² + D² (1/g − 1).
 TEST(PurePursuit, steady_circle_has_the_radius_of_its_triangle) {
   for (const double response : {1.0, 0.8, 1.1}) {
     for (const char* turn : {"left", "right"}) {
@@ -59,9 +59,9 @@ TEST(PurePursuit, steady_circle_has_the_radius_of_its_triangle) {
   }
 }
 
-// Small errors on a curve y(s): ë + (2/D) ė + (2/D²) e = (2/D²) Σ Dⁿ/n! y⁽ⁿ⁾ from n = 3, so that where a start is
-// forgotten e = D³/6 y‴ − D⁴/8 y⁗ + D⁵/20 y⁽⁵⁾. In the middle of a smoothstep of height h and length T these are
-// −30 h/T³, 0 and 720 h/T⁵; the slope c = 15/8 h/T makes the first one smaller by (1 + c²)², as curvature counts by the
+// Small errors on a curve y(s): ë + (2/D) ė + (2/D²) e = (2/D²) Σ Dⁿ/n! y⁽ⁿ⁾ from n = 3, so after the start has
+// decayed, e = D³/6 y‴ − D⁴/8 y⁗ + D⁵/20 y⁽⁵⁾. In the middle of a smoothstep of height h and length T these are −30
+// h/T³, 0 and 720 h/T⁵; the slope c = 15/8 h/T makes the first one smaller by (1 + c²)², as curvature counts by the
 // length of the path.
 TEST(PurePursuit, error_in_a_lane_change_is_that_of_the_cut_corner) {
   const auto lanes = lanes_of("iso_3888_1", test_car().width);
@@ -122,7 +122,7 @@ TEST(Preview, comes_back_to_a_straight_critically_damped) {
   });
 }
 
-// A vehicle that turns as δ − K v² κ asks for stays on a circle when its driver knows K, and (δ_K/L) d² off it if not.
+// A vehicle that turns by δ − K v² κ stays on a circle if its driver is given K; otherwise it is (δ_K/L) d² off.
 TEST(Preview, keeps_an_understeering_vehicle_on_a_circle) {
   const double radius = 40.0, speed = 10.0, gradient = 0.01, d = 5.0;
   const DriverCar car = test_car();
@@ -141,7 +141,7 @@ TEST(Preview, keeps_an_understeering_vehicle_on_a_circle) {
   }
 }
 
-// The curvature is that of the path at the axle for a driver who need not look ahead: nothing is cut.
+// A driver without look-ahead uses the path's curvature at the axle, so no corner is cut.
 TEST(Preview, stays_on_a_lane_change) {
   const auto driver = make_driver(
       along(LaneChangePath{"iso_3888_1", 10.0, 10.0}, Preview{0.0, 0.6, -1.0, 0.0, 0.0, 0.0}, 1.0), test_car());

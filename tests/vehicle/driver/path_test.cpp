@@ -1,4 +1,4 @@
-// Paths against the shapes that they stand for, and the tracks of the double lane change.
+// Paths against the shapes that they represent, and the tracks of the double lane change.
 #include "vehicle/driver/path.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Driver files: what they become, which are refused and with which words.
+// Driver files: their drivers, and the messages of refused files.
 #include "vehicle/driver/read_driver.hpp"
 #include "tests/refusal.hpp"
 

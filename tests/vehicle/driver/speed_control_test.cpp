@@ -1,4 +1,4 @@
-// The PI law for the speed against the exact solution, and what it does at its bounds.
+// The PI law for the speed against the exact solution, and at its bounds.
 #include "vehicle/driver/speed_control.hpp"
 
 #include <algorithm>

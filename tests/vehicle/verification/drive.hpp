@@ -1,4 +1,4 @@
-// A vehicle on the simple ground: tires push along the ground by their slip speed alone.
+// A vehicle on the simple ground: tires push along the ground as a function of their slip speed alone.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct Drive {
   Vec3 axle(int k) const {
     return chassis().R.transpose() * (car.rim(k).orientation.toRotationMatrix() * Vec3::UnitY());
   }
-  /// Speed of the wheels, mean over all, if they rolled, m/s.
+  /// Mean speed of all wheels in rolling without slip, m/s.
   double wheel_speed() const {
     double sum = 0.0;
     for (int k = 0; k < car.wheel_count(); ++k) {

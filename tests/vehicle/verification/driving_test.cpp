@@ -1,5 +1,5 @@
-// What the HMMWV does on hard ground beside what its engine map, its gears and the ground's friction alone say: steady
-// speeds at full throttle on the level and uphill, stopping distance, turns.
+// The HMMWV on hard ground against estimates from its engine map, its gears and the ground's friction: steady speeds at
+// full throttle on the level and uphill, stopping distance, turns.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ double balanced_speed(const vehicle::DrivelineSpec& line, int gear, double force
   for (int k = 0; k < 60; ++k) {
     const double R = 0.5 * (low + high);
     double slow = 400.0 * rpm,
-           fast = 2700.0 * rpm;  // the crank's speed where the converter takes what the engine gives
+           fast = 2700.0 * rpm;  // the crank's speed at which the converter takes the engine's torque
     for (int m = 0; m < 60; ++m) {
       u = 0.5 * (slow + fast);
       (full.value(u / rpm) + losses.value(u / rpm) > taken(u, R) ? slow : fast) = u;
@@ -48,7 +48,7 @@ double balanced_speed(const vehicle::DrivelineSpec& line, int gear, double force
 }
 
 struct Ascent {
-  double made_good = 0.0, wheels = 0.0, speed = 0.0;  // m/s: way over time; at the end
+  double made_good = 0.0, wheels = 0.0, speed = 0.0;  // m/s: distance over time; at the end
   int gear = 0, changes = 0;
 };
 
@@ -76,7 +76,7 @@ struct Turn {
   double radius = 0.0, expected = 0.0, lateral = 0.0, steer = 0.0;  // m, m, m/s², rad
 };
 
-/// One angle of the steering wheel, held for so long that the turn is steady.
+/// One angle of the steering wheel, held until the turn is steady.
 Turn turn(double speed, double steering) {
   Drive d("hmmwv.json", kGrip);
   d.begin(speed);
@@ -100,7 +100,7 @@ Turn turn(double speed, double steering) {
 
 }  // namespace
 
-// Uphill the wheels take m g sin θ. What is made good within 20 s from rest is less than the steady speed.
+// Uphill the wheels take m g sin θ. The mean speed over 20 s from rest is less than the steady speed.
 TEST(Driving, steady_speeds_at_full_throttle_are_those_of_map_converter_and_gears) {
   int highest = 0;
   for (const double grade : {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}) {
@@ -133,8 +133,8 @@ TEST(Driving, stops_within_the_distance_of_its_friction) {
                        speed * speed / (2.0 * friction * kStandardGravity), 0.1, "v^2/(2 mu g)");
 }
 
-// All tires push alike for their load, so that the slip angles of both axles are the same and the radius is that of the
-// angles at any speed, but for what the wheels' travel turns them.
+// All tires push in proportion to their load, so both axles have the same slip angle, and the angles give the radius at
+// any speed, except for steering by the wheels' travel.
 TEST(Driving, turns_on_the_radius_of_its_wheels_angles) {
   Turn slow, fast;
   for (const double speed : {2.0, 5.0, 8.0}) {

@@ -1,5 +1,5 @@
-// Limits of the whole HMMWV on hard ground: the steepest slope that it climbs, and when the one with the higher centre
-// of mass tips.
+// Limits of the whole HMMWV on hard ground: the steepest slope that it climbs, and tipping with the higher centre of
+// mass.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using vehicle::VehicleInputs;
 
 namespace {
 
-/// Centre of mass of all, against the middle of the wheels of the rear axle on the ground, m.
+/// Centre of mass of the whole vehicle, relative to the middle of the rear axle's wheels on the ground, m.
 Vec3 center_of_mass(const Drive& d) {
   Vec3 sum = Vec3::Zero();
   const vehicle::System& system = d.car.system();
@@ -23,7 +23,7 @@ Vec3 center_of_mass(const Drive& d) {
   return sum / d.car.mass() - Vec3(rear.x(), rear.y(), 0.0);
 }
 
-/// Way that it makes uphill within the last two of eight seconds at full throttle from rest, m.
+/// Distance uphill within the last two of eight seconds at full throttle from rest, m.
 double climbs(double grade) {
   Drive d("hmmwv.json", {.grade = grade, .slip_width = 0.4, .step = 1e-3});
   double before = 0.0;
@@ -35,7 +35,7 @@ double climbs(double grade) {
 }
 
 struct Lift {
-  double side = 0.0;  // over the weight, when both inner wheels carry nothing; 0: never
+  double side = 0.0;  // over the weight, when both inner wheels carry no load; 0: never
   double most = 0.0;
 };
 
@@ -57,7 +57,7 @@ Lift turn_in(const char* file) {
 
 }  // namespace
 
-// Rigid vehicles tip later, at half their track over the height of their centre of mass; springs let it move outwards.
+// Rigid vehicles tip later, at half their track over the height of their centre of mass; on springs it moves outwards.
 TEST(Performance, tips_before_it_slides_only_with_the_higher_centre_of_mass) {
   const Lift low = turn_in("hmmwv.json"), high = turn_in("hmmwv_tr.json");
   const Drive d("hmmwv_tr.json");

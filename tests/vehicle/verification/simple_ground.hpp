@@ -1,5 +1,5 @@
-// Simple laws of contact for whole vehicles on hard, even ground, which may be a slope: gravity is tilted, the ground
-// stays z = 0. Tires push by their stiffness and a damper.
+// Simple laws of contact for whole vehicles on hard, even ground. On a slope, gravity is tilted and the ground stays at
+// z = 0. Tires push with a stiffness and a damper.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ inline Vec3 gravity_on_slope(double grade) {
   return kStandardGravity / std::sqrt(1.0 + grade * grade) * Vec3(-grade, 0.0, -1.0);
 }
 
-/// One wheel of the ground: a spring that sticks until friction gives way, or a force that follows the slip speed.
+/// Contact of one wheel: a spring that sticks until the limit of friction, or a force that follows the slip speed.
 struct GroundContact {
   double radius = 0.4673, stiffness = 3.3e5, damping = 3e3;  // m, N/m, N s/m
   double friction = 0.9;
@@ -35,7 +35,7 @@ struct GroundContact {
     return {force, Vec3(0, 0, -rim.position.z()).cross(force)};
   }
 
-  /// Sticks; the spring's anchor slides where the force would be above friction.
+  /// The tire sticks; the spring's anchor slides if the force would exceed friction.
   Wrench stick(const RimState& rim, double h) {
     const double normal = load(rim), most = friction * normal;
     const Vec3 v = sliding(rim);
@@ -45,7 +45,7 @@ struct GroundContact {
     if (force.norm() > most) force *= most / force.norm();
     return at_ground(rim, force + normal * Vec3::UnitZ());
   }
-  /// Follows the slip speed over a width of about `width`, m/s.
+  /// The force follows the slip speed over a width of about `width`, m/s.
   Wrench roll(const RimState& rim, double width) const {
     const double normal = load(rim);
     const Vec3 v = sliding(rim);
@@ -63,7 +63,7 @@ inline void put_on_ground(vehicle::Vehicle& car, const GroundContact& contact) {
   car.move(Vec3(0, 0, contact.radius - deflection - lowest));
 }
 
-/// Mass of the tires, which the vehicle's file does not hold.
+/// Adds the mass of the tires, which the vehicle's file does not contain.
 inline void add_tires(vehicle::Vehicle& car) {
   MassProperties tire;
   tire.mass = 25.0;

@@ -82,7 +82,7 @@ TEST(WholeVehicle, brakes_hold_it_on_a_slope_of_20_percent) {
         ASSERT_TRUE(outcome.ok) << outcome.message("HMMWV") << " at step " << i << " of " << h << " s";
       }
     };
-    stand(5.0);  // it sways as it is let go
+    stand(5.0);  // it sways when it is released
     const Vec3 before = car.origin();
     std::vector<double> angle;
     for (int k = 0; k < car.wheel_count(); ++k) angle.push_back(car.system().coordinate(car.wheel(k).bearing).value);
@@ -101,7 +101,7 @@ TEST(WholeVehicle, brakes_hold_it_on_a_slope_of_20_percent) {
 struct Climb {
   double throttle = 0.0, grade = 0.0;
   int minutes = 0;
-  double down_rpm = 0.0;  // of the gearbox; 0: as its file says
+  double down_rpm = 0.0;  // of the gearbox; 0: the file's
 };
 struct Climbed {
   int early = 0, late = 0;                   // changes of gear within the first minute and after it
@@ -140,8 +140,8 @@ Climbed climb(const Climb& c) {
   return done;
 }
 
-// Ten minutes uphill at constant throttle. In balance the speed stays, and so does the gear. At a fifth of the throttle
-// the engine balances the slope in first gear, and the gearbox's input turns below the mark at which it shifts up.
+// Ten minutes uphill at constant throttle. In balance speed and gear are constant. At a fifth of the throttle the
+// engine balances the slope in first gear, and the gearbox's input turns below its upshift speed.
 TEST(WholeVehicle, gearbox_does_not_hunt_on_a_slope_of_10_percent_at_a_fifth_of_the_throttle) {
   const Climbed done = climb({0.2, 0.1, 10});
   const std::string name = "HMMWV up a slope of 10 % at 20 % throttle, ten minutes";
@@ -156,9 +156,9 @@ TEST(WholeVehicle, gearbox_does_not_hunt_on_a_slope_of_10_percent_at_a_fifth_of_
   EXPECT_LT(done.input_rpm, shipped("hmmwv.json").driveline.gearbox->up_rpm);
 }
 
-// On the level it comes to third gear at a fifth of the throttle, on 10 % to second from 32 % of it on; wherever it
-// shifts, it stays, on 10 % for ten minutes. Everywhere the engine's governor balances what is left, between 2,360 and
-// 2,580 rpm.
+// On the level it reaches third gear at a fifth of the throttle, on 10 % second gear from 32 % of the throttle on. It
+// stays in the new gear, on 10 % for ten minutes. In all cases the engine's governor balances the remaining torque,
+// between 2,360 and 2,580 rpm.
 TEST(WholeVehicle, gearbox_does_not_hunt_where_it_shifts) {
   for (const auto& [c, gear] : {std::pair{Climb{0.2, 0.0, 2}, 3},
                                 {Climb{0.2, 0.05, 2}, 1},
@@ -175,8 +175,8 @@ TEST(WholeVehicle, gearbox_does_not_hunt_where_it_shifts) {
   }
 }
 
-// The check can fail: a gear up halves the speed of the gearbox's input, 2,500 rpm, and a mark at 2,000 rpm sends it
-// back. It is the latency, 1 s, and the time to gain speed again that pass between two changes.
+// The check can fail: an upshift halves the speed of the gearbox's input, 2,500 rpm, and a downshift speed of 2,000 rpm
+// reverses it. The time between two shifts is the latency, 1 s, and the time to gain speed again.
 TEST(WholeVehicle, gearbox_hunts_whose_marks_are_too_near) {
   const Climbed done = climb({0.32, 0.1, 2, 2000.0});
   EXPECT_GT(done.late, 6);

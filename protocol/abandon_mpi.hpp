@@ -1,11 +1,11 @@
-// The way out of a run whose ranks no longer answer.
+// Ends a process whose ranks no longer answer.
 #pragma once
 
 namespace furrow {
 
-/// Ends this process at once without MPI_Finalize, which would wait for ranks that no longer answer. The way out after
-/// ExitCode::rank_lost, once the message is printed; the launcher then ends the other ranks. After other failures
-/// return from main: the process waits at its end until all ranks have come there, so print before.
+/// Ends this process at once, without MPI_Finalize, which would wait for ranks that no longer answer. It is meant for
+/// ExitCode::rank_lost, after the message is printed; the launcher then ends the other ranks. After any other failure
+/// return from main, and print first: the process then waits until all ranks have reached their end.
 [[noreturn]] void abandon_mpi(int exit_code);
 
 }  // namespace furrow

@@ -1,4 +1,4 @@
-// The message with which a tire that computes its contact by a law of its own says what the terrain shall give it.
+// The message in which a tire with a contact law of its own states the forces that the terrain has to give it.
 #pragma once
 
 #include "protocol/core/stated_contact.hpp"
@@ -6,8 +6,8 @@
 
 namespace furrow {
 
-/// tire k → terrain, right after the SurfaceMotion of its prompt exchange and of the same kind, from tires that state
-/// their contact.
+/// tire k → terrain, from tires that state their contact. It follows the SurfaceMotion of the prompt exchange and has
+/// the same kind.
 struct ContactStatement {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;

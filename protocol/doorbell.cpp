@@ -13,7 +13,7 @@
 namespace furrow {
 namespace {
 
-constexpr double kUnrung = 200e-6;  // s, to sleep where the system has no such call
+constexpr double kUnrung = 200e-6;  // s, length of a sleep where the system has no such call
 constexpr timespec kShort{0, 200000};
 
 /// The word in memory that the kernel compares.
@@ -21,8 +21,8 @@ std::uint32_t* word_of(std::atomic<std::uint32_t>& value) { return reinterpret_c
 
 }  // namespace
 
-// Both sides write one word and then read the other's, in one order for all: either the sender sees that the owner
-// sleeps, or the kernel sees that the count has changed and lets the owner continue.
+// Both sides write one word and then read the other's word, in one order for all. So either the sender sees that the
+// owner sleeps, or the kernel sees that the count has changed and lets the owner continue.
 void Doorbell::ring() noexcept {
   rings_.fetch_add(1);
   if (asleep_.load() != 0) syscall(SYS_futex, word_of(rings_), FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
@@ -36,7 +36,7 @@ void Doorbell::sleep(std::uint32_t heard, double longest) noexcept {
   const long woken = syscall(SYS_futex, word_of(rings_), FUTEX_WAIT, heard, &length, nullptr, 0);
   const bool refused = woken != 0 && errno != EAGAIN && errno != ETIMEDOUT && errno != EINTR;
   asleep_.store(0);
-  if (refused) nanosleep(longest < kUnrung ? &length : &kShort, nullptr);  // or the owner would spin
+  if (refused) nanosleep(longest < kUnrung ? &length : &kShort, nullptr);  // otherwise the owner would spin
 }
 
 }  // namespace furrow

@@ -60,7 +60,7 @@ std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own) {
   try {
     check(cards, nodes, transport.tire_count());
   } catch (const Error& error) {
-    // All nodes find the same; the rig reports it.
+    // All nodes find the same mistake; the rig reports it.
     if (transport.self() == nodes.front()) throw;
     throw PeerFailure(error.code(), nodes.front(), error.what());
   }

@@ -16,7 +16,7 @@ std::vector<int> allowed_cores() {
   std::set<std::string> seen;
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &set)) continue;
-    // CPUs of one core name the same siblings. Without /sys (a bare chroot) every CPU counts as a core.
+    // CPUs of one core list the same siblings. Without /sys (a bare chroot) every CPU counts as a core.
     std::ifstream file("/sys/devices/system/cpu/cpu" + std::to_string(cpu) + "/topology/thread_siblings_list");
     std::string siblings;
     if (file >> siblings && !seen.insert(siblings).second) continue;

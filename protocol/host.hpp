@@ -1,4 +1,4 @@
-// What a node needs to know of the machine that it shares with other nodes.
+// The machine that a node shares with other nodes.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,13 @@ namespace furrow {
 struct HostNode {
   Address node;
   std::vector<int> cores;
-  bool self = false;  // this very process
+  bool self = false;  // this process
 };
 
 /// Cores that this process may use; logical CPUs that share a core count once. Never empty.
 std::vector<int> allowed_cores();
 
-/// The file of the program that runs here; empty where the system does not say.
+/// The file of the running program; empty if the system does not name it.
 std::filesystem::path this_program();
 
 }  // namespace furrow

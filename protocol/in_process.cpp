@@ -12,7 +12,7 @@
 namespace furrow {
 namespace {
 
-/// What has arrived at one node.
+/// Messages that have arrived at one node.
 struct Mailbox {
   std::mutex mutex;
   std::condition_variable changed;

@@ -1,5 +1,5 @@
-// The messages of the co-simulation, one struct per kind. At synchronization t_n every node sends what describes
-// the interval [t_{n-1}, t_n] or the instant t_n, and receives the same from its peers; then all advance by H.
+// The messages of the co-simulation, one struct per kind. At synchronization t_n every node sends the messages that
+// describe the interval [t_{n-1}, t_n] or the instant t_n, and receives those of its peers; then all advance by H.
 //
 //   rig → tire k      RimMotion       rim frame at t_n
 //   tire k → rig      SpindleReport   wrench over the last interval, less the tire's own rigid-body inertia & weight
@@ -7,15 +7,15 @@
 //   terrain → tire k  TerrainForces   nodal forces over the last interval
 //   terrain → rig     TerrainReport   sums of the same forces, and the terrain's own measurements
 //
-// A tire that follows its rim on a ground that answers at once gets the forces of the interval that begins, in a second
-// exchange before all advance (nodes/ranks/node.hpp):
+// Some tires follow their rim on ground that answers at once. They get the forces of the interval that begins, in a
+// second exchange before all advance (nodes/ranks/node.hpp):
 //
 //   tire k → terrain  SurfaceMotion   vertices at t_{n+1}
 //   terrain → tire k  TerrainForces   nodal forces over [t_n, t_{n+1}]
 //   tire k → rig      PromptWrench    wrench over the same interval
 //
-// The ranks of a terrain exchange what they need by messages of the kind `group` (protocol/transport_group.hpp).
-// What a message holds is said once, in the list of fields beside each struct: it is packed and saved by that list.
+// The ranks of a terrain exchange messages of the kind `group` (protocol/transport_group.hpp). The list of fields next
+// to each struct defines the contents of its message: it is packed and saved by that list.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ enum class Role : std::int32_t { rig = 0, tire = 1, terrain = 2 };
 /// "rig", "tire", "terrain".
 std::string to_string(Role role);
 
-/// A partner by what it does, never by its world rank.
+/// A partner, identified by its role and never by its world rank.
 struct Address {
   Role role = Role::rig;
   std::int32_t index = 0;  // which tire; which rank of a terrain, 0 being its leader; 0 for the rig
@@ -46,9 +46,9 @@ void visit_fields(FieldsOf<Address> auto& s, auto&& visit) {
   visit(s.role, Field{"role", ""});
   visit(s.index, Field{"index"});
 }
-/// The node of this number: the rig is 0, then come the tires, then the ranks of the terrain.
+/// The node with this number: the rig is 0, then come the tires, then the ranks of the terrain.
 Address address_of(int node, int tire_count);
-/// "rig", "tire 0", "terrain", or "terrain 0" where it has several ranks.
+/// "rig", "tire 0", "terrain", or "terrain 0" if the terrain has several ranks.
 std::string to_string(const Address& address, int terrain_ranks = 1);
 
 /// Tag of a message on the wire: its kind, never a step number.
@@ -69,7 +69,7 @@ enum class MessageKind : std::int32_t {
 };
 std::string to_string(MessageKind kind);
 
-/// Who a node is and what it expects of the others; exchanged by all before anything else.
+/// Describes a node and what it expects of the others; all nodes exchange it before anything else.
 struct NodeCard {
   static constexpr MessageKind kKind = MessageKind::node_card;
   std::int32_t protocol_version = kProtocolVersion;
@@ -78,7 +78,7 @@ struct NodeCard {
   std::string scenario_digest;  // hash of the completed scenario
   double step = 0.0;            // communication step H, s
   std::int64_t steps = 0;       // number of communication steps
-  std::int64_t from_step = 0;   // the step it begins at: 0, or that of the checkpoint it continues from
+  std::int64_t from_step = 0;   // the first step: 0, or that of the checkpoint from which the run continues
   std::int32_t substeps = 1;
   std::int32_t wheel_count = 0;  // rig: wheels it carries
   std::int32_t tire_count = 0;   // rig, terrain: tires they expect
@@ -88,8 +88,8 @@ struct NodeCard {
   MassProperties tire_mass;  // tire: rigid-body mass properties, added to the rim body by the rig
   double tire_radius = 0.0;  // tire: undeformed radius of the contact surface, m
   double tire_width = 0.0;   // tire: tread width, m
-  double tire_reach = 0.0;   // tire: how far it reaches below the rim centre, inflated, with the camber of the rig, m
-  std::int64_t size = 0;     // grains or coordinates, for the reports
+  double tire_reach = 0.0;   // tire: its reach below the rim centre, inflated, with the camber of the rig, m
+  std::int64_t size = 0;     // grains or coordinates, for reports
 };
 void visit_fields(FieldsOf<NodeCard> auto& s, auto&& visit) {
   visit(s.protocol_version, Field{"protocol_version"});
@@ -150,14 +150,14 @@ void visit_fields(FieldsOf<StepHeader> auto& s, auto&& visit) {
   visit(s.time, Field{"time", "s"});
 }
 
-/// What all nodes do at the same step, once the interval that follows the synchronization they all know it by is done.
+/// Order that all nodes carry out after the same interval, the first that begins when all of them have it.
 enum class Order : std::int32_t {
   go_on = 0,
   checkpoint = 1,  // save
   stop = 2,        // save and end: a signal asked for it
 };
 
-/// The step of an end that is not known yet.
+/// Stands for the step of an end that is not determined yet.
 inline constexpr std::int64_t kNotYet = std::numeric_limits<std::int64_t>::max();
 
 struct RimMotion {
@@ -165,7 +165,7 @@ struct RimMotion {
   StepHeader header;
   RimState rim;
   Order order = Order::go_on;      // due at synchronization n + 1
-  std::int64_t ends_at = kNotYet;  // the step at which the run is complete before its planned end, at least n + 2
+  std::int64_t ends_at = kNotYet;  // step at which the run is complete before its planned end, at least n + 2
 };
 void visit_fields(FieldsOf<RimMotion> auto& s, auto&& visit) {
   visit(s.header, Field{"header", ""});
@@ -178,9 +178,9 @@ void visit_fields(FieldsOf<RimMotion> auto& s, auto&& visit) {
 struct SpindleReport {
   static constexpr MessageKind kKind = MessageKind::spindle_report;
   StepHeader header;
-  Wrench wrench;                // on the rim by the tire + m (a − g): what the rig, carrying the added mass, needs
+  Wrench wrench;                // on the rim by the tire + m (a − g), for a rig that carries the added mass
   Wrench spindle;               // on the rim by the tire, complete
-  Wrench contact;               // on the tire by the terrain as it acted, about the middle of the rim centre's way
+  Wrench contact;               // on the tire by the terrain as it acted, about the middle of the rim centre's path
   double lowest_point = 0.0;    // lowest contact-surface vertex z, m
   TireDiagnostics diagnostics;  // of the model
   Vec3 impulse_received = Vec3::Zero();  // cumulative, N s
@@ -188,16 +188,16 @@ struct SpindleReport {
   Vec3 spindle_impulse = Vec3::Zero();   // by the tire on the rim, complete, cumulative, N s
   Vec3 gravity_impulse = Vec3::Zero();   // cumulative, N s
   double terrain_work = 0.0;             // cumulative Σ f̄·Δx_tire at the vertices, J
-  double rim_work = 0.0;                 // cumulative work done by the rim on the tire, −(F·way + M·turn), J
+  double rim_work = 0.0;                 // cumulative, by the rim on the tire, −(F·displacement + M·turn), J
   std::int64_t newton_iterations = 0;    // cumulative
   std::int64_t factorizations = 0;       // cumulative
   double residual = 0.0;                 // last converged free residual / reference
-  bool prompt = false;                   // its wrench acts over the interval of its forces; false: over the next one
-  // Of a tire that uses contact tangents: its forces differ from those reported for the same interval.
+  bool prompt = false;                   // the wrench acts over the interval of its forces; false: over the next one
+  // The tire uses contact tangents: its forces differ from those reported for the same interval.
   bool contact_tangent = false;
-  Vec3 impulse_ahead = Vec3::Zero();  // received beyond what the terrain had reported until then, N s
+  Vec3 impulse_ahead = Vec3::Zero();  // received beyond what the terrain had reported by then, N s
   double ledger = 0.0;                // |Σ| of the differences when last settled, N s
-  double ledger_largest = 0.0;        // until now, N s
+  double ledger_largest = 0.0;        // largest until now, N s
 };
 void visit_fields(FieldsOf<SpindleReport> auto& s, auto&& visit) {
   visit(s.header, Field{"header", ""});
@@ -205,7 +205,7 @@ void visit_fields(FieldsOf<SpindleReport> auto& s, auto&& visit) {
   visit(s.spindle, Field{"spindle", ""});
   visit(s.contact, Field{"contact", ""});
   visit(s.lowest_point, Field{"lowest_point", "m"});
-  visit_fields(s.diagnostics, visit);  // under their own names
+  visit_fields(s.diagnostics, visit);  // under the names that they have there
   visit(s.impulse_received, Field{"impulse_received", "N s"});
   visit(s.impulse_received_abs, Field{"impulse_received_abs", "N s"});
   visit(s.spindle_impulse, Field{"spindle_impulse", "N s"});
@@ -222,7 +222,7 @@ void visit_fields(FieldsOf<SpindleReport> auto& s, auto&& visit) {
   visit(s.ledger_largest, Field{"ledger_largest", "N s"});
 }
 
-/// tire k → rig, from a prompt tire, after its report of the same kind.
+/// tire k → rig, from a prompt tire, after its report, which has the same kind.
 struct PromptWrench {
   static constexpr MessageKind kKind = MessageKind::spindle_report;
   StepHeader header;
@@ -237,8 +237,8 @@ struct SurfaceMotion {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;
   SurfaceState surface;
-  Order order = Order::go_on;      // due now: the terrain gets it through the tires
-  std::int64_t ends_at = kNotYet;  // as the rig said, at least n + 1
+  Order order = Order::go_on;      // due now; the terrain gets it through the tires
+  std::int64_t ends_at = kNotYet;  // as the rig sent it, at least n + 1
 };
 void visit_fields(FieldsOf<SurfaceMotion> auto& s, auto&& visit) {
   visit(s.header, Field{"header", ""});
@@ -271,20 +271,20 @@ void visit_fields(FieldsOf<TerrainReport> auto& s, auto&& visit) {
   visit(s.contact, Field{"contact", ""});
 }
 
-/// rig → every node, before the handshake of a program's run: the folder that takes the results.
+/// rig → every node, before the handshake of a program's run: the folder for the results.
 struct RunFolder {
   static constexpr MessageKind kKind = MessageKind::run_folder;
   std::string path;
 };
 void visit_fields(FieldsOf<RunFolder> auto& s, auto&& visit) { visit(s.path, Field{"path", ""}); }
 
-/// Every node → rig once it has written its part of a checkpoint, or failed to.
+/// Every node → rig, once it has written its part of a checkpoint or failed to write it.
 struct CheckpointPart {
   static constexpr MessageKind kKind = MessageKind::checkpoint_part;
   std::int64_t step = 0;
   std::string file;      // name in the checkpoint's folder
-  std::string checksum;  // of the state it holds
-  std::string problem;   // why it could not be written; empty: it was
+  std::string checksum;  // of the state in the file
+  std::string problem;   // why the part could not be written; empty: it was written
 };
 void visit_fields(FieldsOf<CheckpointPart> auto& s, auto&& visit) {
   visit(s.step, Field{"step"});
@@ -298,12 +298,12 @@ struct FinalReport {
   static constexpr MessageKind kKind = MessageKind::final_report;
   Address self;
   std::uint64_t state_hash = 0;
-  // Of the stepping loop, s: processor time; and wall time, what computing, communicating and waiting took of it.
+  // Times of the stepping loop, s: processor time, and the wall time spent on computing, communicating and waiting.
   double cpu_s = 0.0, compute_s = 0.0, communicate_s = 0.0, wait_s = 0.0;
   std::int32_t threads = 1;
   std::int64_t grains = 0;                  // of this rank of a terrain
-  std::int64_t grains_begin = 0;            // the same when the run began; 0: not known
-  std::vector<double> profile;              // what StepProfile::times() holds; empty unless asked for
+  std::int64_t grains_begin = 0;            // the same number when the run began; 0: not known
+  std::vector<double> profile;              // StepProfile::times(); empty unless the run asks for it
   HeightField height_before, height_after;  // terrain
 };
 void visit_fields(FieldsOf<FinalReport> auto& s, auto&& visit) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kRoom = sizeof(Doorbell) + alignof(Doorbell);
 
-/// The first place in a rank's part that a doorbell may have. It is the same for all: pages lie alike everywhere.
+/// The first place for a doorbell in a rank's part. It is the same for all, because pages are aligned alike everywhere.
 void* place_in(void* part) {
   std::size_t room = kRoom;
   return std::align(alignof(Doorbell), sizeof(Doorbell), part, room);
@@ -33,8 +33,8 @@ MpiDoorbells::MpiDoorbells(MPI_Comm comm) {
   MPI_Allreduce(MPI_IN_PLACE, &made, 1, MPI_INT, MPI_MIN, machine.get());
   if (made) {
     own_ = new (place_in(memory)) Doorbell;
-    MPI_Barrier(machine.get());  // nobody rings before it is there
-    // Ranks of `comm` that those of `machine` are.
+    MPI_Barrier(machine.get());  // nobody rings a bell before it exists
+    // For each rank of `machine`, its rank in `comm`.
     std::vector<int> here(static_cast<std::size_t>(machine.size())), there(here.size());
     std::iota(here.begin(), here.end(), 0);
     MPI_Group of_machine, of_all;

@@ -1,4 +1,4 @@
-// The doorbells of all ranks on this machine, in a window of shared memory that MPI makes.
+// The doorbells of all ranks on this machine, in a window of shared memory from MPI.
 #pragma once
 
 #include <mpi.h>
@@ -12,13 +12,13 @@ namespace furrow {
 
 class MpiDoorbells {
  public:
-  /// Collective over `comm`. Where the system grants no shared memory there are none, and everybody sleeps unrung.
-  /// The window lives as long as MPI: to free it would be to wait for ranks that may be lost.
+  /// Collective over `comm`. If the system grants no shared memory, there are no doorbells, and nobody can end a sleep
+  /// early. The window lives as long as MPI: freeing it would mean waiting for ranks that may be lost.
   explicit MpiDoorbells(MPI_Comm comm);
   MpiDoorbells(const MpiDoorbells&) = delete;
   MpiDoorbells& operator=(const MpiDoorbells&) = delete;
 
-  /// Whether every rank has one that this rank can ring, and can ring this one's.
+  /// Whether every rank has a doorbell that this rank can ring, and can ring this rank's.
   bool everyone() const { return everyone_; }
   /// Does nothing for a rank on another machine.
   void ring(int rank) noexcept;

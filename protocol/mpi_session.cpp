@@ -21,8 +21,9 @@ namespace {
 
 constexpr char kSingleCopy[] = "OMPI_MCA_btl_vader_single_copy_mechanism";
 
-/// Open MPI moves large messages by reading the other process's memory, and fails where a container forbids that
-/// call. So try it on ourselves, and have Open MPI copy through shared memory instead if it is refused.
+/// Open MPI moves large messages by reading the other process's memory, and fails if a container forbids that call.
+/// This function tries the call on its own process. If it is refused, Open MPI is set to copy through shared memory
+/// instead.
 /// @returns whether the memory of other processes can be read
 bool choose_copy_mechanism() {
   char from = 1, to = 0;
@@ -42,7 +43,7 @@ bool one_machine() {
   return machine.size() == world_size();
 }
 
-/// Ends the process when it lives longer than `patience` seconds of its own running time.
+/// Ends the process if this object lives longer than `patience` seconds of the process's own running time.
 class Deadline {
  public:
   Deadline(double patience, int exit_code) : thread_([this, patience, exit_code] { watch(patience, exit_code); }) {}
@@ -77,7 +78,7 @@ MpiSession::MpiSession(int* argc, char*** argv) {
 #if defined(OPEN_MPI)
   receivers_pull_ = readable && one_machine();
 #endif
-  prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: sleep as long as asked, not 50 µs longer
+  prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: sleep as long as asked, not up to 50 µs longer
 }
 
 MpiSession::~MpiSession() {

@@ -1,4 +1,4 @@
-// MPI itself and communicators, owned.
+// Owners of MPI itself and of communicators.
 #pragma once
 
 #include <mpi.h>
@@ -11,32 +11,32 @@ namespace furrow {
 class MpiSession {
  public:
   MpiSession(int* argc, char*** argv);
-  /// Waits for all ranks, as MPI_Finalize does; after expect_losses only for a while.
+  /// Waits for all ranks, as MPI_Finalize does; after expect_losses() only for a limited time.
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
-  /// True when a receiver fetches large messages from the sender's memory on its own: Open MPI between processes of one
-  /// machine, where the system allows it. Otherwise a message moves only while its sender is inside MPI too.
+  /// True if a receiver fetches large messages from the sender's memory on its own: Open MPI between processes of one
+  /// machine, if the system allows it. Otherwise a message moves only while its sender is also inside MPI.
   bool receivers_pull() const { return receivers_pull_; }
 
   /// From here on ranks wait for messages in their own way, until they end.
   void ranks_are_set_up() noexcept;
 
-  /// Some rank failed, and others may be gone: leave with `exit_code` if MPI_Finalize takes longer than `patience` s.
+  /// Some rank failed and others may be gone: exit with `exit_code` if MPI_Finalize takes longer than `patience` s.
   void expect_losses(double patience, int exit_code) noexcept;
 
  private:
   MpiYield yield_;
   bool receivers_pull_ = false;
-  double patience_ = 0.0;  // s; 0: for ever
+  double patience_ = 0.0;  // s; 0: no limit
   int exit_code_ = 0;
 };
 
 int world_size();
 int world_rank();
 
-/// A communicator that is freed with its owner.
+/// A communicator that its owner frees.
 class Communicator {
  public:
   static Communicator duplicate(MPI_Comm of);

@@ -43,14 +43,14 @@ std::vector<HostNode> gather_host_nodes(int tire_count) {
   return nodes;
 }
 
-/// "PMI_RANK=1" and how to be rid of it; empty where no launcher's variables are set.
+/// "PMI_RANK=1" and how to unset it; empty if no launcher's variables are set.
 std::string launcher_text(const std::vector<std::string>& names) {
   if (names.empty()) return {};
   return fmt::format("the environment has {}={}, which a launcher of MPI sets; without a launcher unset {}",
                      names.front(), std::getenv(names.front().c_str()), fmt::join(names, " "));
 }
 
-/// A single rank may be one that no launcher started: it only found the variables of one.
+/// A single rank may have been started without a launcher, in an environment with a launcher's variables.
 Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& found) {
   FURROW_ASSERT(needed > 1, needed);
   std::string text = fmt::format(
@@ -68,8 +68,8 @@ Error wrong_count(int needed, int tires, int terrain_ranks, const std::string& f
 }  // namespace
 
 std::unique_ptr<Transport> make_mpi_transport(int* argc, char*** argv, int tire_count, int terrain_ranks) {
-  // MPI ends with the process, not with the transport: a launcher ends all ranks as soon as one has ended with an
-  // error, so none may end before the one that informs the user has done so.
+  // MPI ends with the process, not with the transport. A launcher ends all ranks as soon as one has ended with an
+  // error, so no rank may end before the rank that informs the user has done so.
   const std::string found = launcher_text(launcher_variables());  // MPI sets them too once it has begun
   static MpiSession session(argc, argv);
   if (const int needed = 1 + tire_count + terrain_ranks; world_size() != needed)

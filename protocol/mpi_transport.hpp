@@ -1,4 +1,4 @@
-// The MPI side of protocol/transport.hpp that a program needs beyond messages.
+// The MPI functions that a program needs beyond protocol/transport.hpp.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace furrow {
 
-/// The variables of the environment by which mpirun, srun and the like give a process its rank: of
-/// OMPI_COMM_WORLD_RANK, PMIX_RANK and PMI_RANK those that are set and not empty. They may be left over from a shell
-/// that a launcher started.
+/// The environment variables by which mpirun, srun and similar launchers give a process its rank: those of
+/// OMPI_COMM_WORLD_RANK, PMIX_RANK and PMI_RANK that are set and not empty. They may be left over from a shell that a
+/// launcher started.
 std::vector<std::string> launcher_variables();
-/// True when there is one of them.
+/// True if at least one of them is set.
 bool launched_by_mpi();
-/// The rank of this process: MPI's once it has begun, before that what the first of these variables says, 0 without.
+/// The rank of this process: from MPI once it has begun, before that from the first of these variables, or 0 without
+/// any.
 int launched_rank();
 
 }  // namespace furrow

@@ -12,13 +12,13 @@
 namespace furrow {
 namespace {
 
-constexpr int kLooks = 2;                   // for messages, each time that anybody looks for them
+constexpr int kLooks = 2;                   // looks for messages in each call of progress()
 constexpr int kTests = 4;                   // polls before the first sleep
 constexpr double kRungSleep = 50e-3;        // s; longest sleep where every message rings
 constexpr double kFirstSleep = 20e-6;       // s
 constexpr double kSleepGrowth = 1.5;        // from one sleep to the next
 constexpr double kShortWaitSleep = 200e-6;  // s; longest sleep while the wait is short
-constexpr double kShareOfWait = 1.0 / 40;   // of a long wait, may be lost by sleeping too long
+constexpr double kShareOfWait = 1.0 / 40;   // part of a long wait that may be lost by sleeping too long
 constexpr double kMaxSleep = 2e-3;          // s
 
 bool receive_any(const Communicator& comm, int& from, int& tag, Bytes& payload) {
@@ -42,10 +42,10 @@ void sleep_for(double seconds) {
   nanosleep(&length, nullptr);
 }
 
-/// No longer than what was waited before: should a message come without a ring, it is no later than twice its time.
+/// At most the time already waited: a message that comes without a ring then takes at most twice its time.
 double rung_sleep(double waited) { return std::clamp(waited, kShortWaitSleep, kRungSleep); }
 
-/// The n-th of a wait that has lasted `waited` s.
+/// The n-th sleep of a wait that has lasted `waited` s.
 double short_sleep(int n, double waited) {
   const double longest = std::clamp(kShareOfWait * waited, kShortWaitSleep, kMaxSleep);
   return std::min(kFirstSleep * std::pow(kSleepGrowth, std::min(n, 20)), longest);
@@ -66,7 +66,7 @@ MpiWire::MpiWire(MpiSession& session, int role)
 
 MpiWire::~MpiWire() {
   drain(1.0);
-  // A node that failed never took these; their memory must outlive MPI, which may still touch it.
+  // A node that failed never took these messages. Their memory must outlive MPI, which may still access it.
   for (auto* sends : {&sends_, &control_sends_})
     if (!sends->empty()) new std::deque<PendingSend>(std::move(*sends));
 }
@@ -103,8 +103,8 @@ void MpiWire::complete(std::deque<PendingSend>& sends) {
 
 void MpiWire::progress() {
   rung_ = doorbells_.own_count();
-  // Open MPI's probe first looks at what it has taken in, and only then takes in what has come: a message is found by
-  // the second look. Without it the receiver would continue to sleep although a message is there.
+  // Open MPI's probe first looks at the messages it has taken in, and only then takes in new ones: a new message is
+  // found by the second look. After a single look the receiver would go to sleep although a message is there.
   for (int look = 0; look < kLooks; ++look) {
     int from = 0, tag = 0;
     Bytes payload;
@@ -133,14 +133,14 @@ void MpiWire::idle(int polls, double waited) {
   doorbells_.sleep(rung_, every_message_rings() ? rung_sleep(waited) : short_sleep(polls - kTests, waited));
 }
 
-/// What this rank sends may need it to come back to MPI, unless the receivers fetch it.
+/// A message from this rank may need it to come back to MPI, unless the receivers fetch it.
 bool MpiWire::every_message_rings() const {
   return doorbells_.everyone() && (session_.receivers_pull() || (sends_.empty() && control_sends_.empty()));
 }
 
 void MpiWire::expect_losses(double patience, int exit_code) noexcept { session_.expect_losses(patience, exit_code); }
 
-/// Gives what is still under way a moment to leave, so that a failure notice is not lost.
+/// Gives messages that are still under way a moment to leave, so that a failure notice is not lost.
 void MpiWire::drain(double longest) {
   PeerClock clock(longest);
   while (!(sends_.empty() && control_sends_.empty()) && !clock.expired()) {

@@ -1,13 +1,13 @@
-// A wire over MPI. Data and control travel on communicators of their own; a tag is the message's kind. The wire owns
-// what it sends until MPI is done with it, and takes in whatever arrives at every opportunity, so that no peer waits
-// for this node to ask for just its message.
+// A wire over MPI. Data and control travel on separate communicators; a tag is the message's kind. The wire owns what
+// it sends until MPI is done with it. It takes in whatever arrives at every opportunity, so that no peer has to wait
+// until this node asks for its message.
 //
-// Idling: a few tests for what is about to come, then sleep. A waiting rank leaves its core to a working one (more
-// ranks than cores is the usual case on a laptop). Whoever sends to a rank of the same machine rings its doorbell,
-// which ends its sleep. It must not look around on its own in between where others want the core: each time it would
-// stand at the end of their queue, for milliseconds; and sched_yield() is the same. Messages from other machines, and
-// those that move only while their sender is inside MPI, ring no bell: for them it sleeps in short pieces that grow
-// with the wait, and may notice them one piece late.
+// Idling: a few tests for messages, then sleep. A waiting rank leaves its core to a working one, because a laptop
+// usually has fewer cores than a run has ranks. A rank that sends to another on the same machine rings its doorbell,
+// which ends its sleep. A waiting rank must not look for messages on its own while others want the core: each look, and
+// each sched_yield(), would put it at the end of the queue for milliseconds. Messages from other machines ring no bell,
+// nor do messages that move only while their sender is inside MPI. For these it sleeps in short pieces that grow with
+// the wait, and may notice them one piece late.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +54,7 @@ class MpiWire final : public Wire {
   Communicator data_, control_, role_;
   MpiDoorbells doorbells_;
   int self_, nodes_;
-  std::uint32_t rung_ = 0;  // own doorbell's count before the last look around
+  std::uint32_t rung_ = 0;  // own doorbell's count before the last look for messages
   std::deque<PendingSend> sends_, control_sends_;
   std::map<std::pair<int, int>, std::deque<Bytes>> arrived_;  // by rank and tag
   std::deque<ControlBytes> control_arrived_;

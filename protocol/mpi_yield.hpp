@@ -1,26 +1,27 @@
-// Whether a rank that waits inside Open MPI leaves its core to others meanwhile.
+// Whether a rank that waits inside Open MPI leaves its core to others.
 //
-// While ranks are set up and while they end they wait for each other in collective calls. Where they outnumber the
-// cores, one that spins there takes the time of the one that it waits for (figures in protocol/README.md). In a run the
-// opposite holds: a rank sleeps between its looks for messages, and who yields on a busy machine waits until all others
-// have had their time.
+// Ranks wait for each other in collective calls while they are set up and while they end. If there are more ranks than
+// cores, a rank that spins there takes time from the one that it waits for (figures in protocol/README.md). During a
+// run the opposite holds: a rank sleeps between its looks for messages, and one that yields on a busy machine waits
+// until all others have had their time.
 //
-// Open MPI decides this once, when it begins, by OMPI_MCA_mpi_yield_when_idle. What changes it later is no part of MPI,
-// so it is looked for among the loaded libraries; where it is missing ranks never yield. A value that the environment
-// holds already is the user's, or the supervisor's for ranks that poll inside an engine: it stays.
+// Open MPI decides this once, when it begins, by OMPI_MCA_mpi_yield_when_idle. The function that changes it later is
+// not part of MPI, so it is looked up in the loaded libraries; without it ranks never yield. A value that the
+// environment already contains comes from the user, or from the supervisor for ranks that poll inside an engine, and is
+// kept.
 #pragma once
 
 namespace furrow {
 
 class MpiYield {
  public:
-  /// Before MPI begins.
+  /// Call it before MPI begins.
   MpiYield();
   void set(bool yields) noexcept;
 
  private:
   using Switch = bool (*)(bool);
-  Switch switch_ = nullptr;  // null where nothing can be changed, or must not be
+  Switch switch_ = nullptr;  // null if nothing can be changed, or must not be
 };
 
 }  // namespace furrow

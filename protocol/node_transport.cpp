@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWaitWorthTelling = 1.0;  // s; a quarter of the time-out if that is shorter
 
-/// Counts a wait, and ends it for the others, however it ends.
+/// Counts a wait, and reports its end to the others, however it ends.
 class Wait {
  public:
   Wait(PeerWatch& watch, WaitClock& clock, double timeout) : watch_(watch), clock_(clock), time_(timeout) {
@@ -23,7 +23,7 @@ class Wait {
     try {
       watch_.end_wait();
     } catch (...) {
-      // Out of memory: the others keep an old note on whom this node waits for.
+      // Out of memory: the others keep their old note of whom this node waits for.
     }
   }
   Wait(const Wait&) = delete;
@@ -61,10 +61,10 @@ void NodeTransport::send(Address to, MessageKind kind, std::vector<std::byte> pa
   wire_->send(number(to), kind, std::move(payload));
 }
 
-/// Waits until ready() for `peer()`, a node number that may change while it lasts.
+/// Waits for `peer()`, a node number that may change meanwhile, until ready() returns true.
 template <class Ready, class Peer>
 void NodeTransport::wait_until(const Ready& ready, const Peer& peer, const std::string& what) {
-  Wait wait(watch_, clock_, timeout_);  // first of all: even to look may take long where cores are scarce
+  Wait wait(watch_, clock_, timeout_);  // before anything else: even a look may take long if cores are scarce
   check_peers();
   if (ready()) return;
   const double worth_telling = std::min(kWaitWorthTelling, 0.25 * timeout_);

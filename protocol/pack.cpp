@@ -1,4 +1,4 @@
-// A message crosses as its fields in the order of its list.
+// A message is packed as its fields in the order of its list.
 #include "protocol/contact_statement.hpp"
 #include "protocol/core/byte_stream.hpp"
 #include "protocol/transport.hpp"

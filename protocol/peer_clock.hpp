@@ -1,5 +1,5 @@
-// How long a node has waited for a peer, counting only time during which this process itself ran: a stopped
-// terminal, a debugger or a sleeping laptop adds one capped interval, not its whole length.
+// How long a node has waited for a peer, counting only time during which this process itself ran. A stopped terminal, a
+// debugger or a sleeping laptop adds one capped interval, not its whole length.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class PeerClock {
 
   /// A sign of life from the peer: the time-out starts again.
   void heard() { silent_ = 0.0; }
-  /// To be asked at every poll.
+  /// Call it at every poll.
   bool expired() {
     const double at = wall_clock();
     silent_ += std::min(at - last_, kMaxGap);
@@ -27,7 +27,7 @@ class PeerClock {
   double total() const { return wall_clock() - begin_; }
 
  private:
-  static constexpr double kMaxGap = 0.25;  // s, counted for one poll at most
+  static constexpr double kMaxGap = 0.25;  // s, counted at most for one poll
   double timeout_, begin_, last_;
   double silent_ = 0.0;
 };

@@ -73,7 +73,7 @@ void PeerWatch::heartbeat() {
 
 void PeerWatch::announce_failure(ExitCode code, const std::string& text) {
   FURROW_ASSERT(code != ExitCode::done, static_cast<int>(code), text);
-  if (failed()) return;  // a failure is reported once, by the node that had it
+  if (failed()) return;  // only the node that failed reports a failure
   announced_ = true;
   ByteWriter writer;
   writer(Control::failure);
@@ -95,7 +95,7 @@ void PeerWatch::tell_wait() {
 
 void PeerWatch::end_wait() {
   waits_for_ = -1;
-  if (told_ && !failed()) tell(-1);  // after a failure the others must still know whom this node waited for
+  if (told_ && !failed()) tell(-1);  // after a failure the others still need to know whom this node waited for
   told_ = false;
 }
 
@@ -109,7 +109,7 @@ void PeerWatch::tell(int target) {
 
 Error PeerWatch::lost(int from, const std::string& what, double timeout) {
   FURROW_ASSERT(in_range(from, peers_.size()), from, peers_.size());
-  told_ = false;  // whoever loses patience just now must still know whom this node waited for
+  told_ = false;  // a node whose wait times out now still needs to know whom this node waited for
   std::string text = fmt::format("{} waited {:g} s for {} ({})", name(wire_.self()), timeout, name(from), what);
   std::vector<bool> met(peers_.size(), false);
   met[wire_.self()] = true;

@@ -1,9 +1,9 @@
-// What a node knows of its peers' lives: heartbeats, who waits for whom, who failed.
+// Whether a node's peers are alive: heartbeats, who waits for whom, and who failed.
 //
 // Heartbeats pass along chains of waiting. While the terrain settles its bed, the rig waits for the terrain and the
 // tire for the rig; the rig is alive, but blocked. So a node that hears a heartbeat from the peer it waits for passes
-// it on, each heartbeat of each origin once; a node that waits for itself in the end gets none, so a circle of
-// waiting nodes does time out.
+// it on, once for each heartbeat of each origin. Nodes that wait for one another in a circle get no heartbeats, so such
+// a circle times out.
 #pragma once
 
 #include <cstdint>
@@ -24,33 +24,33 @@ class PeerWatch {
   /// Reads all control messages that have arrived. @throws PeerFailure, again at every call once a node has failed
   void listen();
 
-  void heartbeat();  // at most one a second goes out
+  void heartbeat();  // sends at most one a second
   void announce_failure(ExitCode code, const std::string& text);
   bool failed() const { return announced_ || failure_.has_value(); }
 
-  /// Counts the signs of life from a node.
+  /// Number of signs of life from a node.
   std::int64_t heard(int node) const {
     FURROW_ASSERT(in_range(node, peers_.size()), node, peers_.size());
     return peers_[node].heard;
   }
 
-  /// This node's own waiting; the others are informed only of a wait that lasts.
+  /// This node's own wait; the others are informed only of a wait that lasts.
   void begin_wait(int node);
   void tell_wait();
   void end_wait();  // informs nobody after a node has failed
 
   /// "rig waited 60 s for terrain (terrain report), which waits for tire 0: tire 0 does not answer; …"
-  /// After this the node is about to fail: it does not report that its wait has ended.
+  /// The node is then about to fail, so it does not report the end of its wait.
   Error lost(int from, const std::string& what, double timeout);
 
   Address address(int node) const { return address_of(node, tire_count_); }
-  /// For people: "tire 0", "terrain 1".
+  /// Name for messages: "tire 0", "terrain 1".
   std::string name(int node) const;
 
  private:
   struct Peer {
     std::int64_t heard = 0;
-    std::int64_t passed_on = 0;  // newest of its heartbeats that this node passed on
+    std::int64_t passed_on = 0;  // newest of its heartbeats that this node has passed on
     int waits_for = -1;
   };
   void tell(int target);

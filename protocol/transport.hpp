@@ -14,8 +14,8 @@
 
 namespace furrow {
 
-/// Thrown out of any transport call when another node failed or was lost. The failing node has already informed the
-/// user, so the code that catches this ends quietly with `code`.
+/// Thrown by any transport call after another node failed or was lost. The failing node has already informed the user,
+/// so the code that catches this ends with `code` and prints nothing.
 class PeerFailure : public Error {
  public:
   PeerFailure(ExitCode code, Address who, const std::string& text) : Error(code, text), who_(who) {}
@@ -37,7 +37,7 @@ class Transport {
   virtual Address self() const = 0;
   virtual int tire_count() const = 0;
   virtual int terrain_ranks() const = 0;
-  /// The communicator of this rank's role, as MPI_Comm_f2c takes it; it belongs to the transport. None without MPI.
+  /// The communicator of this rank's role, as MPI_Comm_f2c takes it; the transport owns it. Empty without MPI.
   virtual std::optional<int> role_communicator() const { return std::nullopt; }
   /// The nodes whose processes run on this machine, in rank order, this one included.
   virtual std::vector<HostNode> host_nodes() const { return {{self(), allowed_cores(), true}}; }
@@ -45,21 +45,22 @@ class Transport {
   /// Non-blocking; the transport owns the payload until it is delivered. Order is kept per (sender, receiver, kind).
   virtual void send(Address to, MessageKind kind, std::vector<std::byte> payload) = 0;
 
-  /// Waits politely (test, yield, then sleep with back-off) for the next message of this kind from `from`.
+  /// Waits for the next message of this kind from `from`, and leaves the core to others (test, then sleep with
+  /// back-off).
   /// @throws PeerFailure when any node has reported failure;
-  ///         Error(rank_lost) "A waited N s for B (kind)" after peer_timeout of this process's own running time
-  ///         without message or heartbeat from that peer.
+  ///         Error(rank_lost) "A waited N s for B (kind)" if that peer sends neither message nor heartbeat for
+  ///         peer_timeout of this process's own running time
   virtual std::vector<std::byte> receive(Address from, MessageKind kind) = 0;
 
-  /// Waits until everything sent has left this process. To be called when all sends and receives of a synchronization
-  /// are done and before long work: a message under way makes no progress while its sender computes.
-  /// Peers take what is sent to them in any call that waits, so no order of sends and receives can deadlock.
+  /// Waits until everything that was sent has left this process. Call it after all sends and receives of a
+  /// synchronization, before long work: a message under way makes no progress while its sender computes. Peers take in
+  /// messages during any call that waits, so no order of sends and receives can deadlock.
   virtual void flush() {}
 
-  /// Tells all others that this node is alive while it does something long (settling).
+  /// Informs all others that this node is alive while it does something long (settling).
   virtual void heartbeat() = 0;
 
-  /// Tells all others that this node failed. Never throws.
+  /// Informs all others that this node failed. Never throws.
   virtual void announce_failure(ExitCode code, const std::string& text) noexcept = 0;
 
   /// @throws PeerFailure if another node announced failure; for long work between synchronizations.
@@ -84,7 +85,7 @@ template <class M>
 M receive(Transport& transport, Address from) {
   return unpack<M>(transport.receive(from, M::kKind));
 }
-/// As receive, for messages of the run loop: the step must be `step`.
+/// Like receive, for messages of the run loop: their step must be `step`.
 /// @throws Error(rank_lost) naming sender, kind and both steps.
 template <class M>
 M receive_step(Transport& transport, Address from, std::int64_t step) {
@@ -95,13 +96,13 @@ M receive_step(Transport& transport, Address from, std::int64_t step) {
   return message;
 }
 
-/// Every node's card, gathered by all and checked by all, so that a mismatch is the same clear error everywhere.
+/// Gathers and checks every node's card on every node, so that a mismatch gives the same clear error everywhere.
 /// Returned in the order rig, tires, terrain.
-/// @throws Error(bad_input) when versions, digests, steps, or tire and wheel counts disagree; on nodes other than the
-///         rig as a PeerFailure of the rig with the same text, so that the user reads it once.
+/// @throws Error(bad_input) when versions, digests, steps, or tire and wheel counts disagree. On nodes other than the
+///         rig it is a PeerFailure of the rig with the same text, so that the user reads it once.
 std::vector<NodeCard> handshake(Transport& transport, const NodeCard& own);
 
-/// In one process: one transport per node, each to be used by a thread of its own (protocol/in_process.cpp).
+/// Transports in one process, one per node, each for a thread of its own (protocol/in_process.cpp).
 std::vector<std::unique_ptr<Transport>> make_in_process_transports(int tire_count, int terrain_ranks = 1);
 
 /// World rank 0 is the rig, 1…k the tires, the rest the terrain (protocol/mpi_transport.cpp).

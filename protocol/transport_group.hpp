@@ -1,5 +1,5 @@
-// The ranks of a terrain as a group (protocol/core/rank_group.hpp), by messages between them: they wait as politely as
-// nodes do, and a rank that fails or falls silent is named like any other.
+// The ranks of a terrain as a group (protocol/core/rank_group.hpp) that exchanges messages. Its ranks wait as nodes do
+// and leave their core to others. A rank that fails or falls silent is reported like any other node.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace furrow {
 
-/// The group that this rank belongs to; null for a terrain of one rank, and on ranks that are no terrain's.
+/// The group of this rank; null for a terrain of one rank, and on ranks that do not compute a terrain.
 /// @param transport outlives the group
 std::shared_ptr<RankGroup> make_terrain_group(Transport& transport);
 

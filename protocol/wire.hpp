@@ -1,5 +1,5 @@
-// What carries bytes between nodes, which are numbered rig, tires, terrain (its leader first). Two implementations:
-// queues between threads, and MPI. All that the two have in common is in node_transport.hpp.
+// Carries bytes between nodes, which are numbered rig, tires, terrain (its leader first). There are two
+// implementations: queues between threads, and MPI. node_transport.hpp contains all that they have in common.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct ControlBytes {
   Bytes payload;
 };
 
-/// The first of a queue, which loses it.
+/// Takes the first entry out of a queue.
 template <class T>
 std::optional<T> pop(std::deque<T>& queue) {
   if (queue.empty()) return std::nullopt;
@@ -34,28 +34,28 @@ class Wire {
 
   virtual int self() const = 0;
   virtual int node_count() const = 0;
-  /// As Transport::role_communicator.
+  /// See Transport::role_communicator.
   virtual std::optional<int> role_communicator() const { return std::nullopt; }
 
   /// Non-blocking; order is kept per (sender, receiver, kind), and among the control messages of one sender.
   virtual void send(int to, MessageKind kind, Bytes payload) = 0;
   virtual void send_control(int to, Bytes payload) = 0;
 
-  /// Takes everything that has arrived, from anyone, out of the sender's way; never waits.
+  /// Takes in everything that has arrived, from any node, so that no sender has to wait; never waits itself.
   virtual void progress() = 0;
-  /// What progress() has taken, in order.
+  /// The next message that progress() has taken in, in order.
   virtual std::optional<Bytes> take(int from, MessageKind kind) = 0;
   virtual std::optional<ControlBytes> take_control() = 0;
 
-  /// A node to which something is still under way that needs this process to get there, or −1.
+  /// A node to which a message is still under way that needs this process to get there, or −1.
   virtual int unsent_to() const = 0;
 
-  /// Passes the time politely until something may have arrived.
-  /// @param polls  how often in a row nothing was there, from 0
-  /// @param waited s, since then
+  /// Waits until a message may have arrived, and leaves the core to others.
+  /// @param polls  how often in a row there was nothing, from 0
+  /// @param waited time since the first of these polls, s
   virtual void idle(int polls, double waited) = 0;
 
-  /// Called once when a node has failed: the wire's end must not wait for ever for nodes that may be gone.
+  /// Called once after a node has failed: the wire must then not wait for ever, as it ends, for nodes that may be gone.
   virtual void expect_losses(double patience, int exit_code) noexcept = 0;
 };
 

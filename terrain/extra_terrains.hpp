@@ -1,5 +1,5 @@
-// Engines beside those of the table in terrains.cpp. `furrow` has none; programs of the tests link a source of their
-// own in place of extra_terrains.cpp.
+// Engines in addition to those in terrains.cpp. `furrow` has none; test programs link a source of their own instead of
+// extra_terrains.cpp.
 #pragma once
 
 #include <span>

@@ -31,8 +31,8 @@ std::vector<double> transverse_profile(const HeightField& before, const HeightFi
   return profile;
 }
 
-/// Mean of before − after across the cells within `half_width` of the wheel's plane, per row of cells along the travel;
-/// rows without grains are left out.
+/// Mean of before − after over the cells within `half_width` of the wheel's plane, for each row of cells along the
+/// travel; rows without grains are left out.
 std::vector<double> profile_along(const HeightField& before, const HeightField& after, double x_min, double x_max,
                                   double lateral, double half_width) {
   std::vector<double> along;
@@ -52,8 +52,8 @@ std::vector<double> profile_along(const HeightField& before, const HeightField& 
   return along;
 }
 
-/// Where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`; linear
-/// between cells. Cells without grains are passed over; the bin's edge ends the search.
+/// Position where the profile falls below `level` for two cells or more, going from cell `from` in steps of `step`;
+/// linear between cells. Cells without grains are skipped; the search ends at the bin's edge.
 double crossing(const std::vector<double>& y, const std::vector<double>& profile, int from, int step, double level) {
   FURROW_ASSERT(y.size() == profile.size() && in_range(from, y.size()), y.size(), profile.size(), from);
   FURROW_ASSERT(step == 1 || step == -1, step);
@@ -73,7 +73,7 @@ double crossing(const std::vector<double>& y, const std::vector<double>& profile
   return step > 0 ? y.back() : y.front();
 }
 
-/// Why there is no rut to measure, in words; empty where there may be one.
+/// Why there is no rut to measure, in words; empty if there may be one.
 std::string why_not(const HeightField& before, const HeightField& after, const RutOptions& o) {
   if (after.nx <= 0 || after.ny <= 0) return "the ground keeps no rut";
   if (before.nx != after.nx || before.ny != after.ny) return "the surface before the run is not known";

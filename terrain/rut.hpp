@@ -20,17 +20,17 @@ struct RutOptions {
 
 struct Rut {
   bool measured = false;
-  std::string missing;  // why there is no depth or no width, in words
+  std::string missing;  // why depth or width is missing, in words
   double depth = 0.0;   // mean depth over the middle half of the tread width, 0.642 to 1.177 R behind the axle, m
   double width = 0.0;   // distance of the points where the mean transverse profile falls below half the depth for two
                         // cells or more, m; NaN when the depth is not positive
-  std::vector<double> y, profile;  // mean transverse profile of (before − after) in that window, m
-  std::vector<double> along;       // depth of each row of cells across, in order along x, m; none of empty rows
+  std::vector<double> y, profile;  // mean transverse profile of (before − after) behind the axle, as for the depth, m
+  std::vector<double> along;       // depth of each row of cells across, in order along x, m; empty rows are left out
 };
 
-/// The stretch is that of the reference wheel, 0.30 to 0.55 m at R = 0.4673 m: it begins behind the contact of a wheel
-/// that has sunk by a fifth of its radius (√(2 z R) = 0.63 R). Not measured where there are no grains, or where the
-/// wheel has not yet left such a stretch behind.
+/// The measured stretch corresponds to that of the reference wheel, 0.30 to 0.55 m at R = 0.4673 m. It begins behind
+/// the contact of a wheel that has sunk by a fifth of its radius (√(2 z R) = 0.63 R). The rut is not measured where
+/// there are no grains, or before the wheel has travelled that far.
 /// @pre direction is 1 or −1; radius > 0
 Rut measure_rut(const HeightField& before, const HeightField& after, const RutOptions& options);
 

@@ -12,11 +12,11 @@ namespace furrow::terrain {
 
 struct TerrainEntry {
   const char* name;  // terrain.engine
-  const char* says;  // what its terrain is, for the description of that key: "hard ground"
+  const char* says;  // description of its terrain for that key: "hard ground"
   KeyList keys;      // of its options
-  /// @pre the section was checked against the schema. @throws Error(bad_input) for a file that does not exist
+  /// @pre the section was checked against the schema. @throws Error(bad_input) if a file does not exist
   std::unique_ptr<TerrainSpec> (*read)(const nlohmann::json& section, const ReadContext& context);
-  /// True for keys of others that this engine cannot honour, even with their defaults; null: there are none.
+  /// True for keys of other engines that this engine cannot honour, even with their defaults; null: there are none.
   bool (*denies)(std::string_view key) = nullptr;
 };
 

@@ -1,4 +1,4 @@
-// Keys of the section `terrain` that several engines take.
+// Keys of the section `terrain` that several engines share.
 #pragma once
 
 #include "protocol/core/key.hpp"

@@ -1,5 +1,5 @@
-// What a scenario says of its terrain, read but not yet made: what programs ask of any terrain before it exists.
-// The engines are listed in terrain/terrains.hpp.
+// The terrain of a scenario, read but not yet made: everything that programs ask of a terrain before it exists. The
+// engines are listed in terrain/terrains.hpp.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@ namespace dem {
 struct DemOptions;
 }
 
-/// What a run supplies to its terrain beside the keys of the scenario.
+/// Inputs of a terrain from its run, in addition to the keys of the scenario.
 struct TerrainContext {
-  double step = 4e-5;                 // run.step / terrain.substeps, s: the terrain will be advanced with it
+  double step = 4e-5;                 // run.step / terrain.substeps, s: the step of the terrain's advance
   std::uint64_t seed = 1;             // run.seed
   int threads = 1;                    // OpenMP threads while stepping
   int settle_threads = 1;             // OpenMP threads while a bed settles
-  bool contact_tangents = false;      // tire.contact_tangent of any tire: send them beside the forces
-  std::shared_ptr<RankGroup> group;   // the terrain's ranks, this one among them; null: there is one
+  bool contact_tangents = false;      // tire.contact_tangent of any tire: send them with the forces
+  std::shared_ptr<RankGroup> group;   // the terrain's ranks, including this one; null if there is only one
   Vec3 gravity = standard_gravity();  // m/s²; acts on the grains, the rigid ground has no weight
 };
 
@@ -58,13 +58,13 @@ struct TerrainBounds {
   double length = 0.0, width = 0.0;  // m
 };
 
-/// The part of the ground that is not level, from x `from` to `to` and from y `right` to `left`, m.
+/// The uneven part of the ground, from x `from` to `to` and from y `right` to `left`, m.
 struct UnevenPart {
   double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
   double right = from, left = to;
 };
 
-/// What the keys alone say.
+/// Properties of a terrain that follow from its keys alone.
 struct TerrainDescription {
   std::string engine;                  // terrain.engine
   std::string name;                    // for people: "grains, law mindlin"
@@ -83,16 +83,16 @@ struct TerrainDescription {
   std::vector<std::pair<std::string, std::string>> remarks;
   bool unstable_step_allowed = false;        // a step above the stable one is warned of, not refused
   std::optional<TerrainBounds> bounds;       // none: unbounded
-  std::optional<double> undisturbed_height;  // of the surface that sinkage counts from, m; none: measured
+  std::optional<double> undisturbed_height;  // of the surface from which sinkage counts, m; none: measured
   std::optional<double> cone_index;          // Pa; none: not known
   bool cohesive = false;                     // has more cohesion than dry sand
 };
 
-/// What a run will need, before any grain exists.
+/// Estimated needs of a run, before any grain exists.
 struct TerrainEstimate {
-  std::string text;                                              // for people: "about 25260 grains of 6 mm, …"
+  std::string text;                                              // for messages: "about 25260 grains of 6 mm, …"
   double stable_step = std::numeric_limits<double>::infinity();  // s
-  std::string stable_reason;                                     // what limits it: "stiffness", "damping"
+  std::string stable_reason;                                     // limit of the step: "stiffness", "damping"
   std::int64_t grains = 0;
   double memory_bytes = 0.0;      // of the terrain's rank
   double frame_bytes = 0.0;       // on disk, of one frame
@@ -100,7 +100,7 @@ struct TerrainEstimate {
   double expected_height = 0.0;   // of the surface, m
 };
 
-/// A file that a terrain reads: it counts by what it holds, wherever it stands.
+/// A file that a terrain reads. Its contents matter, not its location.
 struct TerrainFile {
   std::string key;  // in the section
   std::filesystem::path path;
@@ -116,9 +116,9 @@ class TerrainSpec {
   /// @throws Error(bad_input) for values out of range and for a step above the stable one.
   virtual std::unique_ptr<Terrain> make(const TerrainContext& context) const = 0;
   virtual std::vector<TerrainFile> files() const { return {}; }
-  /// What this program lacks to run it, and what is expected, for people; empty: nothing.
+  /// What this program lacks to run it, and what is expected, for messages; empty if nothing.
   virtual std::string lacking() const { return {}; }
-  /// Against a rigid wheel that stands on it, N/m; 0: not known. @param width m @param load N
+  /// Stiffness against a rigid wheel at rest on it, N/m; 0 if not known. @param width m @param load N
   virtual double stiffness_under(double /*radius*/, double /*width*/, double /*load*/) const { return 0.0; }
   /// Heights of ground that takes stated contacts; empty: it is the plane z = 0.
   virtual GroundHeights heights(const TerrainContext&) const { return {}; }
@@ -127,13 +127,13 @@ class TerrainSpec {
     return std::numeric_limits<double>::infinity();
   }
   /// @param width overall, of one tire, m
-  /// @throws Error(bad_input) naming the key of the terrain that such a tire does not go with
+  /// @throws Error(bad_input) naming the key of the terrain that does not allow such a tire
   virtual void check_tire_width(double) const {}
 
-  /// The grains, for tools that work on them (beds, soil tests, passes); null: this terrain has none.
+  /// The grains, for tools that work on them (beds, soil tests, passes); null if this terrain has none.
   virtual const dem::DemOptions* grains() const { return nullptr; }
-  /// The saved states of all ranks as one, which a bed can be made of (terrain/dem/beds/bed_after_run.hpp).
-  /// @pre grains() is not null. @throws Error(io) when the parts do not hold together
+  /// Joins the saved states of all ranks to one, from which a bed can be made (terrain/dem/beds/bed_after_run.hpp).
+  /// @pre grains() is not null. @throws Error(io) when the parts do not fit together
   virtual Archive joined_state(std::vector<Archive> parts, const TerrainContext& context) const;
 };
 

@@ -30,7 +30,7 @@ constexpr auto kTerrains = std::to_array<TerrainEntry>({
      scm::read_scm_spec},
 });
 
-/// "'dem' or 'rigid'", of the engines that `wanted` takes.
+/// "'dem' or 'rigid'": names of the engines for which `wanted` returns true.
 template <class Wanted>
 std::string names_of(const Wanted& wanted) {
   std::vector<std::string> names;

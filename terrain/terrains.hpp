@@ -19,10 +19,10 @@ std::span<const TerrainEntry> terrains();
 /// @throws Error(bad_input) listing the valid names.
 const TerrainEntry& find_terrain(const std::string& engine, const ReadContext& context);
 
-/// The engines that take this key of the section; empty for the keys that all share and for those that none has.
+/// The engines that take this key of the section; empty for a key that all share, and for one that no engine takes.
 std::vector<std::string> engines_of_key(const std::string& key);
 
-/// The engine cannot honour this key of other engines, not even with its default.
+/// Whether the engine cannot honour this key of other engines, even with its default.
 bool engine_denies(std::string_view engine, std::string_view key);
 
 /// Keys of all engines that have this role, in order, each once.
@@ -30,10 +30,10 @@ std::vector<std::string> terrain_keys(unsigned roles);
 
 /// Names of the engines whose terrain has grains, for messages: "'dem'".
 std::string engines_with_grains();
-/// Names of the engines that take contacts which tires state, likewise.
+/// Names of the engines that take contacts stated by tires, in the same form.
 std::string engines_with_stated_contacts();
 
-/// Of a scenario that says nothing of its terrain.
+/// The terrain of a scenario that has no key of the section.
 std::shared_ptr<const TerrainSpec> default_terrain();
 
 }  // namespace furrow::terrain

@@ -1,5 +1,5 @@
-// A node's saved state: named arrays of numbers. It is what a checkpoint holds, and what an in-process round
-// trip passes. Names are paths ("grains/x"); values are kept bit for bit.
+// A node's saved state: named arrays of numbers. A checkpoint contains it, and a round trip within one process passes
+// it. Names are paths ("grains/x"); values are kept bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -75,7 +75,7 @@ class Archive {
 
  private:
   std::map<std::string, Array> arrays_;
-  mutable std::string prefix_;  // a view of the names, not of what is held
+  mutable std::string prefix_;  // selects the names that are seen, not what the archive contains
 };
 
 }  // namespace furrow

@@ -1,5 +1,5 @@
-// Structs with a list of fields (fields.hpp) in a saved state (archive.hpp): every field under its own name, so that
-// one that is added, moved or left out is missed by name and never shifts another.
+// Structs with a list of fields (fields.hpp) in a saved state (archive.hpp). Every field has its own name: if one is
+// added, moved or left out, the error names it, and no other field shifts.
 //
 //   number, switch, enumeration        one number: double, int64 and uint64 as they are, shorter integers as int32
 //   vector, matrix, orientation        their numbers, a matrix column by column, an orientation x y z w
@@ -88,7 +88,7 @@ void each_leaf(const std::string& name, S& values, F&& f) {
   });
 }
 
-/// Calls f(value) likewise.
+/// Calls f(value) for the same fields in the same order.
 template <HasFields S, class F>
 void each_leaf_value(S& values, F&& f) {
   visit_fields(values, [&](auto& value, const Field&) {
@@ -128,11 +128,11 @@ class ColumnWriter {
   std::vector<std::pair<std::string, Archive::Array>> columns_;
 };
 
-/// Takes structs one after another as ColumnWriter has put them. The archive must outlive it.
+/// Takes structs one after another as ColumnWriter put them. The archive must outlive it.
 template <HasFields S>
 class ColumnReader {
  public:
-  /// As many as there are. @throws Error(io) when a column is missing or longer or shorter than the first
+  /// Takes all structs that there are. @throws Error(io) when a column is missing or longer or shorter than the first
   ColumnReader(const Archive& archive, const std::string& name)
       : ColumnReader(archive, name, count_in(archive, name)) {}
   /// @throws Error(io) when a column is missing or does not hold `count` values
@@ -144,7 +144,7 @@ class ColumnReader {
     });
   }
   std::size_t count() const { return count_; }
-  /// @pre it was called less than count() times
+  /// @pre take() was called less than count() times
   void take(S& values) {
     auto next = next_.begin();
     detail::each_leaf_value(values, [&]<class T>(T& value) {
@@ -196,7 +196,7 @@ void save_value(Archive& archive, const std::string& name, const std::vector<T>&
   }
 }
 
-/// What save_value has put. @throws Error(io) when it is missing, of another type or of another size
+/// Reads what save_value wrote. @throws Error(io) when it is missing, of another type or of another size
 template <class T>
 void restore_value(const Archive& archive, const std::string& name, T& value) {
   using Stored = detail::Stored<T>;
@@ -206,7 +206,7 @@ inline void restore_value(const Archive& archive, const std::string& name, std::
   const auto& bytes = archive.get<std::uint8_t>(name);
   text.assign(bytes.begin(), bytes.end());
 }
-/// @throws Error(io) likewise, and unless there are `count` of them
+/// @throws Error(io) as above, and unless there are `count` values
 template <class T>
 void restore_value(const Archive& archive, const std::string& name, std::vector<T>& values, std::size_t count) {
   using Stored = detail::Stored<T>;
@@ -214,7 +214,7 @@ void restore_value(const Archive& archive, const std::string& name, std::vector<
   values.assign(count, T{});
   for (T& one : values) Stored::take(from, one), from += Stored::kCount;
 }
-/// As many as there are.
+/// Reads as many values as there are.
 template <class T>
 void restore_value(const Archive& archive, const std::string& name, std::vector<T>& values) {
   if constexpr (HasFields<T>) {
@@ -227,14 +227,14 @@ void restore_value(const Archive& archive, const std::string& name, std::vector<
   }
 }
 
-/// Every field of a struct under "<name>/<field>"; with an empty name under "<field>".
+/// Saves every field of a struct under "<name>/<field>"; with an empty name under "<field>".
 template <HasFields S>
 void save_fields(Archive& archive, const std::string& name, const S& values) {
   detail::each_leaf(name, values,
                     [&](const std::string& path, const auto& value) { save_value(archive, path, value); });
 }
 
-/// What save_fields has put. @throws Error(io) naming the field that is missing, of another type or of another size
+/// Reads what save_fields wrote. @throws Error(io) naming the field that is missing, of another type or of another size
 template <HasFields S>
 void restore_fields(const Archive& archive, const std::string& name, S& values) {
   detail::each_leaf(name, values, [&](const std::string& path, auto& value) { restore_value(archive, path, value); });

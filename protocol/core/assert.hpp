@@ -1,11 +1,11 @@
-// Preconditions and invariants that are checked while a program is tested: on in the builds dev, audit and asan (CMake
-// option FURROW_ASSERTS), nothing in others.
+// Preconditions and invariants for tests of the program: checked in the builds dev, audit and asan (CMake option
+// FURROW_ASSERTS), compiled to nothing in others.
 //
 //   FURROW_ASSERT(in_range(i, size()), i, size());
 //
 // prints "FILE:LINE: FUNCTION: precondition failed: in_range(i, size()) [i, size() = 12, 10]" and aborts. It never
-// throws: it may stand inside an OpenMP region. What a user can cause is no assertion but an Error (error.hpp) or an
-// Outcome (outcome.hpp).
+// throws, so it may be used inside an OpenMP region. A mistake that a user can cause is an Error (error.hpp) or an
+// Outcome (outcome.hpp), never an assertion.
 #pragma once
 
 #include <cstdio>
@@ -16,7 +16,7 @@
 
 namespace furrow {
 
-/// Whether `index` names one of `size` entries; of any integer types.
+/// Whether `index` is one of `size` entries; for any integer types.
 template <class Index, class Size>
 constexpr bool in_range(Index index, Size size) {
   return std::cmp_greater_equal(index, 0) && std::cmp_less(index, size);
@@ -26,7 +26,7 @@ constexpr bool in_range(Index index, Size size) {
 
 namespace furrow::detail {
 
-/// The values, separated by commas; those that no stream takes as "…".
+/// The values, separated by commas; "…" for a value that no stream takes.
 template <class... Values>
 std::string values_text(const Values&... values) {
   std::ostringstream out;
@@ -59,7 +59,7 @@ std::string values_text(const Values&... values) {
                : ::furrow::detail::assertion_failed(__FILE__, __LINE__, __func__, #condition, "" #__VA_ARGS__, \
                                                     ::furrow::detail::values_text(__VA_ARGS__)))
 #else
-// Not evaluated, but compiled: what only assertions use is used.
+// Compiled but not evaluated, so that variables used only by assertions count as used.
 #define FURROW_ASSERT(condition, ...) \
   (void)sizeof((condition) ? (void(::furrow::detail::values_text(__VA_ARGS__)), 1) : 0)
 #endif

@@ -17,7 +17,7 @@
 
 namespace furrow {
 
-/// Values that may cross as their bytes: arithmetic types, enums, and the fixed-size vector types.
+/// Values that may be sent as their bytes: arithmetic types, enums, and the fixed-size vector types.
 template <class T>
 inline constexpr bool kIsPlain = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Vec3> ||
                                  std::is_same_v<T, Mat3> || std::is_same_v<T, std::array<int, 3>>;
@@ -82,7 +82,7 @@ class ByteReader {
   void operator()(T& values) {
     visit_fields(values, [this](auto& value, const Field&) { (*this)(value); });
   }
-  /// @throws Error(rank_lost) when bytes are left over.
+  /// @throws Error(rank_lost) if bytes are left over.
   void finish() const {
     if (at_ != bytes_.size()) throw Error(ExitCode::rank_lost, "a message is longer than its kind allows");
   }

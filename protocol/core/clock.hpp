@@ -11,7 +11,7 @@ inline double wall_clock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Processor time, s. @param of CLOCK_PROCESS_CPUTIME_ID, or CLOCK_THREAD_CPUTIME_ID for the thread that asks
+/// Processor time, s. @param of CLOCK_PROCESS_CPUTIME_ID, or CLOCK_THREAD_CPUTIME_ID for the calling thread
 inline double processor_time(clockid_t of) {
   timespec t{};
   clock_gettime(of, &t);

@@ -1,11 +1,11 @@
-// Columns of result tables: what they are called, and how a line is made of what is measured at every synchronization.
-// A struct whose fields are all columns has one list of them:
+// Columns of result tables: their names, and how a line follows from the values measured at every synchronization. A
+// struct whose fields are all columns has one list of them:
 //
 //   void visit_fields(FieldsOf<VehicleRow> auto& r, auto&& visit) {
 //     visit(r.speed, column::mean("speed_m_per_s", "m/s"));
 //   }
 //
-// From it follow the table's columns, their means, the saved state and the files.
+// The table's columns, their means, the saved state and the files follow from this list.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +18,19 @@
 
 namespace furrow {
 
-/// What the value in a line is. Lines are some communication intervals apart.
+/// What a value in a line is. Consecutive lines are some communication intervals apart.
 enum class ColumnKind {
   instant,     // the value at the line's time
-  mean,        // of the intervals since the line before; measured is the value of each interval
-  cumulative,  // since the start of the run; who measures it sums it up
-  largest,     // since the start of the run; who measures it keeps it
+  mean,        // over the intervals since the previous line; the value of each interval is measured
+  cumulative,  // since the start of the run; summed up where it is measured
+  largest,     // since the start of the run; kept where it is measured
   derived,     // computed from the other columns of the line
 };
 
 struct Column : Field {  // its name ends in its unit
   ColumnKind kind = ColumnKind::instant;
-  double sign = 1.0;       // of the value as it is written
-  const char* after = "";  // of a column that is added to a table: the column that it follows; empty: it comes last
+  double sign = 1.0;       // of the written value
+  const char* after = "";  // for a column that is added to a table: the column that it follows; empty: it comes last
 
   constexpr Column negative() const {
     Column other = *this;
@@ -78,19 +78,19 @@ void get_values(const Row& row, std::span<double> values) {
   visit_fields(row, [&](const double& value, const Column&) { values[i++] = value; });
 }
 
-/// Takes what get_values gave.
+/// Sets a struct from the values that get_values returned.
 template <HasFields Row>
 void set_values(Row& row, std::span<const double> values) {
   std::size_t i = 0;
   visit_fields(row, [&](double& value, const Column&) { value = values[i++]; });
 }
 
-/// A line of a table by the names of its columns.
+/// A line of a table, addressed by column names.
 struct LineView {
   std::span<const Column> columns;
-  std::span<const double> values;  // as they are written
+  std::span<const double> values;  // tire: its reach below the rim centre, inflated, with the camber of the rig, m
 
-  /// NaN when there is no such column.
+  /// NaN if there is no such column.
   double operator[](std::string_view name) const {
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (name == columns[i].name) return values[i];

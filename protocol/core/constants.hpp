@@ -1,4 +1,4 @@
-// Physical constants that all rooms share.
+// Physical constants that all folders share.
 #pragma once
 
 #include "protocol/core/vec.hpp"
@@ -7,8 +7,8 @@ namespace furrow {
 
 inline constexpr double kStandardGravity = 9.81;  // m/s²
 
-/// Gravity of a level site, W, m/s². Models are given theirs and take this one where nothing else is said: the world's
-/// z is the normal of the undisturbed ground, so that a slope is a tilted gravity.
+/// Gravity of a level site, W, m/s²; the default of models that are given no other. The world's z is the normal of the
+/// undisturbed ground, so a slope is a tilted gravity.
 inline Vec3 standard_gravity() { return {0.0, 0.0, -kStandardGravity}; }
 
 }  // namespace furrow

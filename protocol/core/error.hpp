@@ -1,4 +1,4 @@
-// Errors that reach the user, with the exit code that the program ends with.
+// Errors that reach the user, with the exit code of the program.
 #pragma once
 
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 namespace furrow {
 
-/// Exit codes that users script against.
+/// Exit codes on which users' scripts rely.
 enum class ExitCode : int {
   done = 0,
   bad_input = 2,  // scenario, tire file, command line
@@ -17,11 +17,11 @@ enum class ExitCode : int {
   rank_lost = 4,  // a rank died or stopped answering
   io = 5,         // a file could not be read or written
   limit = 6,      // memory or another limit of the system ran out
-  fault = 70,     // of the program itself
+  fault = 70,     // in the program itself
   stopped = 75,   // stopped by a signal
 };
 
-/// Thrown by any room; caught only where a program or a rank begins.
+/// May be thrown anywhere; caught only where a program or a rank begins.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
@@ -35,7 +35,7 @@ class Error : public std::runtime_error {
 inline Error input_error(const std::string& file, const std::string& key, const std::string& what) {
   return Error(ExitCode::bad_input, key.empty() ? file + ": " + what : file + ": key '" + key + "': " + what);
 }
-/// Here and below, `what` may be a format of {fmt} with its arguments.
+/// In this function and those below, `what` may be a format of {fmt} with its arguments.
 template <class First, class... More>
 Error input_error(const std::string& file, const std::string& key, fmt::format_string<First, More...> what,
                   First&& first, More&&... more) {

@@ -1,4 +1,4 @@
-// Sums and differences of structs of numbers and vectors, member by member of their lists of fields.
+// Sums and differences of structs of numbers and vectors, field by field.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace furrow {
 
-/// The struct whose members are call(that of a, that of b); structs within are combined likewise.
+/// The struct whose members are call(member of a, member of b); structs within it are combined in the same way.
 template <HasFields T, class Call>
 T combined(T a, const T& b, const Call& call) {
   std::vector<const void*> others;

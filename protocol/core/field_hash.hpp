@@ -1,5 +1,5 @@
-// Digests of structs with a list of fields: what differs from the default counts, by name, so that a key that is added
-// later changes no digest of those that do not use it.
+// Digests of structs with a list of fields. Only values that differ from the default count, with their names. So a key
+// that is added later does not change digests of files that do not use it.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace furrow {
 
-/// Adds name and value of every field that has all `roles` and is not the default's.
+/// Adds name and value of every field that has all `roles` and differs from its default.
 /// @pre some role is asked for; these fields are numbers, enumerations, switches or strings
 template <HasFields T>
 void add_fields(Hash& hash, const T& values, unsigned roles) {
   FURROW_ASSERT(roles != role::none, roles);
   const T defaults{};
-  std::size_t here = 0;  // place of the field in the list, by which its default is found
+  std::size_t here = 0;  // index of the field in the list, by which its default is found
   const auto add = [&](const auto& value, const Field& field) {
     const std::size_t place = here++;
     if (!field.is(roles)) return;

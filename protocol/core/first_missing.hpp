@@ -1,4 +1,4 @@
-// What was left out of a struct whose members start as "not a number".
+// Finds a member that was not set, in a struct whose members start as "not a number".
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace furrow {
 
-/// Name of the first member that is not a finite number; null: all are.
+/// Name of the first member that is not a finite number; null if all are finite.
 template <HasFields S>
 const char* first_missing(const S& values) {
   const char* name = nullptr;

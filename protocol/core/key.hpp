@@ -1,5 +1,5 @@
-// Keys of the files that people write: what a field is called, its unit, which values it takes, and what it means. A
-// key is declared where its member is, in the list of fields; its default is the member's initialiser:
+// Keys of the files that people write: the name, unit, allowed values and meaning of a field. A key is declared with
+// its member, in the list of fields; its default is the member's initialiser:
 //
 //   struct GroundOptions {
 //     double stiffness = 4e8;
@@ -8,8 +8,8 @@
 //     visit(s.stiffness, key("stiffness", "N/m³", allowed::above(0).to(1e15), "Pressure per depth."));
 //   }
 //
-// From it follow the schema (protocol/files/key_schema.hpp), and with that checks, defaults, `furrow explain` and
-// editors.
+// The schema (protocol/files/key_schema.hpp) follows from it, and from the schema follow checks, defaults, `furrow
+// explain` and the help of editors.
 #pragma once
 
 #include <limits>
@@ -19,27 +19,27 @@
 namespace furrow {
 
 namespace role {
-inline constexpr unsigned by_hand = 1U << 5U;  // readers of lists leave the key to their caller
+inline constexpr unsigned by_hand = 1U << 5U;  // code that reads lists leaves this key to its caller
 }  // namespace role
 
-/// What a missing key means.
+/// The effect of a missing key.
 enum class Missing {
   standard,  // the member keeps its default
-  nothing,   // nothing: there is no default
+  nothing,   // none; there is no default
   mistake,   // the file is refused
 };
 
-/// Which values a key takes, and which are usual.
+/// The allowed values of a key, and its usual ones.
 struct Allowed {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   bool above_low = false, below_high = false;  // the bounds themselves are not allowed
-  double usual_low = 0.0, usual_high = 0.0;    // other magnitudes give a warning; 0 and 0: any is usual
-  int divisor = 1;                             // of a whole number
-  const char* texts = "";                      // with blanks between them; empty: any text
-  const char* shape = "";  // entries of the schema in place of those that follow from member and key, JSON
+  double usual_low = 0.0, usual_high = 0.0;    // other magnitudes cause a warning; 0 and 0: all are usual
+  int divisor = 1;                             // a whole number must be a multiple of it
+  const char* texts = "";                      // the allowed texts, separated by blanks; empty: any text
+  const char* shape = "";  // JSON entries of the schema that replace those derived from member and key
   Missing missing = Missing::standard;
-  bool takes_null = false;  // the default is null, whose meaning the description states
-  bool takes_empty = true;  // text
+  bool takes_null = false;  // null is allowed and is the default; the description states its meaning
+  bool takes_empty = true;  // an empty text is allowed
 
   constexpr Allowed from(double least, double most = std::numeric_limits<double>::infinity()) const {
     return changed([&](Allowed& a) { a.low = least, a.high = most; });
@@ -112,13 +112,13 @@ struct Key : Field, Allowed {
   }
 };
 
-/// What a struct is called in the definitions of a schema, as its static member kSchema: other structs refer to it.
+/// Name of a struct in the definitions of a schema, so that other structs can refer to it; its static member kSchema.
 struct SchemaName {
   const char* name;
   const char* description;
 };
 
-/// @param unit SI; "-" of a number without dimension, "" of what is not measured
+/// @param unit SI; "-" for a number without dimension, "" for a value that is not measured
 constexpr Key key(const char* name, const char* unit, unsigned roles, const Allowed& values, const char* description) {
   return {{name, unit, roles | role::key}, values, description};
 }
@@ -133,7 +133,7 @@ constexpr Key key(const char* name, const char* unit, const char* description) {
 }
 constexpr Key key(const char* name) { return key(name, "", allowed::any, ""); }
 
-/// A key that no file may lack.
+/// A key that every file must contain.
 constexpr Key needed(const char* name, const char* unit, const Allowed& values, const char* description) {
   return key(name, unit, values.required(), description);
 }

@@ -1,9 +1,9 @@
-// How a failure says that its run cannot avoid it by stepping more finely: no such way out is offered then.
+// Marks failures that a smaller step cannot avoid, so that the program does not suggest one.
 #pragma once
 
 namespace furrow {
 
-/// Ends the detail of such an Outcome.
+/// Last words of the detail of such an Outcome.
 inline constexpr char kNoStepHelps[] = "a smaller step does not help";
 
 }  // namespace furrow

@@ -1,6 +1,6 @@
-// How an advance of a tire, a terrain or a rig ended: the one way in which partners report that physics or numerics
-// failed. Errors of the user are thrown (error.hpp); what may happen in any step is returned, and becomes an
-// Error(physics) only where the caller knows which partner it was, and when: physics_error(outcome, who, where).
+// Result of an advance of a tire, a terrain or a rig. Partners report failures of physics or numerics only in this way.
+// Errors of the user are thrown (error.hpp). A failure that may happen in any step is returned. The caller, which has
+// the partner and the time, turns it into an Error(physics): physics_error(outcome, who, where).
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@
 namespace furrow {
 
 struct [[nodiscard]] Outcome {
-  bool ok = true;      // and the state can be used
+  bool ok = true;      // the advance succeeded, and the state can be used
   std::string what;    // "did not converge", "reached its rim", "grain 17 left the bin"
-  std::string detail;  // figures, and what to try
+  std::string detail;  // figures, and advice
 
   static Outcome failure(std::string what, std::string detail) { return {false, std::move(what), std::move(detail)}; }
-  /// "WHO WHAT WHERE: DETAIL", the caller's words for which partner and when.
+  /// "WHO WHAT WHERE: DETAIL"; the caller states which partner and when.
   std::string message(const std::string& who, const std::string& where = "") const {
     return who + " " + what + where + (detail.empty() ? "" : ": " + detail);
   }

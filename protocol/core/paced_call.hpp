@@ -11,10 +11,10 @@ class PacedCall {
   static constexpr double kInterval = 0.1;  // s of wall time between calls that are passed on
 
   /// @param call  may be empty; must outlive this
-  /// @param quiet s in the beginning during which nothing is said
+  /// @param quiet time in the beginning without any report, s
   explicit PacedCall(const ProgressCall& call, double quiet = 0.0) : call_(call), next_(wall_clock() + quiet) {}
 
-  /// Says it, unless something was said just now. May throw what the call throws.
+  /// Passes a report on, unless one was passed on just before. May throw what the call throws.
   void operator()(const char* what, double share) {
     if (!call_) return;
     const double now = wall_clock();
@@ -25,7 +25,7 @@ class PacedCall {
 
  private:
   const ProgressCall& call_;
-  double next_;  // wall time from which on a call is passed on, s
+  double next_;  // wall time from which a call is passed on, s
 };
 
 }  // namespace furrow

@@ -1,9 +1,9 @@
-// The ranks that compute one model together, as that model sees them: which of them it is, and what they send each
-// other. How they do it stands elsewhere (protocol/transport_group.hpp); a model that brings a parallel library of its
-// own hands it the communicator.
+// The ranks that compute one model together, as that model sees them: their numbers, and the data that they exchange.
+// protocol/transport_group.hpp sends these data; a model with a parallel library of its own gives the library the
+// communicator.
 //
-// Every call is made by all ranks of the group, in the same order. It ends with PeerFailure where one of them fails or
-// falls silent.
+// All ranks of the group make every call, in the same order. A call ends with PeerFailure if a rank of the group fails
+// or falls silent.
 #pragma once
 
 #include <algorithm>
@@ -27,16 +27,16 @@ class RankGroup {
   virtual int rank() const = 0;  // 0: the leader, which speaks for all
   virtual int size() const = 0;
 
-  /// @returns on every rank what the leader has given; what the others give is not looked at
+  /// @returns the leader's bytes, on every rank; the bytes of the others are ignored
   virtual Bytes broadcast(Bytes bytes) = 0;
-  /// @returns on the leader what each rank has given, in their order; nothing on the others
+  /// @returns on the leader the bytes of each rank, in their order; nothing on the others
   virtual std::vector<Bytes> gather(Bytes bytes) = 0;
 
-  /// The group's own communicator, as MPI_Comm_f2c takes it; none where ranks are threads of one process.
+  /// The group's own communicator, as MPI_Comm_f2c takes it; none if ranks are threads of one process.
   virtual std::optional<int> communicator() const { return std::nullopt; }
 };
 
-/// What each rank has given, one behind the other, on every rank. The same everywhere, in the order of ranks.
+/// The values of all ranks, one rank after another in rank order; the same on every rank.
 template <class T>
 requires std::is_trivially_copyable_v<T> std::vector<T> gather_on_all(RankGroup& group, std::span<const T> own) {
   const auto* from = reinterpret_cast<const std::byte*>(own.data());
@@ -49,7 +49,7 @@ requires std::is_trivially_copyable_v<T> std::vector<T> gather_on_all(RankGroup&
   return values;
 }
 
-/// Largest share of a rank over the mean of all, less 1; 0 where nobody has any.
+/// Largest share of a rank over the mean share, minus 1; 0 if all shares are 0.
 inline double imbalance(std::span<const std::int64_t> shares) {
   const std::int64_t all = std::accumulate(shares.begin(), shares.end(), std::int64_t{0});
   if (all == 0) return 0.0;

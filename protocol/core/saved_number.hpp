@@ -1,4 +1,4 @@
-// Numbers of a saved state that a checksum says nothing about.
+// Checks numbers of a saved state, beyond its checksum.
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
-// Several numbers at once: the one vocabulary of vector registers that all kernels use. Float8, Double4 are as wide on
-// every machine; where there are no registers of 32 bytes the compiler splits them (vector extensions of GCC and
-// Clang). Beyond + − × ÷ and comparison these are the few operations that kernels need. Triples and the operations that
-// single numbers have too are in triple.hpp.
+// Several numbers at once: the vector registers that all kernels use. Float8 and Double4 have the same width on every
+// machine; if it has no registers of 32 bytes, the compiler splits them (vector extensions of GCC and Clang). Beyond +
+// − × ÷ and comparison, this header has the few operations that kernels need. Triples, and the operations that single
+// numbers have too, are in triple.hpp.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ typedef float Float8 __attribute__((vector_size(32)));
 typedef float Float4 __attribute__((vector_size(16)));
 typedef double Double4 __attribute__((vector_size(32)));
 typedef std::int32_t Int32x8 __attribute__((vector_size(32)));
-/// The same at addresses that are aligned as their numbers are.
+/// Float8 for addresses that are aligned only like their numbers.
 typedef float UnalignedFloat8 __attribute__((vector_size(32), aligned(4), may_alias));
 typedef double UnalignedDouble4 __attribute__((vector_size(32), aligned(8), may_alias));
 
@@ -34,9 +34,9 @@ inline void store(double* p, Double4 v) { *reinterpret_cast<UnalignedDouble4*>(p
 inline void add_to(double* p, Double4 v) { store(p, load(p) + v); }
 /// `s` in every lane.
 inline Double4 spread(double s) { return Double4{s, s, s, s}; }
-/// In lane order, so that the same bits come out everywhere.
+/// Sum in lane order, so that the bits are the same everywhere.
 inline double sum(Double4 v) { return ((v[0] + v[1]) + v[2]) + v[3]; }
-/// Halves first, likewise.
+/// Sum of the halves first, in an order that is also the same everywhere.
 inline float sum(Float8 v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
 template <class Real>
@@ -93,7 +93,7 @@ struct Numbers<Double4> {
 inline Float4 low_half(Float8 v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
 inline Float4 high_half(Float8 v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
 inline Float8 join(Float4 low, Float4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
-// GCC 12 makes four moves through memory of the plain conversions.
+// GCC 12 compiles the plain conversion to four moves through memory.
 inline Double4 widened(Float4 v) {
 #ifdef __AVX__
   return _mm256_cvtps_pd(v);
@@ -120,7 +120,7 @@ inline unsigned positive(Double4 v) {
 #endif
 }
 
-/// The lanes added in pairs, in double precision.
+/// The two halves added, in double precision.
 inline Double4 folded(Float8 v) { return widened(low_half(v)) + widened(high_half(v)); }
 inline Double4 folded(Double4 v) { return v; }
 inline double sum_of(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
@@ -143,7 +143,7 @@ inline void transpose(Double4 (&r)[4]) {
   r[3] = __builtin_shufflevector(ab_yw, cd_yw, 2, 3, 6, 7);
 }
 
-/// The same in both halves of the registers: rows k and k + 4 of eight rows of four share r[k].
+/// Transposes both halves of the registers: rows k and k + 4 of eight rows of four share r[k].
 inline void transpose_halves(Float8 (&r)[4]) {
   const Float8 ab_low = __builtin_shufflevector(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
   const Float8 ab_high = __builtin_shufflevector(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);

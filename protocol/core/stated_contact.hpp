@@ -1,5 +1,5 @@
-// Contact that a tire computes by a law of its own, such as a handling tire on hard ground: the terrain gives the
-// forces that the tire asks for, and counts them as it counts its own.
+// Contact that a tire computes by a law of its own, such as a handling tire on hard ground. The terrain gives the tire
+// the forces that the tire states, and counts them like its own.
 #pragma once
 
 #include "protocol/core/fields.hpp"

@@ -1,4 +1,4 @@
-// Quantiles of Student's t distribution: intervals of means of few values.
+// Quantiles of Student's t distribution, for confidence intervals of means of few values.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace furrow {
 
 /// Regularized incomplete beta function I_x(a, b) by its continued fraction [Lentz; Press et al., Numerical Recipes,
-/// §6.4], enough for Student's distribution.
+/// §6.4], accurate enough for Student's distribution.
 inline double incomplete_beta(double a, double b, double x) {
   FURROW_ASSERT(a > 0.0 && b > 0.0, a, b);
   if (x <= 0.0) return 0.0;
@@ -30,8 +30,8 @@ inline double incomplete_beta(double a, double b, double x) {
   return front * h;
 }
 
-/// The t that Student's distribution with `freedom` degrees of freedom exceeds with probability `tail`: its 97.5 %
-/// point unless said otherwise. @pre freedom > 0; 0 < tail < 0.1
+/// The t that Student's distribution with `freedom` degrees of freedom exceeds with probability `tail`; by default its
+/// 97.5 % point. @pre freedom > 0; 0 < tail < 0.1
 inline double student_t(double freedom, double tail = 0.025) {
   FURROW_ASSERT(freedom > 0.0 && tail > 0.0 && tail < 0.1, freedom, tail);
   const auto above = [freedom](double t) {

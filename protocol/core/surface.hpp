@@ -1,4 +1,4 @@
-// What crosses between rim, tire and terrain: motions, forces, and the triangulated contact surface.
+// The data that rim, tire and terrain exchange: motions, forces, and the triangulated contact surface.
 #pragma once
 
 #include <array>
@@ -53,11 +53,11 @@ void visit_fields(FieldsOf<SurfaceState> auto& s, auto&& visit) {
   visit(s.velocity, Field{"velocity", "m/s"});
 }
 
-/// How a nodal force answers to the motion of its vertex, means over the interval in which it acted: over an interval
-/// in which the vertex moves otherwise it would be about force − stiffness (x − position) − damping (v − velocity).
+/// How a nodal force responds to the motion of its vertex; all members are means over the interval in which it acted.
+/// If the vertex moved differently, the force would be about force − stiffness (x − position) − damping (v − velocity).
 struct ContactTangent {
   Mat3 stiffness = Mat3::Zero();  // −∂f/∂x, N/m, W, symmetric, not negative
-  Mat3 damping = Mat3::Zero();    // −∂f/∂v, N s/m, likewise
+  Mat3 damping = Mat3::Zero();    // −∂f/∂v, N s/m, W, symmetric, not negative
   Vec3 position = Vec3::Zero();   // of the vertex as the terrain moved it, m
   Vec3 velocity = Vec3::Zero();   // m/s
 };
@@ -73,7 +73,7 @@ void visit_fields(FieldsOf<ContactTangent> auto& s, auto&& visit) {
 struct NodalForces {
   std::vector<int> vertex;
   std::vector<Vec3> force;                   // N, W, on the tire by the terrain
-  std::vector<ContactTangent> tangent = {};  // of each force; empty: none were asked for
+  std::vector<ContactTangent> tangent = {};  // of each force; empty if none were asked for
 
   void clear() {
     vertex.clear();
@@ -97,7 +97,7 @@ void visit_fields(FieldsOf<MassProperties> auto& s, auto&& visit) {
   visit(s.inertia, Field{"inertia", "kg m²"});
 }
 
-/// Elastic and frictional properties of a surface for contact with grains or ground.
+/// Elastic and frictional properties of a surface in contact with grains or ground.
 struct ContactMaterial {
   double young_modulus = 0.0;      // Pa
   double poisson_ratio = 0.0;      // -
@@ -107,8 +107,8 @@ struct ContactMaterial {
   double normal_damping = 0.0;     // N s/m^1.5, law hertz_tanh
   double cohesion = 0.0;           // Pa; the tire's is zero
   double pair_friction = -1.0;     // of this surface with grains, -; negative: the smaller friction of the two
-  double rolling_friction = -1.0;  // of grains on this surface, -; negative: as among grains
-  double area_density = 0.0;       // mass of the surface that a contact moves, kg/m²; 0: a rigid, heavy one
+  double rolling_friction = -1.0;  // of grains on this surface, -; negative: the value among grains
+  double area_density = 0.0;       // mass of the surface that a contact moves, kg/m²; 0: rigid and heavy
 };
 void visit_fields(FieldsOf<ContactMaterial> auto& s, auto&& visit) {
   visit(s.young_modulus, Field{"young_modulus", "Pa"});

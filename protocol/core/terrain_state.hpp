@@ -1,4 +1,4 @@
-// What a terrain measures: of itself, of its contacts with each tire, and of its surface.
+// Quantities that a terrain measures: its state, its contacts with each tire, and its surface.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +31,9 @@ void visit_fields(FieldsOf<ContactSums> auto& s, auto&& visit) {
   visit(s.sliding, Field{"sliding"});
 }
 
-/// Energy of a terrain by where it is and by which mechanism it left, each integrated on its own: none is the
-/// difference of others. In J, cumulative since the run began unless "now" is said. What they leave over,
-///   residual = Δ stored() + losses() − surface_work − wall_work,
+/// Energy of a terrain by its form, and its losses by mechanism, each integrated on its own: no entry is computed as
+/// the difference of others. In J, cumulative since the run began unless marked "now". The residual
+///   residual = Δ stored() + losses() − surface_work − wall_work
 /// is the error of the step (terrain/README.md, Accounts).
 struct TerrainEnergies {
   double kinetic = 0.0;             // ½ m v², now
@@ -41,21 +41,21 @@ struct TerrainEnergies {
   double potential = 0.0;           // of gravity, now
   double elastic_normal = 0.0;      // normal springs, now
   double elastic_tangential = 0.0;  // tangential and rolling springs, now
-  double cohesion = 0.0;            // stored in adhesive contacts, now; below 0, it must be paid back to part them
+  double cohesion = 0.0;            // stored in adhesive contacts, now; if negative, parting them takes this energy
   double sliding_loss = 0.0;
   double normal_damping_loss = 0.0;
   double tangential_damping_loss = 0.0;
   double rolling_loss = 0.0;
-  double opening_loss = 0.0;  // spring energy given up as contacts are loaded, unloaded and ended
+  double opening_loss = 0.0;  // spring energy given up when contacts are loaded, unloaded and ended
   double sleep_loss = 0.0;    // by resting parts that are not stepped
   double surface_work = 0.0;  // by tires on the terrain
   double wall_work = 0.0;     // by walls and floor on the terrain
-  double sample_error = 0.0;  // estimated standard error of losses() by sampling; 0: nothing is sampled
+  double sample_error = 0.0;  // estimated standard error of losses() from sampling; 0: nothing is sampled
 
   double losses() const {
     return sliding_loss + normal_damping_loss + tangential_damping_loss + rolling_loss + opening_loss + sleep_loss;
   }
-  /// What is stored now.
+  /// Energy stored now.
   double stored() const { return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion; }
 };
 void visit_fields(FieldsOf<TerrainEnergies> auto& s, auto&& visit) {
@@ -76,15 +76,15 @@ void visit_fields(FieldsOf<TerrainEnergies> auto& s, auto&& visit) {
   visit(s.sample_error, Field{"sample_error", "J"});
 }
 
-/// Momentum of a terrain and the impulses it was given since the run began, each from its own forces. What they leave
-/// over, Δ grains − gravity_impulse − wall_impulse − surface_impulse − sleep_impulse, is round-off while nothing
-/// sleeps.
+/// Momentum of a terrain and the impulses on it since the run began, each from its own forces. The residual
+///   Δ grains − gravity_impulse − wall_impulse − surface_impulse − sleep_impulse
+/// is round-off while nothing sleeps.
 struct TerrainMomenta {
   Vec3 grains = Vec3::Zero();           // kg m/s, now
   Vec3 gravity_impulse = Vec3::Zero();  // N s
   Vec3 wall_impulse = Vec3::Zero();     // by walls and floor on the terrain, N s
   Vec3 surface_impulse = Vec3::Zero();  // by tires on the terrain, N s
-  Vec3 sleep_impulse = Vec3::Zero();    // by what holds resting parts that are not stepped, N s
+  Vec3 sleep_impulse = Vec3::Zero();    // by whatever holds resting parts that are not stepped, N s
 };
 void visit_fields(FieldsOf<TerrainMomenta> auto& s, auto&& visit) {
   visit(s.grains, Field{"grains", "kg m/s"});
@@ -94,7 +94,8 @@ void visit_fields(FieldsOf<TerrainMomenta> auto& s, auto&& visit) {
   visit(s.sleep_impulse, Field{"sleep_impulse", "N s"});
 }
 
-/// Of a terrain without momentum of its own, which the world holds: the walls give it what tires take.
+/// Momenta of a terrain without momentum of its own, which the world holds: the walls give it the impulse that tires
+/// take.
 inline TerrainMomenta held_by_the_world(const Vec3& surface_impulse) {
   TerrainMomenta momenta;
   momenta.surface_impulse = surface_impulse;
@@ -102,18 +103,18 @@ inline TerrainMomenta held_by_the_world(const Vec3& surface_impulse) {
   return momenta;
 }
 
-/// What a terrain measures of itself; cumulative since the run began unless stated.
+/// Measurements of a terrain; cumulative since the run began unless stated otherwise.
 struct TerrainState {
-  // Both as the engine sums them: `energies` holds their parts, which add up to them but for round-off.
+  // Both are the engine's sums. The parts in `energies` add up to them but for round-off.
   double kinetic_energy = 0.0;  // J, now
   double elastic_energy = 0.0;  // of the springs that the engine sums, J, now
   double floor_force = 0.0;     // vertical, N, last substep
   std::int64_t contacts = 0;    // now
   std::int64_t active = 0;      // grains awake
   std::int64_t list_rebuilds = 0;
-  std::int64_t substeps_added = 0;  // beyond terrain.substeps, where contacts were too hard for them
-  double refined_time = 0.0;        // in which substeps were taken in parts, s
-  std::int32_t most_parts = 1;      // of one substep
+  std::int64_t substeps_added = 0;  // substeps beyond terrain.substeps, taken because contacts were too hard
+  double refined_time = 0.0;        // time in which substeps were split, s
+  std::int32_t most_parts = 1;      // largest number of parts of one substep
   TerrainEnergies energies{};
   TerrainMomenta momenta{};
 };
@@ -131,7 +132,7 @@ void visit_fields(FieldsOf<TerrainState> auto& s, auto&& visit) {
   visit(s.momenta, Field{"momenta", ""});
 }
 
-/// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where no grain is.
+/// Terrain surface on a regular grid: mean of the highest grain tops per cell; NaN where there is no grain.
 struct HeightField {
   double x0 = 0.0, y0 = 0.0;  // centre of the first cell, m
   double cell = 0.0;          // m

@@ -1,4 +1,4 @@
-// What every tire says of itself at each step, whatever the model: the account that results are made from.
+// Diagnostics that every tire reports at each step, whatever its model; results are made from them.
 #pragma once
 
 #include <limits>
@@ -9,22 +9,22 @@
 
 namespace furrow {
 
-/// Account of what a tire holds and lost, each entry from its own formula. A model must set every member: what it
-/// forgets is not a number, and the tire's rank refuses that by name. With the works of
-/// its rim and of the terrain on it,
+/// Energy and momentum of a tire and its losses, each entry from its own formula. A model must set every member: one
+/// that it does not set stays "not a number", and the tire's rank refuses it and names it. With the works of the rim
+/// and of the terrain on the tire, the formulas leave the residual
 ///   residual = rim work + terrain work − Δ(kinetic + elastic + pressure + potential) − losses()
-/// is what the model's formulas leave over (tire/README.md, Accounts).
+/// (tire/README.md, Accounts).
 struct TireDiagnostics {
   static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   double kinetic_energy = kMissing;                // J, now
-  double elastic_energy = kMissing;                // with what relaxing branches store, J, now
-  double pressure_energy = kMissing;               // −p (V − V₀), without what a changing p put there, J, now
+  double elastic_energy = kMissing;                // including energy stored in relaxing branches, J, now
+  double pressure_energy = kMissing;               // −p (V − V₀), without energy from a changing p, J, now
   double potential_energy = kMissing;              // of gravity, J, now
   double dissipation = kMissing;                   // structural damping and relaxation, J, cumulative
-  double numerical_loss = kMissing;                // to the rule of time integration, J, cumulative
-  double solver_loss = kMissing;                   // to what the solver left of its equations, J, cumulative
+  double numerical_loss = kMissing;                // by the rule of time integration, J, cumulative
+  double solver_loss = kMissing;                   // by the solver's remaining error in its equations, J, cumulative
   Vec3 momentum = Vec3::Constant(kMissing);        // kg m/s, now
-  Vec3 solver_impulse = Vec3::Constant(kMissing);  // of the same remainder, N s, cumulative; part of the spindle's
+  Vec3 solver_impulse = Vec3::Constant(kMissing);  // of the same error, N s, cumulative; part of the spindle's
 
   double strain_energy() const { return elastic_energy + pressure_energy; }
   double stored() const { return kinetic_energy + strain_energy() + potential_energy; }

@@ -1,5 +1,5 @@
 // Formulas written once for one number and for several: a number type T is float, double, or one of the registers of
-// simd.hpp. This header needs no register, so that formulas which include it alone are plain scalar code.
+// simd.hpp. This header needs no register, so formulas that include only this header are plain scalar code.
 #pragma once
 
 #include <cmath>
@@ -38,7 +38,7 @@ inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// What differs between one number and several; simd.hpp has the same for its registers.
+/// Operations that differ between one number and several; simd.hpp has them for its registers.
 template <class T>
 struct Numbers {
   using Real = T;

@@ -1,4 +1,4 @@
-// The vector types that every room shares. World frame W: x forward, y left, z up. SI units throughout.
+// The vector types that all folders share. World frame W: x forward, y left, z up. SI units throughout.
 #pragma once
 
 #include <Eigen/Core>

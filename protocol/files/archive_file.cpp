@@ -23,7 +23,7 @@ std::string stored_name(const std::string& name, const ArchiveKind& kind) {
   return *kind.group ? std::string(kind.group) + "/" + swapped(name, '/', ':') : name;
 }
 
-/// The array's name of a dataset; empty for one that is no array.
+/// The name of the array that a dataset stores; empty for any other dataset.
 std::string array_name(const std::string& stored, const ArchiveKind& kind) {
   const std::string group = kind.group;
   if (group.empty()) return stored;

@@ -1,6 +1,6 @@
 // An Archive on disk: every array as a dataset of its own type, bit for bit.
 //   attributes  format_version; kind; kind_version; checksum, archive_hash() in hexadecimal digits
-//   datasets    the arrays; those of a saved state as state/<name>, with ':' in place of the '/' in their names
+//   datasets    the arrays; those of a saved state as state/<name>, with ':' for each '/' in their names
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 
 namespace furrow {
 
-/// What an archive is of.
+/// Kind of an archive: its contents and how they are stored.
 struct ArchiveKind {
   const char* name;
   const char* words;     // "a saved state"
   std::int64_t version;  // of its arrays
-  const char* group;     // that holds the arrays, with ':' in place of '/' in names; empty: names are as they are
+  const char* group;     // group of the arrays, with ':' for each '/' in names; empty: no group, names unchanged
 };
 
 inline constexpr ArchiveKind kSavedState{"state", "a saved state", 1, "state"};
 
-/// The file appears whole or not at all. Of several processes that write it at once the last one wins. `each` is called
+/// The file appears whole or not at all. If several processes write it at once, the last one wins. `each` is called
 /// before every array and may throw to stop. @throws Error(io)
 void write_archive(const std::filesystem::path& file, const Archive& archive, const ArchiveKind& kind = kSavedState,
                    const std::function<void()>& each = {});

@@ -10,7 +10,7 @@
 namespace furrow {
 
 std::filesystem::path cache_folder(const std::string& kind) {
-  // Relative paths in it are to be passed over [XDG Base Directory Specification 0.8].
+  // Relative paths in this variable are to be ignored [XDG Base Directory Specification 0.8].
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && std::filesystem::path(cache).is_absolute())
     return std::filesystem::path(cache) / "furrow" / kind;
   if (const char* home = std::getenv("HOME"); home && *home)

@@ -1,4 +1,4 @@
-// Where the program keeps what takes long to compute and can be computed again.
+// The folder for results that take long to compute and can be computed again.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace furrow {
 
-/// ${XDG_CACHE_HOME:-~/.cache}/furrow/<kind>; empty when neither variable names a directory. It need not exist.
+/// ${XDG_CACHE_HOME:-~/.cache}/furrow/<kind>; empty if neither variable contains a directory. It need not exist.
 std::filesystem::path cache_folder(const std::string& kind);
 
-/// Writes a file of such a folder, which is made. One that cannot be written costs time the next time, nothing else.
+/// Writes a file and creates its folder. If it cannot be written, only time is lost: the next run computes it again.
 void keep_json(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
 }  // namespace furrow

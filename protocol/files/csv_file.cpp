@@ -28,7 +28,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   }
 }
 
-/// What a header is whose values other programs have written; empty: as ours are.
+/// Why a header looks like the output of another program; empty if it does not.
 std::string foreign_header(const std::vector<std::string>& cells) {
   const std::string& first = cells.front();
   for (const auto& [separator, name] : {std::pair{';', "';'"}, {'\t', "tabs"}})

@@ -1,5 +1,5 @@
-// Tables of numbers that people wrote as CSV: a line with the names of the columns, then rows of as many values, with
-// commas between them. Empty lines and those that begin with # are left out; there are no quotes.
+// Tables of numbers that people wrote as CSV: a line with the names of the columns, then rows with a value for each
+// column, separated by commas. Empty lines and lines that begin with # are skipped; there are no quotes.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace furrow {
 class CsvFile {
  public:
   /// @param expected what should be there, for messages: "a CSV file of waypoints"
-  /// @param columns that there may be; the first must be, and one more
+  /// @param columns that are allowed; the file must have the first and at least one more
   /// @throws Error(bad_input) naming file and line
   CsvFile(const std::filesystem::path& file, const std::string& expected, const std::vector<std::string>& columns);
 
@@ -21,7 +21,7 @@ class CsvFile {
   bool has(const std::string& column) const { return index_of(column) < columns_.size(); }
   /// @pre has(column)
   const std::string& text(std::size_t row, const std::string& column) const;
-  /// @throws Error(bad_input) unless it is finite. @pre has(column)
+  /// @throws Error(bad_input) unless the value is finite. @pre has(column)
   double number(std::size_t row, const std::string& column) const;
 
   Error wrong(std::size_t row, const std::string& what) const { return wrong_line(rows_[row].line, what); }

@@ -17,14 +17,15 @@ constexpr std::size_t kMaxPath = 4095;  // bytes: PATH_MAX
 constexpr std::size_t kMaxName = 255;   // bytes: NAME_MAX
 constexpr const char* kFolders[] = {"rigs", "tire/data", "terrain/data", "vehicle/data"};
 
-/// Names of the JSON files in a folder; none where it cannot be read.
+/// Names of the JSON files in a folder; none if it cannot be read.
 void add_names(const std::filesystem::path& folder, std::vector<std::string>& names) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
 }
 
-/// Of the files `known`, the one that a name without a file means: with ".json" behind it, or spelled alike.
+/// The file of `known` that is probably meant by a name without a file: the name with ".json", or one of similar
+/// spelling.
 std::optional<std::string> meant(const std::string& typed, std::vector<std::string> known) {
   if (typed.size() > kMaxName) return {};
   std::sort(known.begin(), known.end());
@@ -46,7 +47,7 @@ std::filesystem::path data_folder() {
     if (std::filesystem::exists(folder / "share" / "furrow" / "rigs" / "scenario.schema.json", error))
       return folder / "share" / "furrow";
   }
-  return FURROW_SOURCE_FOLDER;  // of the build: programs run from another build folder
+  return FURROW_SOURCE_FOLDER;  // of the build, for programs that run from another build folder
 }
 
 std::filesystem::path named_file(const std::filesystem::path& name, const std::vector<std::string>& folders) {
@@ -58,7 +59,7 @@ std::filesystem::path named_file(const std::filesystem::path& name, const std::v
     if (std::filesystem::is_regular_file(place / name, error)) return place / name;
     add_names(place, known);
   }
-  for (const char* folder : kFolders)  // of another kind, which its reader says
+  for (const char* folder : kFolders)  // a file of another kind, which its reader reports
     if (std::filesystem::is_regular_file(data_folder() / folder / name, error)) return data_folder() / folder / name;
   const std::optional<std::string> other = meant(name.string(), std::move(known));
   if (!other) return name;
@@ -67,7 +68,7 @@ std::filesystem::path named_file(const std::filesystem::path& name, const std::v
 
 std::filesystem::path find_file(const std::string& name, const std::string& key,
                                 const std::filesystem::path& scenario) {
-  // A zero byte would end the name for the system, and a path that long is none.
+  // For the system, a zero byte would end the name, and a path this long cannot exist.
   if (name.size() > kMaxPath || printable(name) != name)
     throw input_error(scenario.string(), key, "is '" + excerpt(name) + "', expected the name of a file");
   const std::filesystem::path given(name);

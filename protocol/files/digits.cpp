@@ -8,18 +8,18 @@
 namespace furrow {
 namespace {
 
-constexpr double kSmallest = 1e-4, kLargest = 1e7;  // of what is written without an exponent
-constexpr double kNothing = 1e-12;                  // round-off of what is nothing
+constexpr double kSmallest = 1e-4, kLargest = 1e7;  // range of numbers written without an exponent
+constexpr double kNothing = 1e-12;                  // round-off of zero
 constexpr int kMostDecimals = 6;
 
-/// Decimals that show `count` significant digits of x, none where they lie before the point.
+/// Number of decimals that show `count` significant digits of x; none if these lie before the point.
 int decimals_of(double x, int count) {
   return std::clamp(count - 1 - static_cast<int>(std::floor(std::log10(std::abs(x)))), 0, kMostDecimals);
 }
 
 bool plain(double x) { return std::abs(x) >= kSmallest && std::abs(x) < kLargest; }
 
-/// Without the sign of a value that is rounded to zero.
+/// Writes a value that is rounded to zero without its sign.
 std::string fixed(double x, int decimals) {
   std::string text = fmt::format("{:.{}f}", x, decimals);
   if (text.starts_with('-') && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);

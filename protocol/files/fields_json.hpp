@@ -7,8 +7,8 @@
 
 namespace furrow {
 
-/// Every field that has all `roles`, by name. What stands for null in scenarios is null: a text that is empty, and a
-/// number below zero whose default is below zero.
+/// Every field that has all `roles`, by name. As in scenarios, null stands for an empty text, and for a number below
+/// zero whose default is below zero.
 template <HasFields T>
 nlohmann::ordered_json fields_json(const T& values, unsigned roles) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object(), standard = object;

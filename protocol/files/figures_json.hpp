@@ -1,5 +1,5 @@
-// Writes results (structs with a list of fields, protocol/core/fields.hpp) as JSON objects: names with their units,
-// null for what does not exist.
+// Writes results (structs with a list of fields, protocol/core/fields.hpp) as JSON objects: names with their units, and
+// null for missing values.
 #pragma once
 
 #include <optional>

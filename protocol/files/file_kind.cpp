@@ -26,7 +26,7 @@ constexpr Words kWords[] = {
     {FileKind::vehicle, "vehicle", "the key rig.vehicle of a scenario takes vehicles"},
 };
 
-constexpr const char* kChronoTires[] = {"ANCFTire"};  // that are read
+constexpr const char* kChronoTires[] = {"ANCFTire"};  // those that Furrow reads
 
 constexpr std::string_view kOfSoils[] = {"format_version", "description", "terrain", "measured"};
 
@@ -34,7 +34,7 @@ const Words& words_of(FileKind kind) {
   return *std::find_if(std::begin(kWords), std::end(kWords), [&](const Words& one) { return one.kind == kind; });
 }
 
-/// It can be a soil, or a scenario that says nothing but its terrain.
+/// Whether the document can be a soil, or a scenario with nothing but its terrain.
 template <class Json>
 bool reads_as_soil(const Json& document) {
   if (!document.is_object() || !document.contains("terrain")) return false;
@@ -49,8 +49,8 @@ std::string text_at(const Json& document, const char* key) {
                                                              : std::string();
 }
 
-/// A file of Project Chrono that is not read: "a Vehicle (WheeledVehicle)"; empty: it is none. Its keys begin with
-/// capitals and ours do not.
+/// A file of Project Chrono that Furrow does not read: "a Vehicle (WheeledVehicle)"; empty for any other file. Chrono's
+/// keys begin with capitals and ours do not.
 template <class Json>
 std::string part_of_chrono(const Json& document) {
   if (!document.is_object() || document.contains("format_version")) return {};

@@ -18,7 +18,7 @@ using hdf5::kFormatVersion;
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& file) : lock_(hdf5::library()), file_(file), part_(file) {
   hdf5::prepare();
-  // Without a buffer for small datasets: on a full disk they would be lost as they are closed, and not as they are put.
+  // No buffer for small datasets: on a full disk they would be lost when they are closed, not when they are put.
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_sieve_buf_size(access, 0);
   handle_ = H5Fcreate(part_.way().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
@@ -84,7 +84,7 @@ void Hdf5Writer::attribute_of(const std::string& object, const std::string& name
   write_text(found, name, text);
 }
 
-// The format of netCDF-4 knows a dimension without a variable by the name of its scale, which begins with this text and
+// In netCDF-4 a dimension without a variable is recognized by the name of its scale, which begins with this text and
 // ends with the length in ten places [NetCDF-4 File Format, "Dimensions", docs.unidata.ucar.edu/netcdf-c].
 void Hdf5Writer::put_axis(const std::string& name, hsize_t length) {
   const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);

@@ -1,5 +1,5 @@
-// The little of HDF5 that Furrow uses: named datasets of numbers and attributes, in files that appear whole.
-// The library as packaged serves one thread at a time: an open writer or reader holds a lock of the process.
+// The part of HDF5 that Furrow uses: named datasets of numbers and attributes, in files that appear whole. The packaged
+// library serves one thread at a time, so an open writer or reader holds a lock of the process.
 #pragma once
 
 #include <hdf5.h>
@@ -17,13 +17,13 @@ namespace furrow {
 
 class Hdf5Writer {
  public:
-  /// Nothing stands under `file` until finish(). @throws Error(io)
+  /// There is no file under this name until finish(). @throws Error(io)
   explicit Hdf5Writer(const std::filesystem::path& file);
   ~Hdf5Writer();  // without finish(): removes the temporary file
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
-  /// Writes a dataset of the given shape; groups in the name ("a/b") are made.
+  /// Writes a dataset of the given shape, and creates the groups in its name ("a/b").
   /// @throws Error(io) when the shape does not fit the number of values, or the disk is full
   /// @param values numbers of a type that Hdf5Reader::get reads, one after another
   template <class Values>
@@ -35,16 +35,16 @@ class Hdf5Writer {
   void attribute(const std::string& name, std::int64_t value);
   void attribute(const std::string& name, const std::string& text);
 
-  /// Describes a dataset or a group to other programs, for example its `units`. @pre it or a dataset in it was put
+  /// Describes a dataset or a group to other programs, for example its `units`. @pre it, or a dataset in it, was put
   void attribute_of(const std::string& object, const std::string& name, const std::string& text);
-  /// An axis without numbers of its own: a dimension of netCDF, which other datasets may lie along.
+  /// An axis without numbers of its own: a dimension of netCDF, along which other datasets may lie.
   void put_axis(const std::string& name, hsize_t length);
-  /// Says along which axes a dataset lies, by the names of datasets of one dimension: HDF5 dimension scales, which
-  /// netCDF (and so xarray) reads as coordinates. A dataset that lies along itself is a coordinate.
+  /// Sets the axes of a dataset by the names of datasets of one dimension: HDF5 dimension scales, which netCDF (and so
+  /// xarray) reads as coordinates. A dataset that lies along itself is a coordinate.
   /// @pre all of them were put; one axis per dimension of the dataset, of the same length
   void lay_along(const std::string& dataset, const std::vector<std::string>& axes);
 
-  /// Closes, flushes to the disk, renames. @throws Error(io)
+  /// Closes the file, flushes it to the disk and renames it. @throws Error(io)
   void finish();
 
  private:
@@ -63,20 +63,20 @@ class Hdf5Writer {
 /// How the numbers of a dataset are stored.
 enum class Hdf5Type { float64, float32, int64, int32, uint64, uint8, other };
 
-/// Files of other programs as well as ours. A dataset is read when it holds plain numbers, and no more of them than the
-/// file has bytes for (compressed: kMaxRatio times as many), so that a damaged size takes no memory.
+/// Reads files of Furrow and of other programs. A dataset is read if it has plain numbers, and no more of them than the
+/// file has bytes for (compressed: kMaxRatio times as many). So a damaged size cannot exhaust the memory.
 class Hdf5Reader {
  public:
   static constexpr std::uintmax_t kMaxRatio = 64;  // positions of grains compress by less than 10
 
-  /// Only files of ours have the attribute format_version.
+  /// Only files that Furrow wrote have the attribute format_version.
   /// @throws Error(io) when `file` cannot be opened, is cut short, or its format_version is newer than ours
   explicit Hdf5Reader(const std::filesystem::path& file);
   ~Hdf5Reader();
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  /// A dataset or group of that name, groups as in "a/b".
+  /// Whether the file has a dataset or group with that name; groups as in "a/b".
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
 

@@ -1,4 +1,4 @@
-// HDF5 identifiers that close themselves, and those of numbers.
+// HDF5 identifiers that close themselves, and the types of numbers.
 #pragma once
 
 #include <hdf5.h>
@@ -17,7 +17,7 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
   operator hid_t() const { return id_; }
   bool ok() const { return id_ >= 0; }
-  /// @returns whether it could be closed, which for a dataset is to say written
+  /// @returns whether it could be closed; for a dataset, whether it was written
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
@@ -26,7 +26,7 @@ class Handle {
 };
 
 namespace hdf5 {
-/// The type of numbers in memory.
+/// The HDF5 type of numbers in memory.
 inline hid_t native(double) { return H5T_NATIVE_DOUBLE; }
 inline hid_t native(float) { return H5T_NATIVE_FLOAT; }
 inline hid_t native(std::int32_t) { return H5T_NATIVE_INT32; }

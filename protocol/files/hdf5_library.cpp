@@ -10,7 +10,7 @@ std::recursive_mutex& library() {
 }
 
 void prepare() {
-  // As a program ends, the library would flush a file once more that could not be written, and crash (1.10.8).
+  // When a program ends, HDF5 1.10.8 would flush again a file that it could not write, and crash.
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);

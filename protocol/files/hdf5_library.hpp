@@ -1,4 +1,4 @@
-// What writer and reader of HDF5 files share.
+// The parts that writer and reader of HDF5 files share.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,12 @@
 
 namespace furrow::hdf5 {
 
-inline constexpr std::int64_t kFormatVersion = 1;  // of what we write
+inline constexpr std::int64_t kFormatVersion = 1;  // of files that Furrow writes
 
-/// Held by every open writer and reader: the library as packaged serves one thread at a time.
+/// Held by every open writer and reader, because the packaged library serves one thread at a time.
 std::recursive_mutex& library();
 
-/// Errors reach the user through exceptions alone, and no file can have a plugin loaded.
+/// Makes errors reach the user only as exceptions, and prevents files from loading plugins.
 void prepare();
 
 }  // namespace furrow::hdf5

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxAttribute = 4096;        // bytes of a text
 
 std::string quoted(const std::string& name) { return "'" + excerpt(name) + "'"; }
 
-/// One of the plain numbers that every program writes, in any byte order.
+/// Whether it is one of the plain number types that every program writes, in any byte order.
 bool is_plain_number(hid_t type) {
   static const std::array<hid_t, 20> kPlain{
       H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE, H5T_STD_I8LE,  H5T_STD_I16LE, H5T_STD_I32LE,
@@ -27,7 +27,7 @@ bool is_plain_number(hid_t type) {
   return std::any_of(kPlain.begin(), kPlain.end(), [&](hid_t plain) { return H5Tequal(type, plain) > 0; });
 }
 
-/// The product; 2⁶⁴ − 1 where it is larger.
+/// The product; 2⁶⁴ − 1 if it is larger.
 hsize_t product(const std::vector<hsize_t>& factors, hsize_t first) {
   hsize_t all = first;
   for (const hsize_t factor : factors)
@@ -42,7 +42,7 @@ herr_t add_dataset(hid_t, const char* name, const H5O_info_t* info, void* names)
 
 }  // namespace
 
-/// A dataset that was opened and looked at.
+/// An open dataset with its shape and type.
 class Hdf5Reader::Set {
  public:
   Set(const Hdf5Reader& file, const std::string& name)
@@ -67,7 +67,7 @@ class Hdf5Reader::Set {
   hid_t type() const { return type_; }
   hsize_t numbers() const { return H5Sget_simple_extent_type(space_) == H5S_NULL ? 0 : product(shape_, 1); }
 
-  /// @throws Error(io) unless it holds plain numbers, as many as the file has bytes for
+  /// @throws Error(io) unless it has plain numbers, and no more than the file has bytes for
   void check_stored() const {
     file_.check(
         is_plain_number(type_),

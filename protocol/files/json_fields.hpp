@@ -13,7 +13,7 @@
 
 namespace furrow {
 
-/// Takes every field that has all `roles` and whose key is there and not null; the others keep their values.
+/// Reads every field that has all `roles` and whose key is present and not null; the others keep their values.
 /// @pre the object was checked against the schema: a value of another type throws nlohmann::json::exception
 template <HasFields T>
 void read_fields(const nlohmann::json& object, T& target, unsigned roles = role::key) {
@@ -39,7 +39,7 @@ std::vector<std::string> field_names(unsigned roles) {
   return names;
 }
 
-/// The fields of T and nothing else of it: what a table of models holds of a section's keys.
+/// The fields of T and nothing else of it, for a table of models that stores the keys of a section.
 template <HasFields T>
 std::vector<Field> fields_of() {
   std::vector<Field> fields;
@@ -48,7 +48,7 @@ std::vector<Field> fields_of() {
   return fields;
 }
 
-/// Whose keys a model's are: the entry of a table of models has one, made by key_list<Options>().
+/// The keys of a model. Its entry in a table of models has one, made by key_list<Options>().
 struct KeyList {
   std::vector<Field> (*fields)() = nullptr;  // the keys are those with role::key
   void (*add_to)(SchemaWriter& writer, nlohmann::ordered_json& section) = nullptr;

@@ -7,7 +7,7 @@
 
 namespace furrow {
 
-/// null for what could not be measured.
+/// The number, or null if it is not finite.
 inline nlohmann::ordered_json json_number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }

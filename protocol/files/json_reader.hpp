@@ -1,6 +1,6 @@
-// Reads an object of a JSON file key by key: tire files, soil files, studies, soil estimates. Every complaint names the
-// file, the dotted key, the offending value and what is expected; keys that nobody asked for are errors with the
-// nearest valid key.
+// Reads an object of a JSON file key by key: tire files, soil files, studies, soil estimates. Every error message
+// contains the file, the dotted key, the offending value and the expected one. A key that is never read is an error,
+// whose message proposes the nearest valid key.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace furrow {
 
-/// @tparam Json nlohmann::json, or nlohmann::ordered_json where the order of keys matters
+/// @tparam Json nlohmann::json, or nlohmann::ordered_json if the order of keys matters
 template <class Json>
 class BasicJsonReader {
  public:
@@ -22,14 +22,14 @@ class BasicJsonReader {
   BasicJsonReader(const Json& object, std::string file, std::string path = "");
 
   bool has(const std::string& key) const { return object_.contains(key); }
-  /// Whether the key is there and not null.
+  /// Whether the key is present and not null.
   bool given(const std::string& key) const { return has(key) && !object_.at(key).is_null(); }
 
   BasicJsonReader child(const std::string& key);
-  /// The object under this key; an empty one where the key is not given.
+  /// The object under this key; an empty one if the key is not given.
   Json object_or_empty(const std::string& key);
   const Json& array(const std::string& key);
-  std::string text(const std::string& key);  // one line, that can be shown as it is
+  std::string text(const std::string& key);  // one line, which can be printed unchanged
   std::string text_or(const std::string& key, const std::string& otherwise);
   bool flag(const std::string& key);
   bool flag_or(const std::string& key, bool otherwise);
@@ -45,11 +45,11 @@ class BasicJsonReader {
   /// `format_version` is a whole number of at most `newest`; it may be missing unless it is required.
   void check_version(int newest, bool required = false);
 
-  /// Takes a key without reading it (comments, names).
+  /// Marks a key as used without reading it (comments, names).
   void skip(const std::string& key);
   /// @throws Error(bad_input) when there is a key that is not one of `known`.
   void allow_only(const std::vector<std::string>& known) const;
-  /// @throws Error(bad_input) when there is a key that nothing asked for.
+  /// @throws Error(bad_input) when there is a key that was never read.
   void finish() const { allow_only(used_); }
 
   Error wrong(const std::string& key, const std::string& what) const {
@@ -66,7 +66,7 @@ class BasicJsonReader {
   const Json& object() const { return object_; }
 
  private:
-  /// The value, which must be of a type. @param is one of Json's questions: &Json::is_string
+  /// The value, which must have a type. @param is the member function of Json that checks it: &Json::is_string
   const Json& at(const std::string& key, bool (Json::*is)() const noexcept, const std::string& expected);
 
   const Json& object_;

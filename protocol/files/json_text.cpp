@@ -18,10 +18,10 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxKey = 256;  // bytes of a key
-// Of an object: to find one among ordered keys takes time in proportion to their number.
+// Of an object: the time to find one among ordered keys is proportional to their number.
 constexpr std::size_t kMaxKeys = 10000;
 
-/// The byte after the comment that begins there; where none begins, `at`.
+/// The byte after the comment that begins at `at`; `at` if none begins there.
 std::size_t after_comment(const std::string& text, std::size_t at) {
   if (text.compare(at, 2, "//") == 0) return std::min(text.find_first_of("\n\r", at), text.size());
   if (text.compare(at, 2, "/*") != 0) return at;
@@ -41,7 +41,7 @@ std::size_t find_too_deep(const std::string& text) {
       }
     const char c = text[at];
     if (quoted)
-      at += c == '\\';  // whatever is escaped does not end the text
+      at += c == '\\';  // an escaped character does not end the text
     else if (c == '[' || c == '{')
       ++depth;
     else if ((c == ']' || c == '}') && depth > 0)
@@ -56,7 +56,7 @@ std::string too_deep() {
   return fmt::format("lists and objects are nested deeper than {} levels, expected fewer", kMaxDepth);
 }
 
-/// What people write who know other notations, at the byte where JSON ends; empty: something else.
+/// Explains a likely slip from another notation, at the byte where parsing failed; empty if it looks like none of them.
 std::string likely_slip(const std::string& text, std::size_t at) {
   if (at >= text.size()) return {};
   if (text[at] == '\'') return "a text is in double quotes";
@@ -67,14 +67,14 @@ std::string likely_slip(const std::string& text, std::size_t at) {
                ? "a comma stands between entries, none after the last"
                : "";
   }
-  // To what stands before the number that ends there; past the beginning that is npos.
+  // Last byte before the number that ends there; npos if the number is at the beginning.
   const std::size_t comma = text.find_last_not_of("0123456789.eE+-", at);
   if (digit(at) && comma != std::string::npos && text[comma] == ',' && comma > 0 && digit(comma - 1))
     return "a number has a decimal point, no comma";
   return {};
 }
 
-/// Meshes of wheels come to mind where a tire is asked for. @throws Error(bad_input)
+/// Refuses meshes of wheels, which some users give as a tire. @throws Error(bad_input)
 void refuse_meshes(const std::filesystem::path& file, const std::string& expected) {
   std::string end = file.extension().string();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -85,7 +85,7 @@ void refuse_meshes(const std::filesystem::path& file, const std::string& expecte
                       expected);
 }
 
-/// Builds a document event by event, so that keys can be checked as they come.
+/// Builds a document event by event, so that keys can be checked when they arrive.
 template <class Json>
 class Builder final : public nlohmann::json_sax<Json> {
   using Base = nlohmann::json_sax<Json>;
@@ -147,7 +147,7 @@ class Builder final : public nlohmann::json_sax<Json> {
     std::string key;
   };
 
-  /// Where the next value goes.
+  /// The place of the next value.
   Json* place_for() {
     if (levels_.empty()) return &root_;
     Level& level = levels_.back();
@@ -172,7 +172,7 @@ class Builder final : public nlohmann::json_sax<Json> {
     return true;
   }
   std::string path() const { return path_to(levels_.empty() ? "" : levels_.back().key); }
-  /// Of a key of the innermost object.
+  /// Path of a key of the innermost object.
   std::string path_to(const std::string& key) const {
     std::string text;
     for (std::size_t k = 0; k < levels_.size(); ++k) {
@@ -219,7 +219,7 @@ template nlohmann::ordered_json load_json(const std::filesystem::path&, const st
 nlohmann::ordered_json read_json_if_whole(const std::filesystem::path& file) {
   using Json = nlohmann::ordered_json;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return {};  // a pipe would be waited for
+  if (!std::filesystem::is_regular_file(file, error)) return {};  // reading a pipe would block
   try {
     return parse_json<Json>(read_whole_file(file, kMaxText), file.string());
   } catch (const Error&) {
@@ -231,7 +231,7 @@ json parse_value(const std::string& text, const std::string& name, const std::st
   if (find_invalid_utf8(text) != std::string::npos) throw input_error(name, key, "the value is not UTF-8");
   if (find_too_deep(text) != std::string::npos) throw input_error(name, key, too_deep());
   if (!json::accept(text)) {
-    // A number that overflows is not accepted either, but no string was meant.
+    // A number that overflows is refused too, and not read as a string.
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (end != text.c_str() && *end == '\0' && std::isinf(value) && text.find_first_of("nN") == std::string::npos)
@@ -248,7 +248,7 @@ std::string number_text(double value) {
   if (value == std::round(value) && size < 1e6) return fmt::format("{}", std::llround(value));
   std::string text = fmt::format("{:g}", value);
   if (std::strtod(text.c_str(), nullptr) != value) text = fmt::format("{}", value);
-  // 1e+09 and 4e-05 as 1e9 and 4e-5.
+  // Shortens 1e+09 and 4e-05 to 1e9 and 4e-5.
   for (const char* long_form : {"e+0", "e-0", "e+"})
     if (const std::size_t at = text.find(long_form); at != std::string::npos)
       return text.replace(at, std::strlen(long_form), long_form[1] == '-' ? "e-" : "e");

@@ -61,7 +61,7 @@ std::string list_text(const json& node) {
                      node.value("entries", "entries"));
 }
 
-constexpr int kDeepest = 3;  // levels of a value on one line
+constexpr int kDeepest = 3;  // nested levels of a value written on one line
 
 int depth(const Json& value) {
   int deepest = 0;
@@ -70,7 +70,7 @@ int depth(const Json& value) {
   return value.is_structured() ? deepest + 1 : 0;
 }
 
-/// Objects of keys with a line for each, and what would be too deep for one line.
+/// Writes objects of keys, and values nested too deeply for one line, with a line for each entry.
 std::string text_of(const Json& value, const std::string& indent) {
   if (value.is_number_float()) return number_text(value.get<double>());
   if (!value.is_structured()) return value.dump();

@@ -1,5 +1,5 @@
-// JSON schemas of the files that people write, made from lists of keys (protocol/core/key.hpp), and what a schema says
-// of a value, in words.
+// Makes JSON schemas of the files that people write from lists of keys (protocol/core/key.hpp), and describes in words
+// what a schema expects of a value.
 #pragma once
 
 #include <concepts>
@@ -16,25 +16,26 @@
 
 namespace furrow {
 
-/// The schema of a key. @param type of its member in JSON, "" where the key's shape says it
-/// @param standard the member's default; discarded where there is none
+/// The schema of a key.
+/// @param type of its member in JSON, "" if the key's shape contains it
+/// @param standard the member's default; discarded if there is none
 nlohmann::ordered_json key_schema(const Key& key, const char* type, const nlohmann::ordered_json& standard);
 
-/// The words of a key that stand for the values of an enumeration, in its order.
+/// The word of a key that stands for a value of an enumeration; the words have the order of the values.
 std::string word_of(const Key& key, int value);
 int word_number(const Key& key, const std::string& word);
 
 /// Adds a key to `properties` and `required` of the schema of an object.
-/// @pre a key of the same name that is there already is declared alike
+/// @pre if a key of this name is already there, it is declared in the same way
 void add_key(nlohmann::ordered_json& object, const Key& key, const nlohmann::ordered_json& node);
 
 /// {"type": "object", …}, without keys yet.
 nlohmann::ordered_json object_schema(const char* description);
 
-/// A schema as text that people can read: each key on a line of its own.
+/// A schema as readable text, with each key on its own line.
 std::string schema_text(const nlohmann::ordered_json& schema);
 
-/// Schemas of structs by their lists of keys; those of structs within them become definitions.
+/// Makes schemas of structs from their lists of keys; structs within them become definitions.
 class SchemaWriter {
  public:
   nlohmann::ordered_json definitions = nlohmann::ordered_json::object();
@@ -48,7 +49,7 @@ class SchemaWriter {
     });
   }
 
-  /// The schema of an object, with the key `type` where its struct has a kType.
+  /// The schema of an object, with the key `type` if its struct has a kType.
   template <HasFields T>
   nlohmann::ordered_json object(const char* description) {
     nlohmann::ordered_json object = object_schema(description);
@@ -112,26 +113,27 @@ class SchemaWriter {
   static nlohmann::ordered_json discarded() { return nlohmann::ordered_json::value_t::discarded; }
 };
 
-/// "a number, above 0 up to 1 m": what the schema of a value expects.
+/// "a number, above 0 up to 1 m": the value that a schema expects.
 std::string expectation(const nlohmann::json& node);
 /// "0 to 10", "above 0"; empty without bounds.
 std::string range_text(const nlohmann::json& node);
-/// With the unit of the schema, if it has one.
+/// The text with the unit of the schema, if it has one.
 std::string with_unit(const std::string& text, const nlohmann::json& node);
 /// Whether the schema takes values of this type: "null", "integer".
 bool allows_type(const nlohmann::json& node, const std::string& type);
-/// "is 2 m, expected a number, above 0 up to 1 m"; empty where the value is as its schema says. What is within lists
-/// and objects is not looked at.
+/// "is 2 m, expected a number, above 0 up to 1 m"; empty if the value is as its schema requires. The contents of lists
+/// and objects are not checked.
 std::string mistake(const nlohmann::json& node, const nlohmann::json& value);
 
-/// The same of a number or a text and its key, but for the key's shape.
+/// Checks a number or a text in the same way against its key, but not against the key's shape.
 std::string mistake(const Key& key, const nlohmann::json& value);
 
-/// A number or a text against its key. @throws Error(bad_input) naming file, key and what is expected
+/// Checks a number or a text against its key. @throws Error(bad_input) naming file, key and what is expected
 void check_value(const Key& key, const nlohmann::json& value, const std::string& file, const std::string& section);
 
-/// Numbers and texts of a struct against its list of keys. Where a key takes null, a negative number means that.
-/// @throws Error(bad_input) likewise
+/// Checks numbers and texts of a struct against its list of keys. If a key may be null, a negative number stands for
+/// null.
+/// @throws Error(bad_input) as above
 template <HasFields T>
 void check_values(const T& values, const std::string& file, const std::string& section) {
   visit_fields(values, [&]<class F, class Value>(const Value& value, const F& field) {

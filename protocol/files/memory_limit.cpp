@@ -17,16 +17,16 @@ namespace fs = std::filesystem;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kKib = 1024.0;
-constexpr double kBlasBuffers = 200e6;  // bytes, with what the solver itself takes
+constexpr double kBlasBuffers = 200e6;  // bytes, including the memory of the solver itself
 
-/// A number in a file; `otherwise` where there is none ("max") or no such file.
+/// A number in a file; `otherwise` if the file is missing or has no number ("max").
 double number_in(const fs::path& file, double otherwise) {
   double value = 0.0;
   std::ifstream in(file);
   return in >> value ? value : otherwise;
 }
 
-/// A line of /proc/meminfo, bytes; 0: it has none of that name.
+/// A value of /proc/meminfo, bytes; 0 if there is no line with that name.
 double meminfo(const fs::path& root, const std::string& wanted) {
   std::ifstream info(root / "proc/meminfo");
   double kib = 0.0;
@@ -35,8 +35,8 @@ double meminfo(const fs::path& root, const std::string& wanted) {
   return 0.0;
 }
 
-/// This process's control group as /proc/self/cgroup names it, for version 2 or for the controller `memory` of
-/// version 1. @returns false when it is in none
+/// Finds this process's control group in /proc/self/cgroup, for version 2 or for the controller `memory` of version 1.
+/// @returns false when it is in none
 bool find_group(const fs::path& root, bool version_2, fs::path& group) {
   std::ifstream in(root / "proc/self/cgroup");
   for (std::string line; std::getline(in, line);) {
@@ -50,7 +50,7 @@ bool find_group(const fs::path& root, bool version_2, fs::path& group) {
   return false;
 }
 
-/// Calls use(folder) for the group and all those that it lies in; a container may see none but the topmost.
+/// Calls use(folder) for the group and all groups that contain it; a container may see only the topmost.
 template <class Use>
 void for_groups(const fs::path& top, fs::path group, const Use& use) {
   for (;; group = group.parent_path()) {

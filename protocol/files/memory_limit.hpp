@@ -1,4 +1,4 @@
-// How much memory the system lets a process have.
+// The memory that the system grants to a process.
 #pragma once
 
 #include <filesystem>
@@ -9,19 +9,20 @@ namespace furrow {
 
 struct MemoryLimit {
   double bytes = std::numeric_limits<double>::infinity();
-  std::string name;  // for people: "ulimit -v", "control group", "this machine"
+  std::string name;  // for messages: "ulimit -v", "control group", "this machine"
 };
 
-/// Of the address space of one process (ulimit -v).
+/// Limit of the address space of one process (ulimit -v).
 MemoryLimit address_space_limit();
 
-/// Of all processes together, however much of it is in use: memory and swap of this machine, or of the control
-/// group (version 2 or 1) that this process belongs to, whichever is less.
-/// @param root  where /proc and /sys are
+/// Limit for all processes together, however much of it is in use. It is the memory and swap of this machine, or of the
+/// control group (version 2 or 1) of this process, whichever is less.
+/// @param root  folder that contains /proc and /sys
 MemoryLimit memory_limit(const std::filesystem::path& root = "/");
 
-/// Before the first dense operation of a sparse solver: OpenBLAS asks for its buffers for ever where it gets none.
-/// @throws Error(limit) where the address space has no room for them
+/// Call it before the first dense operation of a sparse solver: without memory for its buffers, OpenBLAS retries for
+/// ever.
+/// @throws Error(limit) if the address space has no room for them
 void require_blas_buffers();
 
 }  // namespace furrow

@@ -17,7 +17,7 @@ namespace furrow {
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   const auto letter = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  std::array<std::vector<std::size_t>, 3> rows;  // of the word before the last, the last, and this letter of a
+  std::array<std::vector<std::size_t>, 3> rows;  // of a's letter before the previous one, the previous one, this one
   for (auto& row : rows) row.resize(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) rows[2][j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -52,11 +52,11 @@ std::string unknown_text(const std::vector<std::string>& similar, const std::vec
 
 namespace {
 
-constexpr double kMostPressure = 1e7;  // Pa: what reaches beyond is a modulus, which nobody states in bar or psi
+constexpr double kMostPressure = 1e7;  // Pa: larger values are moduli, which nobody states in bar or psi
 constexpr double kPerPsi = 6894.757;   // Pa
 
 struct OtherUnit {
-  const char* name;  // "" of one whose name depends on the quantity
+  const char* name;  // "" if the name depends on the quantity
   double factor;     // to SI
 };
 
@@ -74,7 +74,7 @@ std::vector<OtherUnit> other_units(const std::string& unit, double high) {
   return {{"", 1e3}, {"", 1e-3}, {"", 1e6}, {"", 1e-6}};
 }
 
-/// With four digits: a guess has no more.
+/// Rounded to four digits, as a guess is not more accurate.
 double rounded(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
 
 }  // namespace
@@ -88,7 +88,7 @@ std::string unusual_text(double value, double low, double high, const std::strin
     if (!(low > 0.0 && size * factor >= low && size * factor <= high)) continue;
     const std::string guess = number_text(rounded(value * factor));
     if (!*name) {
-      guesses = guess;  // the likeliest alone
+      guesses = guess;  // only the likeliest guess
       break;
     }
     guesses += fmt::format("{}{} ({})", guesses.empty() ? "" : " or ", guess, name);

@@ -1,5 +1,5 @@
-// What a writer may have meant: by a name that is not known, one that is; by a value of a magnitude that a key does not
-// call usual (Allowed::usual), another unit.
+// Guesses what a writer meant: a known name similar to an unknown one, or another unit for a value of unusual magnitude
+// (Allowed::usual).
 #pragma once
 
 #include <concepts>
@@ -13,21 +13,21 @@
 
 namespace furrow {
 
-/// Number of letters to insert, remove, replace or swap with their neighbour, whatever their case.
+/// Number of letters to insert, remove, replace or swap with their neighbour, ignoring case.
 std::size_t edit_distance(const std::string& a, const std::string& b);
 
-/// Of `known`, what looks like `word`: best first, at most three.
+/// At most three words of `known` that look like `word`, the most similar first.
 std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known);
 
-/// What to say of an unknown name: "is unknown, expected 'SIMILAR'?", or all known names where none is similar.
+/// Text on an unknown name: "is unknown, expected 'SIMILAR'?", or a list of all known names if none is similar.
 std::string unknown_text(const std::vector<std::string>& similar, const std::vector<std::string>& known);
 
 /// "2 Pa is unusually small, usual is 5000 to 2e6 Pa: did you mean 200e3 (bar)?"; empty for a usual value and for 0.
 /// @param low negative: values of both signs are usual, and none is too small
 std::string unusual_text(double value, double low, double high, const std::string& unit);
 
-/// Key and text of every unusual value of a struct and of the structs in it. Where a key takes null, a negative value
-/// means that.
+/// Key and text of every unusual value of a struct and of the structs in it. If a key may be null, a negative value
+/// stands for null.
 template <HasFields T>
 std::vector<std::pair<std::string, std::string>> unusual_values(const T& values, const std::string& path = "") {
   std::vector<std::pair<std::string, std::string>> found;

@@ -18,7 +18,7 @@ unsigned code_at(const std::string& text, std::size_t at, std::size_t length) {
   return code;
 }
 
-/// Whether a terminal would obey it in place of showing it: controls, line separators, direction of writing.
+/// Whether a terminal would obey the character instead of showing it: controls, line separators, direction of writing.
 bool is_command(unsigned code) {
   return code < 0x20 || (code >= 0x7F && code < 0xA0) || code == 0x200E || code == 0x200F ||
          (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
@@ -58,7 +58,7 @@ std::string printable(const std::string& text) {
 }
 
 std::string excerpt(const std::string& text, std::size_t most) {
-  // No character needs fewer bytes when it is shown than it has, so that more than that is never looked at.
+  // A printed character has at least as many bytes as the original, so `most + 4` bytes of the text are enough.
   const bool more = text.size() > most;
   std::string shown = printable(more ? text.substr(0, most + 4) : text);
   if (!more && shown.size() <= most) return shown;

@@ -15,11 +15,11 @@ std::string build_id() {
 
 namespace {
 
-/// Hash of results of the C library's functions: by the processor and by its settings it computes them in other ways,
-/// with or without fused multiplication, and these round otherwise for one argument in some hundred or thousand. The
-/// compiler folds nothing, as it does not know the arguments.
+/// Hash of results of the C library's functions. The library chooses variants by the processor and by settings, with or
+/// without fused multiplication. These round differently for one argument in some hundred or thousand. The compiler
+/// cannot fold the calls, because the arguments are volatile.
 std::string mathematics_id() {
-  constexpr int kArguments = 4096;  // without FMA glibc 2.36 gives 42 other results; takes 2 ms
+  constexpr int kArguments = 4096;  // without FMA 42 results of glibc 2.36 differ; takes 2 ms
   Hash hash;
   for (int k = 1; k <= kArguments; ++k) {
     const volatile double any = 0.618033988749895 * k / 101.0;  // 0.006 to 25

@@ -1,18 +1,18 @@
-// Which build of the program computes, and on which processor. What another build computes again may differ in its last
-// bits, so that each build keeps its own.
+// Identifies the build of the program and the processor. Results of another build may differ in their last bits, so
+// each build keeps its own.
 #pragma once
 
 #include <string>
 
 namespace furrow {
 
-/// A hash of the program's own file: another build has another one.
+/// A hash of the program's own file; every build has a different one.
 std::string build_id();
-/// Distinguishes programs whose numbers may differ in their last bits: a digest of the compiler, its target and its
-/// options for arithmetic, made when the build is configured, and a hash of what the C library's mathematics give here.
-/// Sources do not count: whoever changes what is kept raises its format.
+/// Identifies programs whose numbers are equal to the last bit. It is a digest of the compiler, its target and its
+/// options for arithmetic, made when the build is configured, with a hash of results of the C library's mathematical
+/// functions here. Sources do not count: a change of what is kept must raise the version of its format.
 std::string arithmetic_id();
-/// "model name" of the processor.
+/// The processor's "model name".
 std::string cpu_model();
 
 }  // namespace furrow

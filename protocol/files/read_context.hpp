@@ -1,4 +1,4 @@
-// Where the reader of a model's keys stands: which file it reads, and which section of it.
+// Context of the reader of a model's keys: the file that it reads, and the section.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace furrow {
 
 struct ReadContext {
   std::string file;     // the scenario, for messages
-  std::string section;  // "terrain": what stands before the dot of each key in messages
+  std::string section;  // "terrain": prefix of each key in messages
   /// Keys that the command line sets, with their sections: "terrain.engine".
   std::vector<std::string> set_keys = {};
 

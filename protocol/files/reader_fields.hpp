@@ -1,5 +1,5 @@
-// Reads structs with a list of keys (protocol/core/key.hpp) from files that nothing has checked before. Complaints are
-// JsonReader's.
+// Reads structs with a list of keys (protocol/core/key.hpp) from files that nothing has checked before. Error messages
+// are those of JsonReader.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void take_value(JsonReader& reader, const Key& key, Value& value) {
     JsonReader part = reader.child(key.name);
     read_keys(part, value);
     part.finish();
-  } else if constexpr (std::is_enum_v<Value> || std::is_assignable_v<Value&, std::string>) {  // others: by hand
+  } else if constexpr (std::is_enum_v<Value> || std::is_assignable_v<Value&, std::string>) {  // others: role::by_hand
     const std::string text = reader.text(key.name);
     if (const std::string what = mistake(key, text); !what.empty()) reader.fail(key.name, what);
     if constexpr (std::is_enum_v<Value>)
@@ -65,7 +65,7 @@ void take_value(JsonReader& reader, const Key& key, std::vector<T>& value) {
 
 }  // namespace detail
 
-/// Takes every key that is given, and those that may not be missing, but for those with role::by_hand.
+/// Reads every key that is given or required, except those with role::by_hand.
 /// @throws Error(bad_input) naming file and key when one is missing, of another type or out of its range
 template <HasFields T>
 void read_keys(JsonReader& reader, T& target) {

@@ -22,8 +22,8 @@ Error failed(const std::filesystem::path& file, const std::string& what) {
   return io_error(file.string(), what + ": " + std::strerror(errno));
 }
 
-/// Gives `use` what the stream holds, block by block; `use` returns false when it has enough. @returns false after an
-/// error
+/// Passes the stream's contents to `use`, block by block; `use` returns false when it needs no more. @returns false
+/// after an error
 template <class Use>
 bool read_blocks(std::ifstream& in, const Use& use) {
   std::vector<char> block(1 << 20);
@@ -41,7 +41,7 @@ Error unreadable(const std::filesystem::path& file) {
                                                    : fmt::format("cannot be read ({})", std::strerror(error)));
 }
 
-/// A regular file of a size that a person may have written.
+/// Requires a regular file of a size that a person may have written.
 void check_text_file(const std::filesystem::path& file, const std::string& expected) {
   const std::string name = file.string();
   std::error_code error;
@@ -103,7 +103,7 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::string text;
-  // What is read counts, not the size that the system reports: files grow, and those of the kernel have none.
+  // Only bytes that are read count, not the size that the system reports: files grow, and kernel files report none.
   const bool good = in && read_blocks(in, [&](const char* block, std::size_t count) {
                       text.append(block, count);
                       return text.size() <= kMaxText;

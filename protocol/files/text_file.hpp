@@ -1,4 +1,4 @@
-// Whole files. Written, they appear or do not (new_file.hpp).
+// Whole files. A file that is written appears whole or not at all (new_file.hpp).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace furrow {
 
-/// Bytes that a text which a person wrote has at most.
+/// Highest number of bytes in a text that a person wrote.
 inline constexpr std::uintmax_t kMaxText = 16 << 20;
 
 /// All bytes of a file. @throws Error(io), also when there are more than `most`
@@ -24,26 +24,26 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
 /// Adds all bytes of a file of any size. @throws Error(io)
 void add_file(Hash& hash, const std::filesystem::path& file);
 
-/// Hash of a file's bytes and of a text's, in hexadecimal digits. @throws Error(io)
+/// Hash of a file's bytes, and of a text's, in hexadecimal digits. @throws Error(io)
 std::string file_hash(const std::filesystem::path& file);
 std::string text_hash(const std::string& text);
 
 /// @throws Error(io) naming the file
 void write_whole_file(const std::filesystem::path& file, const std::string& text);
 
-/// Flushes what was renamed, made or removed in a folder to the disk. @throws Error(io)
+/// Flushes renamed, created and removed files of a folder to the disk. @throws Error(io)
 void sync_folder(const std::filesystem::path& folder);
 
-/// Without the blanks (space, tab, carriage return) at both ends.
+/// The text without blanks (space, tab, carriage return) at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 where none does. @pre at < text.size()
+/// Number of bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 if none begins there. @pre at < text.size()
 std::size_t utf8_length(const std::string& text, std::size_t at);
 
-/// Offset of the first byte that is not UTF-8, or is zero, or npos.
+/// Offset of the first byte that is not UTF-8, or is zero; npos if there is none.
 std::size_t find_invalid_utf8(const std::string& text);
 
-/// "line:column" of a byte, both from 1, the column in characters.
+/// "line:column" of a byte; both count from 1, and the column counts characters.
 std::string place_in_text(const std::string& text, std::size_t offset);
 
 }  // namespace furrow

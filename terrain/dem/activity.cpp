@@ -21,7 +21,7 @@ void Activity::spread(const Strips& strips, Need from, Need to, const int (&besi
 }
 
 void Activity::plan(const Strips& strips, int sway_steps) {
-  // A list names grains of its own parcel, of the next one across, and of three in the next strip.
+  // A list contains grains of its own parcel, of the next one across, and of three in the next strip.
   static constexpr int kAround[9][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   static constexpr int kListedBy[5][2] = {{0, 0}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}};
   static constexpr int kListed[5][2] = {{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};

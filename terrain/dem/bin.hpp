@@ -1,4 +1,4 @@
-// The bin that holds the grains: a floor, and along x and y either rigid walls or periodic images.
+// The bin that contains the grains: a floor, and along x and y either rigid walls or periodic images.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Bin {
   static constexpr double kHigh = 1e6;  // above any grain, m
   double length = 0.0;                  // x from 0, m
   double width = 0.0;                   // y from −width/2, m
-  bool periodic_x = false;              // grains that leave at one end come back at the other
+  bool periodic_x = false;              // grains that leave at one end enter at the other
   bool periodic_y = false;
 
   bool has_wall(int wall) const { return wall == kFloor || !(wall < 2 ? periodic_x : periodic_y); }
@@ -46,17 +46,17 @@ struct Bin {
                                            "the wall y = width/2", "the floor"};
     return kName[wall];
   }
-  /// Whether a centre is within the walls, and a number.
+  /// Whether a centre is within the walls and finite.
   bool holds(const Quad& p) const {
     return (periodic_x ? std::isfinite(p.x) : p.x >= 0.0 && p.x <= length) &&
            (periodic_y ? std::isfinite(p.y) : std::abs(p.y) <= 0.5 * width) && p.z >= 0.0 && p.z < kHigh;
   }
-  /// Whether it holds a centre that is farther than `distance` ≥ 0 from each wall, m.
+  /// Whether the bin contains a centre that is farther than `distance` ≥ 0 from each wall, m.
   bool holds_apart(const Quad& p, double distance) const {
     return (periodic_x ? std::isfinite(p.x) : p.x > distance && length - p.x > distance) &&
            (periodic_y ? std::isfinite(p.y) : 0.5 * width - std::abs(p.y) > distance) && p.z > distance && p.z < kHigh;
   }
-  /// Brings a point back between the periodic sides.
+  /// Moves a point back between the periodic sides.
   void wrap(Quad& p) const {
     if (periodic_x) p.x -= length * std::floor(p.x / length);
     if (periodic_y) p.y -= width * std::floor(p.y / width + 0.5);

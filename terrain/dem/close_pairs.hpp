@@ -53,7 +53,7 @@ void for_close_pairs(const std::vector<Quad>& points, const Bin& bin, double rea
   std::vector<std::int64_t> next(start.begin(), start.end() - 1);
   for (std::size_t g = 0; g < points.size(); ++g) order[next[index(cell_of(points[g]))]++] = g;
 
-  /// Neighbouring cells along one side, each once.
+  /// Neighbouring cells along one side, each of them once.
   const auto around = [](std::int64_t c, std::int64_t n, bool periodic, std::int64_t(&out)[3]) {
     int count = 0;
     for (std::int64_t k = c - 1; k <= c + 1; ++k) {

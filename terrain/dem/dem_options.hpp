@@ -1,4 +1,4 @@
-// The keys of the section `terrain` with engine dem, soil made of grains: each field is the key of its name.
+// The keys of the section `terrain` with engine dem, soil made of grains. Each field has the name of its key.
 #pragma once
 
 #include <string>
@@ -10,32 +10,32 @@
 
 namespace furrow::terrain::dem {
 
-/// The keys, and what the run supplies.
+/// The keys, and the inputs from the run.
 struct DemOptions : TerrainContext {
-  std::string scenario = "scenario";  // what messages name: the scenario's file
-  bool periodic_x = false;            // grains that leave at one end of the bin come back at the other; no end walls
-  bool piece = false;                 // of a tiled bed: its layers continue across its periodic sides, with no gap
+  std::string scenario = "scenario";  // the scenario's file, for messages
+  bool periodic_x = false;            // grains that leave at one end of the bin enter at the other; no end walls
+  bool piece = false;                 // part of a tiled bed: its layers continue across its periodic sides, with no gap
   std::string law = "mindlin";        // mindlin | hertz_tanh
-  std::string material;               // soil file whose values the other keys hold already; empty: none
+  std::string material;               // soil file whose values the other keys already have; empty: none
   double cone_index = -1.0;           // Pa; negative: not known
   // Bed.
   double radius = 0.006;                      // grain radius, m
   std::string size_distribution = "uniform";  // uniform | normal, by number of grains
-  double size_spread = 0.0;                   // radii are drawn between radius (1 ± spread), -; 0: all alike
+  double size_spread = 0.0;                   // radii are drawn between radius (1 ± spread), -; 0: all equal
   double density = 2500.0;                    // kg/m³
   int layers = 15;                            // Poisson-disk layers dropped
   double length = 10.0;                       // bin, x from 0 to length, m
   double width = 0.6;                         // bin, y from −width/2 to width/2, m
   std::string sides = "walls";                // walls | periodic: of the bin, at y = ±width/2
   std::string bed;  // file: a settled bed (HDF5), or positions to settle (CSV x_m,y_m,z_m); empty: generate
-  std::string bed_generator = "poisson";  // poisson | lattice: where the grains of a new bed start
-  double tile = 0.0;  // a new bed is put together of settled pieces about this long and wide, m; 0: of one
-  double undisturbed_height = -1.0;  // of the surface that sinkage counts from, m; negative: the bed's own mean
+  std::string bed_generator = "poisson";  // poisson | lattice: initial positions of the grains of a new bed
+  double tile = 0.0;  // length and width of the settled pieces that make up a new bed, about, m; 0: one piece
+  double undisturbed_height = -1.0;  // of the surface from which sinkage counts, m; negative: the bed's own mean
   double settling_friction = -1.0;   // friction while a new bed falls and is pressed, -; negative: friction
   double settling_cohesion = -1.0;   // cohesion while a new bed falls and is pressed, Pa; negative: cohesion
   double settling_drag = -1.0;       // drag while a new bed falls, √(g/radius); negative: 4 1/s
-  double solid_fraction = -1.0;      // of the middle of a new bed, -; negative: what comes of it
-  double bulk_density = -1.0;        // kg/m³, which sets density; negative: not asked for
+  double solid_fraction = -1.0;      // of the middle of a new bed, -; negative: not prescribed
+  double bulk_density = -1.0;        // kg/m³, determines density; negative: not prescribed
   double compaction_pressure = 0.0;  // a lid pressed on the settled bed and lifted again, Pa; 0: none
   bool cache = true;                 // keep settled beds under the user's cache directory
   // Contact between grains and of grains with walls.
@@ -56,7 +56,7 @@ struct DemOptions : TerrainContext {
   bool periodic_y() const { return sides == "periodic"; }
 };
 
-/// The order of those with role::soil is the order in which messages list what a soil file may say.
+/// Messages list the keys that a soil file may have in the order of those with role::soil.
 void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
   using namespace allowed;
   constexpr unsigned kBed = role::key | role::bed, kSoil = role::key | role::soil, kBoth = kBed | kSoil;
@@ -174,7 +174,7 @@ void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
   visit(s.cache, key("cache", "", role::harmless, "Keep settled beds under ~/.cache/furrow/beds and use them again."));
 }
 
-/// The same keys in another run.
+/// The same keys with the inputs of another run.
 inline DemOptions with_context(DemOptions options, const TerrainContext& context) {
   static_cast<TerrainContext&>(options) = context;
   return options;

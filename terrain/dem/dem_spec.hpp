@@ -16,12 +16,12 @@ namespace furrow::terrain::dem {
 /// @pre the section was checked against the schema. @throws Error(bad_input) when the bed's file does not exist
 std::unique_ptr<TerrainSpec> read_dem_spec(const nlohmann::json& section, const ReadContext& context);
 
-/// What the keys say of any engine of these grains: all but its name.
+/// Properties of any engine with these grains, except its name.
 TerrainDescription describe_grains(const DemOptions& options);
 std::vector<TerrainFile> bed_files(const DemOptions& options);
-/// Sets the density of the grains where that of the bed is asked for. @throws Error(bad_input)
+/// Sets the density of the grains if that of the bed is prescribed. @throws Error(bad_input)
 void take_bulk_density(DemOptions& options);
-/// The keys of a section into `options`, whatever struct lists them, and the bed's file found.
+/// Reads the keys of a section into `options`, whichever struct lists them, and finds the bed's file.
 template <HasFields Options>
 void read_grain_keys(const nlohmann::json& section, const ReadContext& context, Options& options) {
   options.scenario = context.file;
@@ -30,7 +30,7 @@ void read_grain_keys(const nlohmann::json& section, const ReadContext& context, 
   if (!options.bed.empty()) options.bed = find_file(options.bed, context.key("bed"), context.file).string();
 }
 
-/// The same for a program that has its options already.
+/// Makes the spec for a program that has its options already.
 std::unique_ptr<TerrainSpec> make_dem_spec(const DemOptions& options);
 
 }  // namespace furrow::terrain::dem

@@ -28,9 +28,9 @@ namespace {
 
 using namespace dem;
 
-constexpr double kMostGrains = 2e9;            // numbers of grains are of 32 bits
-constexpr double kLooseFraction = 0.50;        // solid fraction of a bed that settled with cohesion, estimate
-constexpr double kBytesPerGrain = 900.0;       // state, list with history, and what a rebuild holds twice
+constexpr double kMostGrains = 2e9;            // grains are counted in 32 bits
+constexpr double kLooseFraction = 0.50;        // estimated solid fraction of a bed that settled with cohesion
+constexpr double kBytesPerGrain = 900.0;       // state, list with history, and the copies of a rebuild
 constexpr double kBytesPerFrameGrain = 20.0;   // position, speed, radius in single precision
 constexpr double kBytesPerSavedGrain = 300.0;  // in a checkpoint: state, pair list, contact history
 
@@ -61,7 +61,7 @@ class DemTerrain : public Terrain {
 
   double do_prepare(const ProgressCall& progress) override {
     const double begin = wall_clock();
-    // A run from a cached bed and the run that settled it both start here, from the same archive.
+    // A run from a cached bed and the run that settled this bed both start here, from the same archive.
     const dem::PreparedBed prepared = dem::load_bed(solver_, dem::level(options_), progress);
     solver_.set_threads(std::max(1, options_.threads));
     set_step(dt_);
@@ -123,7 +123,7 @@ class DemTerrain : public Terrain {
     s.list_rebuilds = std::llround(solver_.rebuilds());
     refinement_.report(s);
     s.energies = solver_.reported_energies();
-    s.energies.surface_work = surface_work_;  // walls stand still: they do none
+    s.energies.surface_work = surface_work_;  // walls do not move, so they do no work
     s.momenta = {mass * a.velocity, solver_.gravity_impulse(), a.wall_impulse, a.surface_impulse, -a.momentum_removed};
     return s;
   }
@@ -158,7 +158,7 @@ class DemTerrain : public Terrain {
     archive.put("step", dt_);
     archive.put("stable_overlap", stable_overlap_);
     archive.put("surface_work", surface_work_);
-    // Left out while there is nothing to say: a run that never needs it has the state that it always had.
+    // Saves nothing if refinement was never needed: such a run keeps the state format that it always had.
     refinement_.save(archive);
     solver_.save(archive);
   }
@@ -184,7 +184,7 @@ class DemTerrain : public Terrain {
     set_part(dt);
   }
 
-  /// Contacts are evaluated for parts of `dt` from now on.
+  /// From now on contacts are evaluated for parts of length `dt`.
   void set_part(double dt) {
     FURROW_ASSERT(dt > 0.0 && dt <= dt_, dt, dt_);
     part_ = dt;
@@ -212,7 +212,7 @@ class DemTerrain : public Terrain {
     return {};
   }
 
-  /// All grains now, with room for what they may move in one interval.
+  /// Box of all grains now, with a margin for their motion in one interval.
   SurfaceBox grain_box() const {
     const double room = 10.0 * dem::largest_radius(options_);
     return {Vec3(-room, -0.5 * options_.width - room, -room),
@@ -231,8 +231,8 @@ class DemTerrain : public Terrain {
   std::function<void()> each_substep_;
   dem::GrainSolver solver_;
   dem::StepRefinement refinement_;
-  double dt_, part_;             // the step, and the part of it that contacts are evaluated for, s
-  double stable_overlap_ = 0.0;  // largest overlap that the step was checked against, m
+  double dt_, part_;             // the step, and the part of it for which contacts are evaluated, s
+  double stable_overlap_ = 0.0;  // largest overlap for which the step was checked, m
   double surface_work_ = 0.0;    // by tires on the grains, J
 };
 

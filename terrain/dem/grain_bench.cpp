@@ -33,7 +33,7 @@ std::vector<Quad> reference_bed(const DemOptions& options, const ProgressCall& p
   return grains;
 }
 
-/// Positions of the bed; `options` become those of its bin.
+/// Positions of the bed; sets `options` to those of its bin.
 std::vector<Quad> bed_of(const GrainBench& bench, DemOptions& options, const ProgressCall& progress) {
   options.width = kReferenceWidth;
   if (bench.bed == "default") return reference_bed(options, progress);

@@ -1,4 +1,4 @@
-// How fast this machine steps grains: every grain is integrated and every contact evaluated in every step.
+// Measures how fast this machine steps grains: every grain is integrated and every contact evaluated in every step.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ struct GrainBench {
   DemOptions grains;
   std::string bed = "default";  // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
   int steps = 1000;
-  int warm = 100;       // steps before, not timed
-  double settle = 0.0;  // first settled for that long at most, s
+  int warm = 100;       // untimed steps before
+  double settle = 0.0;  // time for which the bed first settles, at most, s
   std::string save;     // CSV that receives the positions before the timed steps; empty: none
 };
 
-/// Sums and forces are those of the last step.
+/// Sums and forces are from the last step.
 struct GrainBenchResult {
   double wall = 0.0;  // of the timed steps, s
   int grains = 0;
@@ -27,8 +27,8 @@ struct GrainBenchResult {
   double floor_force = 0.0, weight = 0.0;  // N
   double kinetic_energy = 0.0;             // J
   double force_residual = 0.0;             // Σ|net force| / Σ|contact force|
-  double settled = 0.0;                    // simulated while settling, s
-  double list_rebuilds = 0.0;              // in the timed steps, by the share of grains in each
+  double settled = 0.0;                    // simulated time of settling, s
+  double list_rebuilds = 0.0;              // in the timed steps, weighted by the share of grains in each
   double bytes = 0.0;                      // of the solver
   std::string state_hash;                  // of positions, velocities and spins
 };

@@ -16,12 +16,12 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kCut = 2.0;  // normal: the spread is so many standard deviations, beyond it nothing is drawn
+constexpr double kCut = 2.0;  // normal distribution: spread in standard deviations; nothing is drawn beyond it
 
-/// Variance of the radius over that of the whole spread squared.
+/// Variance of the radius, relative to the square of the whole spread.
 double relative_variance(const DemOptions& o) {
   if (o.size_distribution == "uniform") return 1.0 / 3.0;
-  // A normal distribution cut at ± kCut [Johnson, Kotz & Balakrishnan 1994, Continuous univariate distributions 1,
+  // Normal distribution cut at ± kCut [Johnson, Kotz & Balakrishnan 1994, Continuous univariate distributions 1,
   // §10.1].
   const double density = std::exp(-0.5 * kCut * kCut) / std::sqrt(2.0 * std::numbers::pi);
   return (1.0 - 2.0 * kCut * density / std::erf(kCut / std::numbers::sqrt2)) / (kCut * kCut);
@@ -30,7 +30,7 @@ double relative_variance(const DemOptions& o) {
 class Draw {
  public:
   Draw(const DemOptions& o, std::uint64_t seed) : bits_(seed), normal_(o.size_distribution == "normal") {}
-  /// In [−1, 1).
+  /// A random number in [−1, 1).
   double operator()() {
     for (;;) {
       const double x = 2.0 * uniform() - 1.0;
@@ -66,7 +66,7 @@ DemOptions of_one_size(DemOptions options, double radius) {
   return options;
 }
 
-// Both distributions are symmetric: the mean of (1 + s x)³ is 1 + 3 s² var(x).
+// Both distributions are symmetric, so the mean of (1 + s x)³ is 1 + 3 s² var(x).
 double mean_volume_ratio(const DemOptions& o) {
   FURROW_ASSERT(o.size_spread >= 0.0 && o.size_spread < 1.0, o.size_spread);
   return 1.0 + 3.0 * o.size_spread * o.size_spread * relative_variance(o);
@@ -76,7 +76,7 @@ double median_radius_by_mass(const DemOptions& o) {
   FURROW_ASSERT(o.size_spread >= 0.0 && o.size_spread < 1.0, o.size_spread);
   constexpr int kParts = 2000;
   const auto radius = [&](double part) { return o.radius * (1.0 + o.size_spread * (2.0 * part / kParts - 1.0)); };
-  std::vector<double> until{0.0};  // mass of the grains below the end of each part of the spread, of any unit
+  std::vector<double> until{0.0};  // mass of the grains below the end of each part of the spread, in any unit
   for (int k = 0; k < kParts; ++k) {
     const double x = (2.0 * k + 1.0) / kParts - 1.0;
     const double share = o.size_distribution == "uniform" ? 1.0 : std::exp(-0.5 * kCut * kCut * x * x);

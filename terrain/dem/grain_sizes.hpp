@@ -1,4 +1,4 @@
-// The sizes of a bed's grains: all alike, or spread about `radius`.
+// The sizes of a bed's grains: all equal, or spread about `radius`.
 #pragma once
 
 #include <vector>
@@ -15,16 +15,16 @@ void check_sizes(const DemOptions& options);
 double smallest_radius(const DemOptions& options);
 double largest_radius(const DemOptions& options);
 
-/// The same bed with all grains of another size.
+/// The same bed with all grains of one size.
 DemOptions of_one_size(DemOptions options, double radius);
 
 /// Mean volume of a drawn grain over that of a grain of `radius`.
 double mean_volume_ratio(const DemOptions& options);
 
-/// Half of the mass of drawn grains is of those that are not larger, m. `radius` is the median by number.
+/// Grains up to this radius have half of the mass of all drawn grains, m. `radius` is the median by number.
 double median_radius_by_mass(const DemOptions& options);
 
-/// Gives each grain a radius (its w, m), drawn in order from the seed.
+/// Gives each grain a radius (its w, m), drawn in order, starting from the seed.
 void draw_radii(const DemOptions& options, std::vector<Quad>& grains);
 
 }  // namespace furrow::terrain::dem

@@ -14,8 +14,8 @@ namespace furrow::terrain::dem {
 namespace {
 
 constexpr int kMaxChunks = 64;  // enough for any load balance
-constexpr int kMaxStrips = 12;  // of a chunk: what its thread keeps in the cache
-constexpr int kMinStrips = 6;   // of a chunk: its first is moved in the second pass
+constexpr int kMaxStrips = 12;  // of a chunk, so that its data stay in the cache of its thread
+constexpr int kMinStrips = 6;   // of a chunk, as its first strip is moved only in the second pass
 
 Strips::Options strip_options(const SolverParams& p) {
   Strips::Options o;
@@ -88,7 +88,7 @@ int GrainSolver::index_of(int id) const {
 
 double GrainSolver::rebuilds() const { return static_cast<double>(strips_.resorted()) / std::max(1, grains_.count); }
 
-/// @pre room for `last`
+/// @pre the buffer has at least `last` entries
 void GrainSolver::LoadBuffer::copy(const Loads& from, int first, int last) {
   FURROW_ASSERT(0 <= first && first <= last && static_cast<std::size_t>(last) <= force.size(), first, last,
                 force.size());
@@ -106,7 +106,7 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
   return full_[omp_get_thread_num()];
 }
 
-/// Brings the motion of the grains of a strip that the step needs to `offset` of the scratch memory and clears their
+/// Copies the motion of those grains of a strip that the step needs to `offset` of the scratch memory and clears their
 /// loads.
 template <class Real, bool kSizes>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
@@ -192,7 +192,7 @@ void GrainSolver::contacts_of_strip(Scratch<Real>& s, int k, int offset, double 
       k, Activity::kList, [&](int p) { return !alone(p); },
       [&](int from, int to) {
         if (!alone(from)) return of_part(joined(parcels, from, to), wanted, awake);
-        // What falls asleep in a step that measures nothing would leave no sums of its own.
+        // A parcel that falls asleep in a step without measurements would otherwise have no sums of its own.
         const bool all = parcels.size() > 1 && !parcels[from].asleep;
         const Wanted what{.forces = wanted.forces || all, .losses = wanted.losses || all};
         parcels[from].contact = {};
@@ -225,7 +225,7 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
   grow(s.loads.force, last - first + ahead);
   grow(s.loads.torque, last - first + ahead);
   const Loads all{s.loads.force.data(), s.loads.torque.data()};
-  // Of the parcels of strip k whose loads are complete.
+  // Copies the loads of the parcels of strip k whose loads are complete.
   const auto keep_loads = [&](LoadBuffer& buffer, int k, int offset) {
     grow(buffer.force, strips_[k].grains());
     grow(buffer.torque, strips_[k].grains());
@@ -234,7 +234,7 @@ void GrainSolver::run_chunk(Chunk& chunk, const StepPart& part, Wanted wanted) {
       buffer.copy(all.from(offset), row.first, row.last);
     });
   };
-  bool gathered = false;  // of strip k, by the one before
+  bool gathered = false;  // whether the previous strip has gathered strip k
   for (int k = chunk.from; k < chunk.to; ++k) {
     Strip& strip = strips_[k];
     const int offset = strip.first - first;
@@ -291,8 +291,8 @@ void GrainSolver::finish_strip(int k, const Loads& loads, const StepPart& part, 
   if (!strip.asleep) strip.travel += part.dt * strip.motion.max_speed;
 }
 
-/// A contact that was δ deep when the forces were taken is by now at most δ + dt (v_i + v_j) deep; a pair that did not
-/// touch then counts with δ = 0. The same with the speed of a surface.
+/// A contact with overlap δ when the forces were evaluated has at most δ + dt (v_i + v_j) now; for a pair that did not
+/// touch δ = 0. The same holds for a surface, with its speed.
 void GrainSolver::bound_overlaps(double dt) {
   overlap_bound_.resize(strips_.count());
   for (int k = 0; k < strips_.count(); ++k) {
@@ -359,7 +359,7 @@ int GrainSolver::step_part(const StepPart& part, bool measure) {
   if (params_.activity && part.last) --until_sample_;
   bound_overlaps(part.dt);
   change_activity(part.last);
-  // A grain that is not a number or went far is met when its strip is sorted, one that slips out when its wall pushes.
+  // A grain that is not finite or moved far is found when its strip is sorted, one that slips out when its wall pushes.
   for (const Resorted& range : strips_.rebuild_moved(grains_, part.whole, params_.threads)) {
     spread_bounds(range);
     surfaces_.reorder(range, strips_);

@@ -1,18 +1,19 @@
 // Steps a bin of grains: contacts between grains, with walls and with tires, gravity, semi-implicit Euler
 //   v ← v + dt (F/m + g),   ω ← ω + dt T/I,   x ← x + dt v.
 //
-// Data flow of one step. Strips (strips.hpp) are grouped into chunks, one thread to a chunk. A chunk walks along its
-// strips; each strip filters its pairs by distance, evaluates the law on the touching ones, its walls and tires. Forces
-// are in scratch memory of the thread that reaches one strip ahead: after strip k has been evaluated nothing is
-// missing for its grains, so they are moved at once, while they are still in the cache. Positions, velocities and
-// spins thus come from memory once per step, forces never. Only the first strip of a chunk waits for what the chunk
-// before pushes on it: those are moved in a second short pass. No thread writes another's grain and every sum has an
-// order fixed by the lists: the bits do not depend on the number of threads.
+// Data flow of one step. Strips (strips.hpp) are grouped into chunks, and one thread processes a chunk strip by strip.
+// Each strip filters its pairs by distance and evaluates the law on the touching ones, its walls and tires. Forces are
+// in scratch memory of the thread, which extends one strip ahead. After strip k all loads on its grains are complete,
+// so they are moved at once, while they are still in the cache. So positions, velocities and spins are read from memory
+// once per step, forces never. Only the first strip of a chunk waits for loads from the chunk before; it is moved in a
+// second short pass. No thread writes to grains of another, and every sum has an order fixed by the lists: the bits do
+// not depend on the number of threads.
 //
-// Where strips are cut into parcels (parcel.hpp) and some of them sleep, a strip's step is that of rows of parcels
-// (activity.hpp): those awake are evaluated together, each sleeping one alone, so that its sums are known while nobody
-// evaluates it. A grain's forces are added in the same order however the strip is divided: awake parcels move with the
-// same bits as a whole strip. Only the sums over a strip are rounded otherwise.
+// If strips are cut into parcels (parcel.hpp) and some of them sleep, a strip is stepped in rows of parcels
+// (activity.hpp). Awake parcels are evaluated together. Each sleeping parcel is evaluated alone, so that its sums are
+// known in later steps that do not evaluate it. A grain's forces are added in the same order however the strip is
+// divided, so awake parcels move with the same bits as a whole strip. Only the sums over a strip are rounded
+// differently.
 #pragma once
 
 #include <cstdint>
@@ -35,30 +36,30 @@
 
 namespace furrow::terrain::dem {
 
-/// Of the contact law between grains; positions, sums and integration are in double precision with both.
+/// Precision of the contact law between grains; positions, sums and integration always use double precision.
 enum class Precision { mixed, full };
 
 struct SolverParams {
   LawKind law{};
   bool rolling = false;   // rolling resistance
-  GrainProperties grain;  // of the reference radius, for which the coefficients are
-  double smallest = 0.0;  // radius of any grain, m; 0: all have the reference radius
-  double largest = 0.0;   // m; 0: as above
+  GrainProperties grain;  // of the reference radius, to which the coefficients refer
+  double smallest = 0.0;  // radius of the smallest grain, m; 0: all have the reference radius
+  double largest = 0.0;   // radius of the largest grain, m; 0: as above
   Bin bin;
   Vec3 gravity = standard_gravity();  // m/s²
-  double skin = 0.0;                  // neighbours are listed within the sum of their radii + skin, m
+  double skin = 0.0;                  // neighbours are listed if their surfaces are closer than this, m
   int threads = 1;
   Precision precision = Precision::mixed;
   bool activity = false;                // let resting grains sleep
-  int sample_every = kLossSampleSteps;  // steps from one sample of the losses to the next
+  int sample_every = kLossSampleSteps;  // steps between samples of the losses
 
-  /// Grains of several sizes: only with a law that admits them.
+  /// Whether grains differ in size; only with a law that allows it.
   bool sizes() const { return largest > smallest; }
   double smallest_radius() const { return sizes() ? smallest : grain.radius; }
   double largest_radius() const { return sizes() ? largest : grain.radius; }
 };
 
-/// Cumulative since reset_accounts() unless stated.
+/// Cumulative since reset_accounts() unless stated otherwise.
 struct Accounts {
   double contact_work = 0.0;            // ∫ contact forces · relative velocity, J
   double elastic = 0.0;                 // at the last force evaluation, J
@@ -70,11 +71,11 @@ struct Accounts {
   double height = 0.0;                  // Σ m h / m₀ now, h along GrainSolver::up(), m
   Vec3 velocity = Vec3::Zero();         // Σ m v / m₀ now, m/s
   std::int64_t contacts = 0;            // last step
-  double max_overlap = 0.0;             // met since reset, m
+  double max_overlap = 0.0;             // largest since reset, m
   double contact_force = 0.0;           // Σ |F|, N, last measured step
   double net_force = 0.0;               // Σ |net force| of grains, N, last measured step
   double slept = 0.0;                   // kinetic energy of grains when they fell asleep, J
-  // Momentum of grains when they fell asleep, and the impulse of what pushes on those asleep, kg m/s.
+  // Momentum of grains when they fell asleep, and the impulse of loads on sleeping grains, kg m/s.
   Vec3 momentum_removed = Vec3::Zero();
   std::int64_t active = 0;  // grains awake, last step
 };
@@ -97,20 +98,20 @@ void visit_fields(FieldsOf<Accounts> auto& s, auto&& visit) {
   visit(s.active, Field{"active"});
 }
 
-/// A part of a step, or all of it: x ← x + dt v after v ← v + kick (F/m + g).
+/// A step or a part of it: v ← v + kick (F/m + g), then x ← x + dt v.
 struct StepPart {
   double dt = 0.0;     // s
-  double since = 0.0;  // of the part before, over which grains moved since the forces were last taken, s
-  double whole = 0.0;  // the step that it is a part of, s
-  bool last = true;    // it ends the step
+  double since = 0.0;  // dt of the previous part, over which grains moved since the forces were last evaluated, s
+  double whole = 0.0;  // the step to which it belongs, s
+  bool last = true;    // whether it ends the step
 
-  /// Velocities are those of the middle between two positions, so that a change of dt does not change the energy.
+  /// Velocities are at the middle between two positions, so a change of dt does not change the energy.
   double kick() const { return 0.5 * (since + dt); }
 };
 
 class GrainSolver {
  public:
-  /// @pre radius, mass, inertia, bin and threads are positive; the law admits grains of several sizes if there are any
+  /// @pre radius, mass, inertia, bin and threads are positive; the law allows grains of several sizes if there are any
   explicit GrainSolver(const SolverParams& params);
 
   const SolverParams& params() const { return params_; }
@@ -126,27 +127,27 @@ class GrainSolver {
     drag_ = drag;
   }
 
-  /// Puts grains at rest with ids 0, 1, …; w of each position: its radius, m, 0: the reference radius.
+  /// Puts grains at rest with ids 0, 1, …; w of each position is its radius, m, or 0 for the reference radius.
   /// @throws Error(bad_input) when a radius is outside the limits of the parameters.
   void place(const std::vector<Quad>& positions);
   Grains& grains() { return grains_; }
   const Grains& grains() const { return grains_; }
   const Strips& strips() const { return strips_; }
-  Strips& strips() { return strips_; }  // to set what contacts remember
-  /// How often the neighbour list was made again since reset_accounts(), by the share of grains in it.
+  Strips& strips() { return strips_; }  // for setting contact histories
+  /// Number of rebuilds of the neighbour list since reset_accounts(), weighted by the share of grains in each.
   double rebuilds() const;
   SurfaceContacts& surfaces() { return surfaces_; }
   const SurfaceContacts& surfaces() const { return surfaces_; }
   const Accounts& accounts() const { return accounts_; }
-  /// Begin with reset_accounts() too.
+  /// Also begin with reset_accounts().
   const EnergyAccounts& energies() const { return energies_; }
-  /// The accounts of the grains as a terrain reports them, but for the work of surfaces.
+  /// The accounts of the grains as a terrain reports them, without the work of surfaces.
   TerrainEnergies reported_energies() const;
   /// Weight of all grains × the time since reset_accounts(), N s.
   Vec3 gravity_impulse() const {
     return params_.grain.mass * relative_mass_ * energies_.state().time * params_.gravity;
   }
-  /// Decides about sleep and waking; sampled every kSampleSteps steps while grains may sleep, N.
+  /// Determines sleep and waking; sampled every kSampleSteps steps while grains may sleep, N.
   double mean_contact_force() const { return mean_contact_force_; }
   void reset_accounts();
   /// Wakes the parcel of a grain whose motion was set from outside.
@@ -158,27 +159,28 @@ class GrainSolver {
   double relative_mass() const;
   /// Current index of the grain with this id. @pre there is one
   int index_of(int id) const;
-  /// No grain reaches higher, m.
+  /// Height that no grain exceeds, m.
   double top() const;
-  /// What the engine holds in memory now.
+  /// Memory of the engine now, bytes.
   std::size_t bytes() const;
 
   /// One step. With `measure`, the force sums of Accounts are taken too.
   /// Returns the index of a grain that left the bin or is not finite, or −1. @pre dt > 0
   int step(double dt, bool measure = false) { return step_part({dt, dt, dt, true}, measure); }
-  /// One of the parts in which a step is taken. Whatever counts steps counts whole ones, and the neighbour lists stay
-  /// good for a whole step after it.
+  /// Takes one part of a step. All counts of steps count whole steps. Afterwards the neighbour lists remain valid for a
+  /// whole step.
   int step_part(const StepPart& part, bool measure = false);
 
-  /// Whether any contact that strip k lists may overlap by more than `overlap` where the grains stand now, m: by the
-  /// overlaps of the last step and the way that grains and surfaces went since. True when nothing is known.
+  /// Whether any contact that strip k lists may overlap by more than `overlap` at the present positions, m. The bound
+  /// follows from the overlaps of the last step and the displacements of grains and surfaces since. True if nothing is
+  /// known.
   bool may_overlap(int k, double overlap) const {
     FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
     return overlap_bound_.empty() || !(overlap_bound_[k] <= overlap);
   }
 
   void save(Archive& archive) const;
-  /// Wakes all grains where they may not sleep, or slept by other parcels than those of this solver.
+  /// Wakes all grains if this solver lets none sleep, or if the saved state has other parcels.
   void restore(const Archive& archive);
 
  private:
@@ -186,7 +188,7 @@ class GrainSolver {
     std::vector<Quad> force, torque;
     void copy(const Loads& from, int first, int last);
   };
-  /// Strips [from, to) that one thread steps.
+  /// Strips [from, to), which one thread steps.
   struct Chunk {
     int from = 0, to = 0;
     LoadBuffer own;    // on the grains of strip `from`, from this chunk
@@ -196,7 +198,7 @@ class GrainSolver {
   struct Scratch {
     MotionRows<Real> motion;
     LoadBuffer loads;
-    std::vector<Quad> shifted;  // positions seen across periodic ends
+    std::vector<Quad> shifted;  // positions as seen across periodic ends
     TouchingPairs<Real> touching;
   };
 
@@ -205,10 +207,10 @@ class GrainSolver {
   Scratch<Real>& scratch();
   template <class Real, bool kSizes>
   void gather(Scratch<Real>& scratch, int strip, int offset);
-  /// Positions of a strip's grains and those of the next strip, as the lists number them.
+  /// Positions of a strip's grains and those of the next strip, in the numbering of the lists.
   template <class Real>
   const Quad* positions(Scratch<Real>& scratch, int strip);
-  /// Contacts that a part of the strip lists; their sums are added to `sums`.
+  /// Evaluates contacts that a part of the strip lists; adds their sums to `sums`.
   template <class Real, class Law, bool kRolling, bool kSizes>
   void contacts_of_part(Scratch<Real>& scratch, int strip, const StripPart& part, const Quad* x, int offset, double dt,
                         Wanted wanted, ContactTotals& sums);
@@ -219,24 +221,24 @@ class GrainSolver {
   void finish_chunk(Chunk& chunk, const Chunk* before, const StepPart& part, Wanted wanted);
   template <class Real>
   void evaluate(const StepPart& part, Wanted wanted);
-  /// Moves the grains of the parcels of strip k whose loads are complete, or sees whether they are pushed awake.
+  /// For each parcel of strip k with complete loads: moves its grains if it is awake, else sums the forces on it.
   void finish_strip(int k, const Loads& loads, const StepPart& part, Wanted wanted);
   void move_parcel(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part, Wanted wanted);
   /// `loads` start at the parcel's first grain.
   template <bool kMaySleep, bool kSizes>
   void integrate(const Strip& strip, Parcel& parcel, const Loads& loads, const StepPart& part, Wanted wanted);
   void load_sleeper(const Strip& strip, Parcel& parcel, const Loads& loads) const;
-  /// Of the window over which the drift of a grain is a mean.
+  /// Steps of the window over which the drift of a grain is averaged.
   int sway_steps(double dt) const;
   void change_activity(bool counts);
   void bound_overlaps(double dt);
-  /// After strips were sorted again: what was listed by one may be listed by another.
+  /// After strips were sorted again, spreads their largest bound, because pairs may have moved to other lists.
   void spread_bounds(const Resorted& range);
-  /// Σ |F| of a strip, N: now, or by its last sample where it is not evaluated; a saved state keeps no other.
+  /// Σ |F| of a strip, N: the present value, or that of its last sample if it is not evaluated. Only samples are saved.
   double measured_force(int k) const;
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
   void restore_drift(const Archive& archive);
-  /// Takes samples of the contact forces of the strips that this step evaluated. Those of sleeping strips stay: nothing
+  /// Samples the contact forces of the strips that this step evaluated. Samples of sleeping strips stay, as nothing
   /// moves there.
   void take_samples();
   std::int32_t grains_awake(const Strip& strip) const;
@@ -250,14 +252,14 @@ class GrainSolver {
   Strips strips_;
   SurfaceContacts surfaces_;
   Activity activity_;
-  /// Of the contacts that a strip lists, when they were last evaluated in a step that took samples.
+  /// Contacts that a strip lists, when they were last evaluated in a step that took samples.
   struct ForceSample {
     double force = 0.0;  // Σ |F|, N
     std::int64_t contacts = 0;
   };
   std::vector<ForceSample> samples_;  // per strip
   std::int64_t until_sample_ = 0;     // steps
-  double mean_contact_force_ = 0.0;   // of the bed, by the samples, N
+  double mean_contact_force_ = 0.0;   // of the bed, from the samples, N
   Accounts accounts_;
   EnergyAccounts energies_;
   double relative_mass_ = 0.0;

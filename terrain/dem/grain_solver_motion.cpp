@@ -1,4 +1,4 @@
-// How grains move, when they sleep and wake, and what holds those that sleep.
+// Motion of grains, their sleep and waking, and the forces on sleeping grains.
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +46,7 @@ void GrainSolver::integrate(const Strip& strip, Parcel& parcel, const Loads& loa
   const double mass = params_.grain.mass, inertia = params_.grain.inertia;
   const double radius = params_.grain.radius;
   double per_mass = 1.0 / mass, per_inertia = 1.0 / inertia;
-  double m = 1.0, i = 1.0;  // of a grain, in those of the reference radius
+  double m = 1.0, i = 1.0;  // mass and inertia of a grain relative to those of the reference radius
   const double keep = 1.0 / (1.0 + kick * drag_);
   const Double4 gravity = lanes_of(params_.gravity);
   const int n = parcel.part.grains(), first = strip.first + parcel.part.first;
@@ -92,7 +92,7 @@ void GrainSolver::integrate(const Strip& strip, Parcel& parcel, const Loads& loa
   store(sums.velocity, momentum);
   sums.height = up_.dot(Vec3(moment[0], moment[1], moment[2]));
   store(sums.fastest2, fastest);
-  // Not a number when one of the sums is not: the strip will be sorted, and the grain be found.
+  // Not a number if one of the sums is not: the strip is then sorted, and the grain is found.
   sums.max_speed = std::sqrt(sum_of(fastest)) + 0.0 * (sums.kinetic + sum_of(moment));
   sums.max_net_force = mass * std::sqrt(sum_of(most_pushed));
   store(sums.held, mass * pushed);
@@ -122,7 +122,7 @@ void GrainSolver::wake_all() {
 
 int GrainSolver::sway_steps(double dt) const {
   constexpr double kNever = 1e9;
-  if (drag_ > 0.0) return static_cast<int>(kNever);  // a bed that settles must come to rest, and drag stops what sways
+  if (drag_ > 0.0) return static_cast<int>(kNever);  // settling beds must come to rest, and drag stops swaying
   const double steps = kSwayTime * std::sqrt(params_.grain.radius / params_.gravity.norm()) / dt;
   return static_cast<int>(std::min(std::ceil(steps), kNever));
 }

@@ -1,5 +1,5 @@
-// Saved state of the solver: everything that decides the next bits — grains in their order, the strips with their pair
-// lists as they stand, histories of touching pairs, and the accounts.
+// Saved state of the solver: everything that determines the next bits. It has the grains in their order, the strips
+// with their present pair lists, histories of touching pairs, and the accounts.
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -21,7 +21,7 @@ void get_quads(const Archive& archive, const std::string& name, Quad* quads, std
   std::copy(values.begin(), values.end(), reinterpret_cast<double*>(quads));
 }
 
-/// Calls f(strip, p) for every pair that touches, in order.
+/// Calls f(p) for every touching pair of the strip, in order.
 template <class StripT, class F>
 void each_touching(StripT& strip, F&& f) {
   for (int p = 0; p < strip.pairs; ++p)
@@ -44,7 +44,7 @@ const double* get_rows(const double* from, const Strip& strip, std::vector<Histo
   return from;
 }
 
-/// Cuts a strip that was read into its parcels, without their parts. @param saved null: it is its only one
+/// Divides a strip that was read into its parcels, without their parts. @param saved null: the strip is a single parcel
 void take_parcels(Strip& strip, int across, std::optional<ColumnReader<Parcel>>& saved) {
   Parcel& only = strip.parcels.front();
   only.asleep = strip.asleep;
@@ -64,7 +64,7 @@ void take_parcels(Strip& strip, int across, std::optional<ColumnReader<Parcel>>&
 
 constexpr int kLongestWindow = 1'000'000'000;
 
-/// Counts of steps are followed no further.
+/// Limits counts of steps to the range in which they matter.
 void bound_calm(Strip& strip) {
   for (Parcel& parcel : strip.parcels) {
     parcel.calm = std::clamp(parcel.calm, 0, kCalmSteps);
@@ -72,7 +72,7 @@ void bound_calm(Strip& strip) {
   }
 }
 
-/// Calls f(drift) for the grains of a parcel whose window has begun to take them in.
+/// Calls f(drift) for the grains of a parcel whose window has already added velocities to the drift.
 template <class GrainsT, class F>
 void each_drift(GrainsT& grains, const Strip& strip, const Parcel& parcel, F&& f) {
   if (parcel.window <= kDriftEvery / 2 || grains.drift.empty()) return;
@@ -96,7 +96,7 @@ void GrainSolver::save(Archive& archive) const {
   archive.put("samples/strips", samples);
   archive.put("samples/until", until_sample_);
   if (strips_.across() > 1) archive.put(kAcross, std::int64_t{strips_.across()});
-  // A strip that sleeps beside sleepers is not evaluated: what last pressed on it may yet wake it, when the mean
+  // A sleeping strip among sleeping strips is not evaluated. The last force on it may still wake it when the mean
   // contact force falls.
   std::vector<double> pressed(strips_.count(), 0.0);
   for (int k = 0; k < strips_.count(); ++k)

@@ -1,4 +1,4 @@
-// Sums over all grains: the accounts, and the mean contact force by which grains sleep.
+// Sums over all grains: the accounts, and the mean contact force that determines sleep.
 #include <algorithm>
 
 #include "protocol/core/assert.hpp"

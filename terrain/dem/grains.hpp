@@ -14,8 +14,8 @@ struct alignas(16) Drift {
   float x = 0.0F, y = 0.0F, z = 0.0F;
 };
 
-/// Bytes per grain: 3 × 32 + 4, and 16 where grains may sleep. `position` has kBeyond entries more, so that four can be
-/// read from any grain on.
+/// Bytes per grain: 3 × 32 + 4, and 16 more if grains may sleep. `position` has kBeyond entries more, so that four can
+/// be read starting at any grain.
 struct Grains {
   static constexpr int kBeyond = 3;
   int count = 0;
@@ -23,7 +23,7 @@ struct Grains {
   std::vector<Quad> velocity;    // m/s
   std::vector<Quad> spin;        // rad/s
   std::vector<std::int32_t> id;  // 0 … count − 1 in order of generation
-  std::vector<Drift> drift;      // empty unless grains may sleep
+  std::vector<Drift> drift;      // empty if no grain may sleep
 
   void resize(int n, bool may_sleep = false) {
     FURROW_ASSERT(n >= 0, n);

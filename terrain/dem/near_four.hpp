@@ -1,4 +1,4 @@
-// Which of four grains are near another one: what the search for neighbours does most often.
+// Tests which of four grains are near another one: the most frequent operation of the neighbour search.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace furrow::terrain::dem {
 
-/// Bits of the four grains at x, x + 1, … (the first `valid` of them) whose surface is closer to that of the grain at
-/// `at` than `skin`. @param width  of a bin that is periodic in y, m; 0: it is not
+/// Bits of the four grains at x, x + 1, … (the first `valid` of them) whose surface is closer than `skin` to that of
+/// the grain at `at`. @param width  of a bin that is periodic in y, m; 0 if it is not
 inline unsigned near_four(const Quad* x, int valid, Double4 at, double skin, double width) {
   const auto d = [&](int k) { return load(x[k]) - at; };
   Double4 r[4] = {d(0), d(1), d(2), d(3)};

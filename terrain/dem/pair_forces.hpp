@@ -1,9 +1,9 @@
-// The contact law on the touching pairs of a strip, a register full at a time: eight in single, four in double
-// precision.
+// The contact law on the touching pairs of a strip, one register at a time: eight pairs in single precision, four in
+// double.
 //
-// Velocity and spin of a grain are one row: a pair costs two loads and one subtraction of rows, and one transposition
-// turns the rows of eight pairs into lanes. Forces are added up in double precision, the same number to i and with the
-// other sign to j: momentum is conserved to round-off of double whatever the law's precision.
+// Velocity and spin of a grain are one row. So a pair costs two loads and one subtraction of rows, and one
+// transposition turns the rows of eight pairs into lanes. Forces are added in double precision, with the same magnitude
+// and opposite signs to i and j: momentum is conserved to the round-off of double, whatever the law's precision.
 #pragma once
 
 #include <vector>
@@ -43,18 +43,18 @@ struct MotionRows {
     if constexpr (std::is_same_v<Real, double>) std::copy_n(spin, n, w.begin() + k);
   }
 };
-/// Where the rows of a strip's grains start.
+/// Beginning of the rows of a strip's grains.
 struct Motion {
   const double* v = nullptr;
   const double* w = nullptr;
 };
 
-/// What the law needs besides the pairs.
+/// Inputs of the law besides the pairs.
 template <class Law, class Real>
 struct PairLaw {
   typename Law::template Coefficients<Real> coefficients;
-  Real diameter = 0;    // m; grains of several sizes have their own
-  Real per_radius = 0;  // 1 / radius that the coefficients are for, 1/m
+  Real diameter = 0;    // m; not used for grains of several sizes
+  Real per_radius = 0;  // 1 / radius to which the coefficients refer, 1/m
   Real step = 0;        // s
   Wanted wanted;
 };
@@ -149,7 +149,7 @@ inline void add_loads(const Loads& loads, const std::uint32_t* i, const std::uin
     dem::detail::add_load<kCouple>(flat(loads.force), flat(loads.torque), i[k], j[k], f[k], t[k], q[k]);
 }
 
-/// x, y, z and w of the history of the pairs p[0], p[1], …
+/// Reads x, y, z and w of the history of the pairs p[0], p[1], …
 inline void read_history(const HistoryRow<float>* h, const std::uint32_t* p, Triple<Float8>& v, Float8& w) {
   const auto row = [&](int k) { return load_lanes<Float4>(reinterpret_cast<const double*>(h) + p[k]); };
   Float8 r[4];
@@ -181,7 +181,7 @@ inline void write_history(HistoryRow<double>* h, const std::uint32_t* p, const T
 }
 }  // namespace detail
 
-/// What the stages hand on for a tile of pairs, one array per quantity, all in the first-level cache.
+/// Data that the stages pass on for a tile of pairs, one array per quantity, all in the first-level cache.
 template <class Real>
 struct PairTile {
   static constexpr int kPairs = 128;
@@ -197,17 +197,17 @@ struct PairTile {
   Column qx, qy, qz;              // couple on i, N m; only with rolling resistance or sizes
 };
 
-/// The contact law on the touching pairs of a strip, tile by tile, in four stages. Split that way the loops are short,
-/// so that the processor works on several turns at once while roots and divisions of one are under way.
+/// The contact law on the touching pairs of a strip, tile by tile, in four stages. This keeps the loops short, so that
+/// the processor works on several iterations at once while roots and divisions of one are in progress.
 template <class Law, bool kRolling, bool kSizes, class Real>
 class PairForces {
-  static constexpr bool kCouple = kRolling || kSizes;  // what i and j feel is not the same torque
+  static constexpr bool kCouple = kRolling || kSizes;  // the torques on i and j differ
 
  public:
   using L = LanesOf<Real>;
   static constexpr int kAtOnce = kLanesOf<Real>;
 
-  /// `motion` and `loads` start at the strip's first grain, those of the next strip follow.
+  /// `motion` and `loads` start at the strip's first grain; the grains of the next strip follow.
   PairForces(const PairLaw<Law, Real>& law, const TouchingPairs<Real>& pairs, const Motion& motion,
              PairHistory<Real>& histories, const Loads& loads)
       : law_(law), pairs_(pairs), motion_(motion), histories_(histories), loads_(loads) {}
@@ -271,7 +271,7 @@ class PairForces {
     }
   }
 
-  /// Of the pairs from p on, which stand at `at` of the tile.
+  /// Coefficients of the pairs from p on, whose data start at `at` of the tile.
   auto coefficients(int p, int at) const {
     if constexpr (kSizes) {
       const L sum = load_lanes<L>(&pairs_.sum[p]), delta = get(t_.delta, at);
@@ -288,7 +288,7 @@ class PairForces {
     return order;
   }
 
-  /// Of the pairs that stand at `at` of the tile.
+  /// Contact motion of the pairs whose data start at `at` of the tile.
   ContactMotion<L> contact_motion(int at) const {
     ContactMotion<L> m;
     m.normal = get(t_.nx, t_.ny, t_.nz, at);
@@ -309,8 +309,8 @@ class PairForces {
     return history;
   }
 
-  /// Adds the losses of the tile, before the law renews its histories. Out of line, so that the code of the law, and
-  /// with it every bit of the motion, is the same whether samples are taken or not.
+  /// Adds the losses of the tile, before the law updates its histories. Not inlined, so that the code of the law, and
+  /// with it every bit of the motion, is the same with and without samples.
   [[gnu::noinline]] void sample(int first, int count) {
     const L zero{}, order = lane_numbers();
     ContactSampleOf<L> sum;
@@ -332,7 +332,7 @@ class PairForces {
       ContactHistory<L> history = contact_history(p);
       const ContactForce<L> f = Law::template force<kRolling>(coefficients(first + at, at), law_.step, m, history);
       if constexpr (Law::kHistory) {
-        // Lanes beyond the last pair repeat it: they write the same again.
+        // Lanes beyond the last pair repeat it, so they write the same values again.
         detail::write_history(histories_.tangential.data(), p, history.tangential, history.root_overlap);
         if constexpr (kRolling) detail::write_history(histories_.rolling.data(), p, history.rolling, zero);
       }

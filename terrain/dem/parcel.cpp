@@ -26,7 +26,7 @@ void add(MotionTotals& to, const MotionTotals& more) {
   to.speed2 += more.speed2;
   to.max_net_force = std::max(to.max_net_force, more.max_net_force);
   add(to.held, load(more.held));
-  // Not a number when one of the two is not: the strip must then be sorted, so that the grain is found.
+  // Not a number if one of the two is not: the strip must then be sorted, so that the grain is found.
   const double not_a_number = 0.0 * (to.max_speed + more.max_speed);
   store(to.fastest2, larger(load(to.fastest2), load(more.fastest2)));
   to.max_speed = std::sqrt(sum_of(load(to.fastest2))) + not_a_number;

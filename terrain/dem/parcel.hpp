@@ -1,8 +1,8 @@
-// A parcel: a piece of a strip across y, the smallest piece of a bed that sleeps and wakes.
+// A parcel: a piece of a strip across y, the smallest piece of a bed that can sleep and wake.
 //
 // The grains of a strip are sorted by columns of cells along y, its pairs by their first grain, its wall contacts by
-// their grain. So a parcel, which is some columns, has its grains, pairs and wall contacts each in one range of the
-// strip's; so have neighbouring parcels together, and what is evaluated of a strip is a few such ranges.
+// their grain. A parcel consists of some columns, so its grains, pairs and wall contacts are each one range of the
+// strip's. The same holds for several neighbouring parcels, so a step evaluates only a few ranges of a strip.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace furrow::terrain::dem {
 
-inline constexpr int kParcelColumns = 4;  // of cells across, the fewest of a parcel
-inline constexpr int kFewestParcels = 3;  // of a strip that is cut; it is whole where they would be fewer
+inline constexpr int kParcelColumns = 4;  // columns of cells across, fewest in a parcel
+inline constexpr int kFewestParcels = 3;  // of a strip that is cut; with fewer the strip is one parcel
 
-/// Into how many parcels a strip of that many columns is cut. A narrower bed is whole: what a wheel stirs is as wide
-/// as it is.
+/// Number of parcels into which a strip with that many columns is cut. A narrower bed is not cut, because a wheel then
+/// moves its whole width.
 constexpr int parcels_across(int columns) {
   const int parcels = columns / kParcelColumns;
   return parcels < kFewestParcels ? 1 : parcels;
@@ -35,23 +35,24 @@ struct ContactTotals {
   ContactSample sample;  // when losses are sampled
 };
 
-/// What a step sums besides what every step does.
+/// Sums that a step computes in addition to the usual ones.
 struct Wanted {
   bool forces = false;  // Σ |F| and Σ |net force|
   bool losses = false;  // by mechanism
 };
 
-/// Sums and extremes over grains after the last step; a speed or force is that of its largest components.
+/// Sums and extremes over grains after the last step; a speed or force is that of its largest components. Here m₀ and
+/// I₀ are those of the reference grain.
 struct MotionTotals {
   double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
   double kinetic = 0.0;        // J
   double spin2 = 0.0;          // Σ I ω² / I₀, rad²/s²
-  double height = 0.0;         // Σ z, m
-  Quad velocity;               // Σ v, m/s
+  double height = 0.0;         // Σ m h / m₀, h along GrainSolver::up(), m
+  Quad velocity;               // Σ m v / m₀, m/s
   double step_work = 0.0;      // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
   Quad fastest2;               // largest squares of each component of v, m²/s²
-  double max_speed = 0.0;      // the root of their sum, m/s
-  double speed2 = 0.0;         // Σ v², m²/s²
+  double max_speed = 0.0;      // root of the sum of fastest2, m/s
+  double speed2 = 0.0;         // Σ m v² / m₀, m²/s²
   double max_net_force = 0.0;  // N, only when grains may sleep
   Quad held;                   // Σ contact forces + weight, N, only when grains may sleep
 };
@@ -59,7 +60,7 @@ struct MotionTotals {
 void add(ContactTotals& to, const ContactTotals& more);
 void add(MotionTotals& to, const MotionTotals& more);
 
-/// Consecutive grains of a strip with what they list, each range counted from the strip's first.
+/// Consecutive grains of a strip with their pairs and wall contacts; each range is counted from the strip's first.
 struct StripPart {
   std::int32_t first = 0, last = 0;  // grains
   std::int32_t pair_first = 0, pair_last = 0;
@@ -71,17 +72,17 @@ struct StripPart {
 struct Parcel {
   StripPart part;
   bool asleep = false;  // its grains rest and are not stepped, activity.hpp
-  bool stale = false;   // it sleeps, but other grains belong to it than when its sums were taken
-  int calm = 0;         // steps since it was last pushed or, unless it only sways, fast
-  bool sways = false;   // its grains may be fast, but over the last window they went nowhere
+  bool stale = false;   // it sleeps, but its grains have changed since its sums were computed
+  int calm = 0;         // steps since a force on it was last too large or, unless it sways, its speed
+  bool sways = false;   // its grains may be fast, but drifted slowly over the last window
   int window = 0;       // steps since its last window ended
-  // Only while it is asleep, or about to be: an awake one is evaluated together with those beside it.
+  // Only while it is asleep or about to fall asleep; awake parcels are evaluated together with their neighbours.
   ContactTotals contact;
   double measured_force = 0.0;  // contact.contact_force when last measured, N
   Stored stored;                // contact.sample.stored when last sampled
   MotionTotals motion;
 };
-/// What a saved state keeps of a parcel where strips are cut; its part follows from the lists.
+/// The saved state of a parcel if strips are cut; its part follows from the lists.
 void visit_fields(FieldsOf<Parcel> auto& s, auto&& visit) {
   visit(s.asleep, Field{"asleep", ""});
   visit(s.stale, Field{"stale", ""});

@@ -1,4 +1,4 @@
-// One grain's vector quantity, as a register takes it.
+// A vector quantity of one grain, in the form of a register.
 #pragma once
 
 #include "protocol/core/fields.hpp"
@@ -8,7 +8,7 @@ namespace furrow::terrain::dem {
 
 using namespace simd;
 
-/// One grain's vector quantity: w is free for the owner.
+/// A vector quantity of one grain; the owner may use w.
 struct alignas(32) Quad {
   double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
 };
@@ -27,7 +27,7 @@ inline Double4 load(const Quad& q) {
 inline void store(Quad& q, Double4 v) { std::memcpy(static_cast<void*>(&q), &v, sizeof v); }
 inline void add(Quad& q, Double4 v) { store(q, load(q) + v); }
 
-/// Quads are reached by four times their number: a double's address takes that without a shift.
+/// Quads are addressed by four times their index, so that the address of a double needs no shift.
 inline constexpr int kQuad = 4;
 inline const double* flat(const Quad* quads) { return reinterpret_cast<const double*>(quads); }
 inline double* flat(Quad* quads) { return reinterpret_cast<double*>(quads); }

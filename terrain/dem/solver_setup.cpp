@@ -58,12 +58,12 @@ ContactCoefficients surface_coefficients(const DemOptions& options, const Contac
              at_step);
 }
 
-/// The smallest grains are the least stable. A contact of radii r and R = ρ r has R* = ρ/(1 + ρ) r, so that it is
-/// stiffer than one of like grains, k(ρ)/k(1) = (2ρ/(1 + ρ))^½, at most √2 against a wall, R* → r. But its partner
+/// The smallest grains are the least stable. A contact of radii r and R = ρ r has R* = ρ/(1 + ρ) r, so it is stiffer
+/// than a contact of equal grains: k(ρ)/k(1) = (2ρ/(1 + ρ))^½, at most √2 against a wall, where R* → r. But its partner
 /// moves less: with displacements y = √m x, a row of the matrix of accelerations is at most (Gershgorin)
-///   Σ k(ρ) (1/m + 1/√(m M)) = Σ 2 k(1)/m · f(ρ),   f(ρ) = (2ρ/(1 + ρ))^½ (1 + ρ^{-3/2})/2 ≤ f(1) = 1,  f(4) = 0.71,
-/// so that like neighbours in antiphase, which stable_step() takes, bound the neighbours of every size. Dashpots, whose
-/// c(ρ)/c(1) = (R*/R₀*)^¼ (m*/m₀*)^½, exceed theirs by no more than 1.3 %, at ρ = 1.25.
+///   Σ k(ρ) (1/m + 1/√(m M)) = Σ 2 k(1)/m · f(ρ),   f(ρ) = (2ρ/(1 + ρ))^½ (1 + ρ^{-3/2})/2 ≤ f(1) = 1,  f(4) = 0.71.
+/// So equal neighbours in antiphase, the case of stable_step(), bound the neighbours of every size. Dashpots, with
+/// c(ρ)/c(1) = (R*/R₀*)^¼ (m*/m₀*)^½, exceed this bound by at most 1.3 %, at ρ = 1.25.
 StableStep stable_at(const DemOptions& options, double overlap) {
   const double radius = smallest_radius(options);
   return stable_step(run_coefficients(of_one_size(options, radius), options.step).pair,

@@ -1,4 +1,4 @@
-// From the options of a scenario to the parameters and coefficients of the grain solver.
+// Parameters and coefficients of the grain solver from the options of a scenario.
 #pragma once
 
 #include <string>
@@ -8,22 +8,22 @@
 
 namespace furrow::terrain::dem {
 
-inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list, of the radius
+inline constexpr double kSkinShare = 0.2;  // skin of the neighbour list over the radius
 
 /// @throws Error(bad_input) listing the valid names.
 Precision precision_from(const std::string& name);
 
 SolverParams solver_params(const DemOptions& options);
-/// The same for making a bed: with its own number of threads, and no grain sleeps.
+/// Parameters for making a bed: with its own number of threads, and no grain sleeps.
 SolverParams settling_params(const DemOptions& options);
 /// Coefficients of a run with this step, s: walls are of the grains' material.
 SolverCoefficients run_coefficients(const DemOptions& options, double step);
-/// Of a grain on the surface of a tire, for the same.
+/// Coefficients of a grain on the surface of a tire, in the same run.
 ContactCoefficients surface_coefficients(const DemOptions& options, const ContactMaterial& material, double step);
-/// Of a bed of these grains whose contacts have overlap `overlap`, m.
+/// Stable step of a bed of these grains whose contacts have overlap `overlap`, m.
 StableStep stable_at(const DemOptions& options, double overlap);
-/// The key that makes the law's contacts stiffer in proportion: under a given force Hertz's overlap goes with it as
-/// ^(−2/3).
+/// The key that makes the law's contacts proportionally stiffer. At a given force Hertz's overlap depends on its value
+/// to the power −2/3.
 struct StiffnessKey {
   std::string name, unit;
   double* value = nullptr;  // in the options

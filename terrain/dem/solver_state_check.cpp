@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kMaxGrains = std::numeric_limits<std::int32_t>::max() / 4;
 
-/// @param what is called for the text only where something is wrong: most of this is asked of every pair of grains
+/// @param what is called for the text only if something is wrong, as most checks run for every pair of grains
 template <class What>
 void require(bool ok, const char* array, const What& what) {
   if (!ok) throw Error(ExitCode::io, fmt::format("saved state '{}' {}: it is damaged", array, what()));
@@ -27,7 +27,7 @@ void require(bool ok, const char* array, const What& what) {
 
 std::size_t lanes(std::int64_t pairs) { return (static_cast<std::size_t>(pairs) + kFloatLanes - 1) / kFloatLanes; }
 
-/// One strip after another, with what stands before it in the lists of all.
+/// Checks one strip after another, and keeps the offsets of the present one in the lists of all.
 class Check {
  public:
   Check(const Archive& archive, const Strips& strips, double smallest, double largest)
@@ -70,7 +70,7 @@ class Check {
             [&] { return fmt::format("holds {:g} N, expected 0 or more", sum); });
   }
 
-  /// Limits of sleep and waking follow from the mean of these: a negative one would turn them round.
+  /// The limits of sleep and waking follow from the mean of these samples, so a negative mean would reverse them.
   void samples() {
     force("mean_contact_force", archive_.get_double("mean_contact_force"));
     if (archive_.has("parcels/measured_force"))
@@ -85,7 +85,7 @@ class Check {
     }
   }
 
-  /// The strips share out the grains without a gap.
+  /// The ranges of the strips cover all grains without a gap.
   void ranges() {
     first_ = archive_.get<std::int32_t>("strips/first", count_);
     last_ = archive_.get<std::int32_t>("strips/last", count_);
@@ -113,7 +113,7 @@ class Check {
     }
   }
 
-  /// Parcels are found by searching: the lists of strips that are cut must be in order.
+  /// Parcels are found by searching, so the lists of strips that are cut must be in order.
   template <class Number>
   void in_order(bool ok, const char* array, Number k) const {
     require(ok || strips_.across() == 1, array,
@@ -146,7 +146,7 @@ class Check {
       }
       pair += static_cast<std::size_t>(pairs[k]), group += lanes(pairs[k]);
     }
-    // Beds may bring histories that a run does not use.
+    // Beds may contain histories that a run does not use.
     const Strips::Options& options = strips_.options();
     require(!options.history || archive_.get<double>("pairs/tangential").size() >= 4 * touches, "pairs/tangential",
             [&] { return fmt::format("is too short for {} contacts", touches); });

@@ -1,4 +1,4 @@
-// Whether a saved state of the solver holds together: a checksum that fits says nothing of who wrote the file.
+// Checks that a saved state of the solver is consistent: a valid checksum does not prove who wrote the file.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace furrow::terrain::dem {
 
-/// Every length and every index that the solver follows. @param strips as the solver's options make them
-/// @param smallest, largest radii of the grains that the solver takes, m
+/// Checks every length and every index that the solver follows. @param strips as made by the solver's options
+/// @param smallest, largest radii of grains that the solver allows, m
 /// @throws Error(io) naming the array and what is wrong with it
 void check_solver_state(const Archive& archive, const Strips& strips, double smallest, double largest);
 
-/// Into how many parcels the strips of a saved state are cut, by its array kAcross.
+/// Name of the array with the number of parcels into which the strips of a saved state are cut.
 inline constexpr char kAcross[] = "parcels/across";
 std::int64_t saved_across(const Archive& archive);
-/// A bed that is read may be cut otherwise: it wakes. A run that is continued may not.
+/// A bed that is read may be cut into other parcels; it then wakes. The parcels of a continued run must be the same.
 /// @throws Error(io) naming the array
 void require_same_parcels(const Archive& archive, const Strips& strips);
 

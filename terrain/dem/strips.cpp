@@ -11,7 +11,8 @@ namespace {
 
 constexpr int padded(int n) { return (n + kFloatLanes - 1) / kFloatLanes * kFloatLanes; }
 
-/// Cells of at least `size` along a side; three where the side is periodic, so that no two neighbours are the same.
+/// Number of cells of at least `size` along a side; three if the side is periodic, so that no two neighbours are the
+/// same.
 int cells_along(double length, double size, bool periodic, const char* side) {
   const int n = std::max(1, static_cast<int>(length / size));
   if (periodic && n < 3)
@@ -20,7 +21,7 @@ int cells_along(double length, double size, bool periodic, const char* side) {
   return n;
 }
 
-/// The cell that a point stands in, the first or last if it stands beyond or is not a number.
+/// The cell that contains a point; the first or last if the point is outside or not a number.
 int cell_at(double at, int count) { return at > 0.0 ? static_cast<int>(std::min(at, count - 0.5)) : 0; }
 
 /// values[first + k] = values[order[k]].
@@ -181,7 +182,7 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     strip.x_min = old.x_min, strip.x_max = old.x_max, strip.z_max = old.z_max;
     strip.travel = old.travel;
     strip.asleep = old.asleep, strip.stale = old.stale;
-    strip.parcels = old.parcels;  // who sleeps is as before
+    strip.parcels = old.parcels;  // the same parcels sleep as before
     strip.lost = old.lost;
     strip.contact = old.contact, strip.motion = old.motion;
     if (lists_from + k < from) strip.cell_start = old.cell_start, strip.walls = old.walls;
@@ -213,7 +214,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
   double top = 0.0;
   for (int g = 0; g < grains.count; ++g) top = std::max(top, grains.position[g].z);
   nz_ = static_cast<int>(std::clamp(top * inverse_z_, 0.0, kMaxCellsZ - 1.0)) + 1;
-  if (strips_.back().last != grains.count) {  // grains were placed again: all in the first strip
+  if (strips_.back().last != grains.count) {  // grains were placed again: all go into the first strip
     ++changes_;
     for (Strip& strip : strips_) {
       strip = {};
@@ -253,7 +254,7 @@ std::vector<Resorted> Strips::rebuild_moved(Grains& grains, double dt, int threa
   }
   for (Resorted& range : ranges) {
     range = rebuild(grains, range.from, range.to, threads);
-    // The strips at both edges of a range may hold grains that belong beyond it: they keep their travel.
+    // The strips at both edges of a range may contain grains that belong outside it, so they keep their travel.
     const int from = range.from == 0 ? 0 : range.from + 1, to = range.to == n ? n : range.to - 1;
     for (int k = from; k < to; ++k) strips_[k].travel = 0.0;
   }

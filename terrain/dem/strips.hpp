@@ -1,16 +1,17 @@
-// Who may touch whom: the bin cut into strips across x, each with the list of its pairs.
+// Finds pairs of grains that may touch: the bin is cut into strips across x, each with the list of its pairs.
 //
-// Grains are sorted by strip, within a strip by cell (y, then z). A strip is at least as wide as two grains may be
-// apart to be listed, so that a grain's partners are in its own strip or in the two beside it. The pair (i, j) is
-// listed once, by the strip of the lower index: j is in the same strip or in the next.
+// Grains are sorted by strip, and within a strip by cell (y, then z). A strip is at least as wide as the distance up to
+// which two grains are listed, so a grain's partners are in its own strip or in the two neighbouring ones. A pair
+// (i, j) is listed once, by the strip of the lower index: j is in the same strip or in the next.
 //
-// Lists are made again only where grains moved. Every strip adds up how far its fastest grain went per step
-// (`travel`); when that exceeds half the skin since the strip was sorted, the strip and its two neighbours are sorted
-// again among themselves and the lists that name their grains are rebuilt. The rest of the bed keeps its lists.
-// Cells are a skin wider than the reach of a list, so that grains which drifted by half a skin still find each other
-// in neighbouring cells. Which strips are rebuilt, and the order of every list, does not depend on threads.
+// Lists are rebuilt only where grains have moved. Every strip adds up the distance of its fastest grain per step
+// (`travel`). When this exceeds half the skin since the strip was sorted, the strip and its two neighbours are sorted
+// again among themselves, and the lists that contain their grains are rebuilt. The rest of the bed keeps its lists.
+// Cells are a skin wider than the reach of a list, so grains that drifted by half a skin still find each other in
+// neighbouring cells. Neither the choice of rebuilt strips nor the order of lists depends on threads.
 //
-// Where grains may sleep, strips that are wide enough are cut across into parcels (parcel.hpp), alike in all strips. A
+// If grains may sleep, strips that are wide enough are cut across into parcels (parcel.hpp), in the same way in all
+// strips. A grain's partners are in its own parcel or in the eight around it.
 // grain's partners are in its own parcel or in the eight around it.
 #pragma once
 
@@ -30,7 +31,7 @@ namespace furrow::terrain::dem {
 struct WallContact {
   std::int32_t grain = 0;  // counted from the strip's first
   std::int32_t wall = 0;
-  Quad tangential;  // history: spring force, N; w = √δ of the step before, 0 when apart
+  Quad tangential;  // history: spring force, N; w = √δ of the previous step, 0 when apart
   Quad rolling;     // history: rolling spring, N m
 };
 void visit_fields(FieldsOf<WallContact> auto& s, auto&& visit) {
@@ -40,13 +41,13 @@ void visit_fields(FieldsOf<WallContact> auto& s, auto&& visit) {
   visit(s.rolling, Field{"rolling", "N m"});
 }
 
-/// History of one pair: x y z of the spring on i; w = √δ of the step before (tangential only).
+/// History of one pair: x y z of the spring on i; w = √δ of the previous step (tangential only).
 template <class Real>
 struct alignas(4 * sizeof(Real)) HistoryRow {
   Real x = 0, y = 0, z = 0, w = 0;
 };
 
-/// Per listed pair; all zero while the pair does not touch.
+/// History of all listed pairs; all zero while a pair does not touch.
 template <class Real>
 struct PairHistory {
   std::vector<HistoryRow<Real>> tangential;  // N
@@ -57,16 +58,16 @@ struct Strip {
   std::int32_t first = 0, last = 0;      // grains
   std::vector<std::int32_t> cell_start;  // of each cell (y, z fastest), counted from `first`
   std::int32_t pairs = 0;
-  // Per pair, kQuad times the grain counted from `first`; j runs on into the next strip.
+  // Per pair, kQuad times the grain counted from `first`; j may continue into the next strip.
   std::vector<std::uint32_t> i, j;
-  std::vector<std::uint8_t> touching;  // bit k of entry p/8: pair p touched in the last step
+  std::vector<std::uint8_t> touching;  // bit p % 8 of entry p / 8: pair p touched in the last step
   PairHistory<float> single;           // used with precision mixed
   PairHistory<double> full;            // used with precision double
   std::vector<WallContact> walls;
-  double travel = 0.0;                           // bound on the way of any of its grains since it was sorted, m
+  double travel = 0.0;                           // bound on the displacement of its grains since it was sorted, m
   double x_min = 0.0, x_max = 0.0, z_max = 0.0;  // of the centres when sorted, m
-  bool asleep = false;                           // all its parcels are
-  bool stale = false;                            // one of its parcels is
+  bool asleep = false;                           // all its parcels are asleep
+  bool stale = false;                            // one of its parcels is stale
   std::int32_t lost = -1;                        // a grain outside the bin or not finite, counted from `first`
   std::vector<Parcel> parcels = std::vector<Parcel>(1);
   ContactTotals contact;  // of all parcels
@@ -94,8 +95,8 @@ struct Strip {
     return const_cast<Strip*>(this)->history<Real>();
   }
 };
-/// What a saved state keeps of a strip besides its lists. Sums too: those of strips that sleep stay. Where strips are
-/// cut, Parcel's fields stand beside these.
+/// The saved state of a strip besides its lists. It includes sums, because those of sleeping strips are not computed
+/// again. If strips are cut, Parcel's fields are saved as well.
 void visit_fields(FieldsOf<Strip> auto& s, auto&& visit) {
   visit(s.first, Field{"first"});
   visit(s.last, Field{"last"});
@@ -127,12 +128,12 @@ struct Resorted {
 class Strips {
  public:
   struct Options {
-    double reach = 0.0;    // pairs closer than that are listed, m: largest diameter + skin
+    double reach = 0.0;    // closer pairs are listed, m: largest diameter + skin
     double skin = 0.0;     // m
     bool history = true;   // keep tangential history
     bool rolling = false;  // keep rolling history
     bool single = true;    // histories in single precision
-    bool cut = false;      // wide strips into parcels
+    bool cut = false;      // cut wide strips into parcels
     Bin bin;
   };
 
@@ -148,63 +149,64 @@ class Strips {
     FURROW_ASSERT(in_range(k, count()), k, count());
     return strips_[k];
   }
-  /// The strip after k; with periodic ends the first follows the last, else −1 follows.
+  /// The strip after k; after the last comes the first if the ends are periodic, else −1.
   int next(int k) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
     return k + 1 < count() ? k + 1 : options_.bin.periodic_x ? 0 : -1;
   }
 
-  /// The strip that lies d strips (−1, 0, 1) after k, −1: none.
+  /// The strip d strips (−1, 0, 1) after k; −1 if there is none.
   int beside(int k, int d) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
     const int n = count(), near = k + d;
     return near >= 0 && near < n ? near : options_.bin.periodic_x ? (near + n) % n : -1;
   }
-  /// The parcel that lies d parcels (−1, 0, 1) after p in any strip, −1: none.
+  /// The parcel d parcels (−1, 0, 1) after p in any strip; −1 if there is none.
   int parcel_beside(int p, int d) const {
     FURROW_ASSERT(in_range(p, across_), p, across_);
     const int near = p + d;
     return near >= 0 && near < across_ ? near : options_.bin.periodic_y ? (near + across_) % across_ : -1;
   }
-  /// Into how many parcels each strip is cut.
+  /// Number of parcels into which each strip is cut.
   int across() const { return across_; }
-  /// Whether any of a parcel's columns stand between these y, m. The outer ones reach beyond the sides.
+  /// Whether any of a parcel's columns are between these y, m. The outer ones extend beyond the sides.
   bool parcel_between(int p, double y_min, double y_max) const;
-  /// After parcels of strip k were moved, or changed otherwise: `asleep` and the sums of motion.
+  /// Updates `asleep` and the sums of motion after parcels of strip k were moved or changed otherwise.
   void sum_parcels(int k);
-  /// After parcels of strip k fell asleep or woke.
+  /// Call it after parcels of strip k fell asleep or woke.
   void sleep_changed(int k) {
     sum_parcels(k);
     ++changes_;
   }
-  /// Another number after any parcel fell asleep, woke or became stale.
+  /// A number that changes after any parcel falls asleep, wakes or becomes stale.
   std::int64_t changes() const { return changes_; }
 
   /// Sorts all grains and makes all lists. Returns the order. @pre threads > 0
   Resorted rebuild_all(Grains& grains, int threads);
-  /// Rebuilds where a grain may have moved too far before the end of another step of `dt`.
+  /// Rebuilds lists where a grain may move too far before the end of another step of `dt`.
   /// @pre rebuild_all was called; threads > 0
   std::vector<Resorted> rebuild_moved(Grains& grains, double dt, int threads);
 
-  /// How often a grain was sorted, summed over grains: divided by their number, the rebuilds of the whole list.
+  /// Sum over grains of how often each was sorted; divided by their number, this is the number of rebuilds of the whole
+  /// list.
   std::int64_t resorted() const { return resorted_; }
   void set_resorted(std::int64_t n) {
     FURROW_ASSERT(n >= 0, n);
     resorted_ = n;
   }
 
-  /// What the lists hold in memory, with what a rebuild needs.
+  /// Memory of the lists and of their rebuilding, bytes.
   std::size_t bytes() const;
 
   static constexpr int kMaxCellsZ = 512;  // higher grains share the top cell
 
-  /// Gives a strip its arrays for `pairs` pairs.
+  /// Allocates a strip's arrays for `pairs` pairs.
   void size_lists(Strip& strip, int pairs) const;
-  /// After a strip was read from a saved state with its grains, cells, pairs and walls.
+  /// Finds the parts of a strip that was read from a saved state with its grains, cells, pairs and walls.
   void find_parts(Strip& strip) const;
-  /// After strips were read from a saved state: cells along z, and what follows from the grains.
   int cells_y() const { return ny_; }
   int cells_z() const { return nz_; }
+  /// After strips were read from a saved state: sets the cells along z and the sum of resorted().
   void restore_shape(int cells_z, std::int64_t resorted);
 
  private:
@@ -217,7 +219,7 @@ class Strips {
   void carry_walls(std::span<const Strip> old, int old_from, const Resorted& range);
   void mark_stale(std::span<const Strip> old, int old_from, const Resorted& range);
   int strip_at(double x) const;
-  /// The first of the columns of parcel p.
+  /// The first column of parcel p.
   int column_of(int p) const { return p * ny_ / across_; }
 
   Options options_;
@@ -226,7 +228,7 @@ class Strips {
   double inverse_x_ = 0.0, inverse_y_ = 0.0, inverse_z_ = 0.0;  // cells per metre
   std::vector<Strip> strips_;
   std::int64_t resorted_ = 0, changes_ = 0;
-  // Memory that is kept from rebuild to rebuild.
+  // Memory that is reused for every rebuild.
   std::vector<Strip> old_;
   struct Scratch {
     std::vector<std::int32_t> cell, start, ids;

@@ -1,4 +1,4 @@
-// What contacts remember, carried from the lists before sorting to those after it.
+// Carries contact histories from the lists before sorting to the lists after it.
 #include <algorithm>
 
 #include "protocol/core/assert.hpp"
@@ -7,7 +7,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-/// Finds in the lists before sorting what a pair of grains had.
+/// Finds the history of a pair of grains in the lists before sorting.
 class OldPairs {
  public:
   OldPairs(std::span<const Strip> old, bool periodic) : old_(old), periodic_(periodic) {
@@ -31,7 +31,7 @@ class OldPairs {
     int pair = 0;
     bool reversed = false;
   };
-  /// Of the grains that had the old indices a and b.
+  /// The pair of the grains with the old indices a and b.
   Found find(int a, int b) const {
     Found found = of(std::min(a, b), std::max(a, b));
     found.reversed = a > b;
@@ -95,7 +95,7 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
 void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorted& range) {
   FURROW_ASSERT(old_from <= range.from && static_cast<int>(old.size()) == range.to - old_from, old.size(), old_from,
                 range.from);
-  std::vector<std::int32_t> start(range.order.size() + 1, 0);  // old wall contacts per old grain of the range
+  std::vector<std::int32_t> start(range.order.size() + 1, 0);  // first old wall contact of each old grain of the range
   std::vector<const WallContact*> contacts;
   for (int s = range.from; s < range.to; ++s) {
     const Strip& strip = old[s - old_from];
@@ -117,11 +117,11 @@ void Strips::carry_walls(std::span<const Strip> old, int old_from, const Resorte
     }
 }
 
-/// The sums of a sleeping parcel are those of its last evaluation. Where a grain that had drifted before it fell asleep
-/// is sorted into another parcel, sums about it belong elsewhere and are taken again.
+/// The sums of a sleeping parcel are those of its last evaluation. If a grain that drifted before it fell asleep is
+/// sorted into another parcel, the sums no longer fit their parcels and must be computed again.
 void Strips::mark_stale(std::span<const Strip> old, int old_from, const Resorted& range) {
   FURROW_ASSERT(static_cast<int>(old.size()) == range.to - old_from, old.size(), old_from, range.to);
-  if (across_ == 1) return;  // every sleeping strip that is sorted lies beside one that is awake
+  if (across_ == 1) return;  // every sleeping strip that is sorted has an awake neighbour
   const auto changed = [&](int s, int p) {
     const Strip &now = strips_[s], &then = old[s - old_from];
     const StripPart &part = now.parcels[p].part, &was = then.parcels[p].part;

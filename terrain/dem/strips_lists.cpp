@@ -1,4 +1,4 @@
-// The lists of a strip: its pairs and who is near a wall.
+// The lists of a strip: its pairs, and its grains near walls.
 #include <algorithm>
 
 #include "protocol/core/assert.hpp"
@@ -8,7 +8,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-/// Pairs as they are found; memory is kept from call to call.
+/// Pairs in the order in which they are found; memory is reused from call to call.
 struct FoundPairs {
   std::vector<std::uint32_t> i, j;
   std::size_t count = 0;
@@ -33,13 +33,13 @@ void Strips::list_pairs(const Grains& grains, int k) {
   static thread_local FoundPairs found;
   found.count = 0;
 
-  // Lists (i, j) for the grains j in [from, to) of `other`; `base` counts its grains in this strip's terms.
+  // Lists (i, j) for the grains j in [from, to) of `other`, whose numbering in this strip starts at `base`.
   const auto scan = [&](int i, Double4 at, const Strip& other, int base, int from, int to) {
     found.make_room(to - from + 4);
     const Quad* const x = grains.position.data() + other.first;
     for (int j = from; j < to; j += 4) {
       const unsigned hit = near_four(x + j, to - j, at, options_.skin, width);
-      for (int m = 0; m < 4; ++m) {  // without a branch: who is near cannot be foreseen
+      for (int m = 0; m < 4; ++m) {  // without a branch, because the outcome cannot be predicted
         found.i[found.count] = kQuad * i;
         found.j[found.count] = kQuad * (base + j + m);
         found.count += hit >> m & 1;
@@ -64,7 +64,7 @@ void Strips::list_pairs(const Grains& grains, int k) {
         scan(i, at, strip, 0, i + 1, strip.cell_start[y * nz_ + above]);
         row(strip, 0, at, y + 1);
         if (!beside) continue;
-        // Seen from grains of the first strip, the last one stands a length before them.
+        // For grains of the first strip, the last strip appears one length before them.
         Double4 seen = at;
         if (after < k) seen[0] -= options_.bin.length;
         for (int dy = -1; dy <= 1; ++dy) row(*beside, strip.grains(), seen, y + dy);

@@ -1,8 +1,8 @@
-// The filter: which listed pairs of a strip touch, packed without gaps for the contact law.
+// The filter: finds the listed pairs of a strip that touch, and packs them without gaps for the contact law.
 //
-// Distances are taken in double precision. What is handed on is d = x_i − x_j and gap = D² − d², from which the overlap
-// is δ = gap / (D + |d|): rounded to float it keeps seven digits however small it is, which D − |d| would not. D is the
-// sum of both radii, the same number for all pairs unless grains differ in size.
+// Distances are computed in double precision. The results are d = x_i − x_j and gap = D² − d², from which the overlap
+// is δ = gap / (D + |d|). Rounded to float it keeps seven digits however small it is, which D − |d| would not. D is the
+// sum of both radii, the same for all pairs unless grains differ in size.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace furrow::terrain::dem {
 
-/// Touching pairs of one strip, one array per quantity, padded with copies of the last to whole lanes.
+/// Touching pairs of one strip, one array per quantity, padded to whole lanes with copies of the last pair.
 template <class Real>
 struct TouchingPairs {
   int count = 0;
@@ -43,7 +43,7 @@ struct TouchingPairs {
 
 namespace detail {
 #ifdef __AVX2__
-/// For each mask of eight lanes: where the k-th set lane stands.
+/// For each mask of eight lanes: the position of the k-th set lane.
 inline constexpr auto kPacking = [] {
   std::array<std::array<std::int32_t, kFloatLanes>, 256> table{};
   for (int mask = 0; mask < 256; ++mask)
@@ -84,9 +84,9 @@ struct TellNobody {
 
 }  // namespace detail
 
-/// Fills `out` with the touching ones of the pairs [from, to) of `strip` and notes which they are; what pairs that
-/// parted left in their history is cleared, after `parts` was called with the number of each. `x` points to the
-/// position of the strip's first grain; those of the next strip follow.
+/// Fills `out` with those of the pairs [from, to) of `strip` that touch, and marks them in the strip. Clears the
+/// histories of pairs that parted, after calling `parts` with the number of each. `x` points to the position of the
+/// strip's first grain; the grains of the next strip follow.
 /// diameter: of all grains, m, unless kSizes; width: of a bin with periodic sides, else 0, m.
 /// @pre the strip's lists are as Strips::size_lists makes them
 template <bool kSizes, class Real, class Parts = detail::TellNobody>

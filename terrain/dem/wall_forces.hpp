@@ -1,4 +1,4 @@
-// Grains against the bin: arm r − δ, the wall at rest.
+// Contacts of grains with the bin: arm r − δ, the wall at rest.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace furrow::terrain::dem {
 
-/// Coefficients per partner, for grains of the reference radius; they hold the step of the impulse limit.
+/// Coefficients per partner for grains of the reference radius; they depend on the step through the impulse limit.
 struct SolverCoefficients {
   ContactCoefficients pair, floor, side;
 };
 
 /// Adds the forces of the strip's wall contacts [from, to) to `loads` (which starts at its first grain) and to `sums`.
-/// radius: that the coefficients are for; without kSizes that of all grains, m. @pre radius > 0, dt > 0
+/// radius: the one to which the coefficients refer; without kSizes that of all grains, m. @pre radius > 0, dt > 0
 template <class Law, bool kRolling, bool kSizes>
 void wall_forces(const Grains& grains, Strip& strip, int from, int to, const Bin& bin, double radius,
                  const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads, ContactTotals& sums) {

@@ -1,4 +1,4 @@
-// What every terrain demands of a contact surface that is attached to it.
+// Requirements of every terrain on a contact surface that is attached to it.
 #pragma once
 
 #include "protocol/core/surface.hpp"
@@ -6,7 +6,7 @@
 namespace furrow::terrain {
 
 /// @param index  of the surface, for the message
-/// @throws Error(bad_input) when positions are not one for each vertex, a triangle names a vertex that does not
+/// @throws Error(bad_input) when there is not one position for each vertex, a triangle refers to a vertex that does not
 /// exist, or a position is not finite
 void check_surface(const SurfaceMesh& mesh, const SurfaceState& start, int index);
 

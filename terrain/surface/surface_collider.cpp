@@ -14,13 +14,13 @@
 namespace furrow::terrain {
 namespace {
 
-// All as shares of the sphere's radius.
+// Shares of the sphere's radius, except kSkinShare.
 constexpr double kFadeFrom = 0.4;    // overlap where other candidates begin to fade
-constexpr double kFadeTo = 0.5;      // overlap from which the nearest point alone counts
-constexpr double kSamePoint = 1e-9;  // candidates nearer than this to each other are one
+constexpr double kFadeTo = 0.5;      // overlap from which only the nearest point counts
+constexpr double kSamePoint = 1e-9;  // candidates nearer to each other than this count as one
 constexpr double kSkinShare = 0.5;   // skin / reach
 
-/// Plane n·x = offset of a triangle; n = 0 for one without area, which its neighbours' edges replace.
+/// Plane n·x = offset of a triangle; n = 0 for a triangle without area, which the edges of its neighbours replace.
 struct TrianglePlane {
   Vec3 normal = Vec3::Zero();
   double offset = 0.0;  // m
@@ -70,13 +70,13 @@ struct SurfaceCollider::Data {
   double skin = 0.0;      // m
   double duration = 1.0;  // s
   std::vector<Vec3> start, end, position, velocity;
-  std::vector<Vec3> built_at;  // positions the grid was built with
+  std::vector<Vec3> built_at;  // positions with which the grid was built
   std::vector<TrianglePlane> plane;
   SurfaceTopology topology;
   std::vector<int> listed;  // triangles in the grid
   SurfaceBox limit{Vec3::Constant(-std::numeric_limits<double>::infinity()),
                    Vec3::Constant(std::numeric_limits<double>::infinity())};
-  SurfaceBox built_limit = limit;  // that the grid was built with
+  SurfaceBox built_limit = limit;  // limit with which the grid was built
   bool beyond_built_limit = false;
   SurfaceGrid grid;
   std::int64_t rebuilds = 0;
@@ -130,7 +130,8 @@ void SurfaceCollider::Data::rebuild() {
   ++rebuilds;
 }
 
-/// Sign of the nearest point's distance by its feature's pseudo-normal. Boundary edges have no behind.
+/// Whether the centre is behind the nearest point, by the pseudo-normal of its feature. Boundary edges have no back
+/// side.
 bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre) const {
   const Vec3 offset = centre - nearest.at.point;
   const int t = nearest.triangle;
@@ -146,7 +147,7 @@ bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre)
   return behind_vertex(mesh.triangles[t][corner], offset);
 }
 
-/// Angle-weighted pseudo-normal of a vertex; the angles are only computed when its triangles disagree.
+/// By the angle-weighted pseudo-normal of a vertex; angles are only computed if its triangles disagree.
 bool SurfaceCollider::Data::behind_vertex(int vertex, const Vec3& offset) const {
   FURROW_ASSERT(in_range(vertex, mesh.vertex_count), vertex, mesh.vertex_count);
   if (topology.boundary_vertex[vertex]) return false;
@@ -179,7 +180,7 @@ void SurfaceCollider::Data::consider(int t, const Vec3& centre, double radius, C
     const double squared = offset.squaredNorm();
     if (squared >= radius * radius) return;
     candidate.distance = std::sqrt(squared);
-    // A centre on the feature itself has no direction of its own.
+    // If the centre is on the feature itself, the offset has no direction.
     candidate.normal = candidate.distance > kSamePoint * radius ? Vec3(offset / candidate.distance) : plane[t].normal;
   }
   found.insert(candidate, kSamePoint * radius);
@@ -198,7 +199,7 @@ int SurfaceCollider::Data::share_out(const CandidateList& found, const Vec3& cen
   for (int i = 0; i < found.size; ++i) {
     const Candidate& one = found.item[i];
     const double own_fade = i == 0 ? 1.0 : fade;
-    // A face seen from behind while something nearer is seen from the front belongs to the far side of a wedge.
+    // A face seen from behind, while a nearer one is seen from the front, belongs to the far side of a wedge.
     const bool far_side =
         i > 0 && one.at.region == TriangleRegion::face && one.normal.dot(centre) < plane[one.triangle].offset;
     if (far_side || !(own_fade > 0.0)) continue;
@@ -251,7 +252,7 @@ void SurfaceCollider::set_motion(std::span<const Vec3> start, std::span<const Ve
   d.end.assign(end.begin(), end.end());
   d.velocity.resize(count);
   for (std::size_t v = 0; v < count; ++v) d.velocity[v] = (end[v] - start[v]) / duration;
-  // An interval that begins where the last one ended finds everything up to date.
+  // If the interval begins where the last one ended, everything is up to date.
   if (d.position != d.start || d.beyond_built_limit) move_to(0.0);
 }
 
@@ -261,7 +262,7 @@ void SurfaceCollider::move_to(double share) {
   Data& d = *data_;
   d.position.resize(d.start.size());
   if (share == 1.0)
-    d.position = d.end;  // exactly, where the next interval begins
+    d.position = d.end;  // exactly, as the next interval begins there
   else
     for (std::size_t v = 0; v < d.start.size(); ++v) d.position[v] = d.start[v] + share * (d.end[v] - d.start[v]);
   if (d.grid_is_stale()) d.rebuild();
@@ -272,7 +273,7 @@ void SurfaceCollider::restrict_to(const SurfaceBox& box) {
   Data& d = *data_;
   const SurfaceBox& built = d.built_limit;
   d.beyond_built_limit = (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
-  // Room for small changes, so that they do not cost a grid each.
+  // The margin allows small changes without building a new grid for each.
   d.limit.lo = box.lo.array() - 2.0 * d.reach;
   d.limit.hi = box.hi.array() + 2.0 * d.reach;
 }
@@ -305,7 +306,7 @@ int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<const int
                           std::span<SurfaceHit> out) const {
   FURROW_ASSERT(radius > 0.0 && radius <= data_->reach, radius, data_->reach);
   const Data& d = *data_;
-  // Most grains near a tire do not touch it: they leave here, before the candidate list exists.
+  // Most grains near a tire do not touch it: the function returns here for them, before the candidate list exists.
   std::size_t first = 0;
   while (first < listed.size() && d.off_plane(listed[first], centre, radius)) ++first;
   if (first == listed.size() || out.empty()) return 0;

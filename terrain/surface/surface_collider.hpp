@@ -1,5 +1,5 @@
-// Contact between spheres and a moving triangulated surface (a tire): which points of the surface a grain touches,
-// how deep, and what share of the contact law each of them carries.
+// Contact between spheres and a moving triangulated surface (a tire): finds the points of the surface that a grain
+// touches, how deep, and the share of the contact law that each of them carries.
 //
 // A triangle i that the sphere (c, r) intersects gives one candidate: its point p_i closest to c (face, edge or
 // vertex region), overlap δ_i = r − |c − p_i| and direction n_i = (c − p_i)/|c − p_i|. On one flat face cut into
@@ -10,13 +10,14 @@
 //
 // and candidate i carries the share s_i = λ_i/δ̂_i of the contact law:  F = Σ s_i f(δ̂_i) n_i.                   (2)
 //
-// δ̂_i is δ_i, except that walls of nearly one direction share the depth of the deepest (surface_geometry.hpp).
-// Flat or convex: s = 1 for the deepest, 0 for all others. Valley whose face normals differ by θ, at its middle:
-// s = 1/(1 + cos θ) each, |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, f(δ) on each wall at θ = 90°. D, hence F,
-// is continuous in c and in the vertices because p_i is. The rule needs δ < r/2; deeper (an emergency) the other
-// candidates fade out between δ = 0.4 r and 0.5 r and the nearest point alone counts. A grain whose centre is behind
-// the surface has δ = r + depth, found with the pseudo-normal of the nearest feature [Bærentzen & Aanæs 2005,
-// doi:10.1109/TVCG.2005.49], down to a depth of r.
+// δ̂_i is δ_i, except that walls of nearly one direction share the depth of the deepest (surface_geometry.hpp). On flat
+// or convex surfaces s = 1 for the deepest candidate and 0 for all others. In the middle of a valley whose face normals
+// differ by θ, s = 1/(1 + cos θ) for each and |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, f(δ) on each wall at θ =
+// 90°. D, hence F, is continuous in c and in the vertices because p_i is.
+//
+// The rule needs δ < r/2. In an emergency with deeper contact, the other candidates fade out between δ = 0.4 r and 0.5
+// r, beyond which only the nearest point counts. A grain whose centre is behind the surface has δ = r + depth, down to
+// a depth of r; the pseudo-normal of the nearest feature shows this [Bærentzen & Aanæs 2005, doi:10.1109/TVCG.2005.49].
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@
 
 namespace furrow::terrain {
 
-/// One touched point of the surface. Use: force on the grain = share · law(overlap, normal, relative velocity),
+/// One touched point of the surface. Force on the grain = share · law(overlap, normal, relative velocity),
 /// torque on the grain = (point − centre) × force, and the opposite force on the triangle's vertices by `weight`.
 struct SurfaceHit {
   Vec3 point = Vec3::Zero();   // on the surface, m, W
@@ -39,7 +40,7 @@ struct SurfaceHit {
   std::array<double, 3> weight{};  // barycentric: point = Σ weight · vertex, Σ weight = 1, each ≥ 0
 };
 
-/// Most hits that SurfaceCollider::hits ever returns.
+/// Largest number of hits that SurfaceCollider::hits returns.
 inline constexpr int kMaxSurfaceHits = 6;
 
 /// Axis-aligned box, m.
@@ -50,39 +51,39 @@ struct SurfaceBox {
 
 class SurfaceCollider {
  public:
-  /// `reach`: the greatest grain radius that hits() will be asked about, m.
+  /// `reach`: the largest grain radius that hits() will be called with, m.
   /// @throws Error(bad_input) on an index outside the mesh or a reach that is not positive.
   SurfaceCollider(const SurfaceMesh& mesh, double reach);
   ~SurfaceCollider();
   SurfaceCollider(SurfaceCollider&&) noexcept;
   SurfaceCollider& operator=(SurfaceCollider&&) noexcept;
 
-  /// Declares the motion of the coming interval: each vertex goes linearly from `start` to `end` (lengths =
-  /// vertex_count) in `duration` (> 0), s. The surface stands at `start` afterwards.
+  /// Declares the motion of the coming interval of `duration` (> 0), s: each vertex moves linearly from `start` to
+  /// `end` (lengths = vertex_count). Afterwards the surface is at `start`.
   void set_motion(std::span<const Vec3> start, std::span<const Vec3> end, double duration);
 
-  /// Moves the vertices to start + share · (end − start); serial, cheap; rebuilds the search grid when some vertex
-  /// went farther than the skin since it was built. Results never depend on when the grid was built.
+  /// Moves the vertices to start + share · (end − start); serial, cheap. Rebuilds the search grid if some vertex has
+  /// moved farther than the skin since the last build. Results never depend on when the grid was built.
   /// @pre set_motion was called; 0 ≤ share ≤ 1
   void move_to(double share);
 
-  /// Triangles wholly outside this box (grown by the reach) may be ignored from the next grid on: give the box that
-  /// holds all grains. Default: no limit.
+  /// Triangles wholly outside this box (grown by the reach) may be ignored from the next grid on: pass a box that
+  /// contains all grains. Default: no limit.
   void restrict_to(const SurfaceBox& box);
 
-  /// Box of the surface where it is now, and over the whole interval; not grown by any radius.
+  /// Box of the surface at its present position, and over the whole interval; not grown by any radius.
   SurfaceBox bounds() const;
   SurfaceBox swept_bounds() const;
 
-  /// Touched points of the sphere, deepest first; returns how many (0 … min(out.size(), kMaxSurfaceHits)).
+  /// Finds touched points of the sphere, deepest first; returns their number (0 … min(out.size(), kMaxSurfaceHits)).
   /// Thread-safe, no allocation. Deterministic: depends on centre, radius and vertices only.
   /// @pre 0 < radius ≤ reach
   int hits(const Vec3& centre, double radius, std::span<SurfaceHit> out) const;
 
   /// Appends the triangles that the sphere may touch, in their order, to `triangles`. @pre 0 < radius ≤ reach
   void near(const Vec3& centre, double radius, std::vector<int>& triangles) const;
-  /// The same as hits(centre, radius, out) if all triangles that it may touch are `among` those.
-  /// @pre grid_rebuilds() is what it was when near() found them
+  /// The same result as hits(centre, radius, out) if `among` contains all triangles that the sphere may touch.
+  /// @pre grid_rebuilds() has not changed since near() found them
   int hits(const Vec3& centre, double radius, std::span<const int> among, std::span<SurfaceHit> out) const;
 
   /// Velocity of the surface at a hit's point: Σ weight · vertex velocity, m/s.

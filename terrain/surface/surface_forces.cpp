@@ -8,7 +8,7 @@
 namespace furrow::terrain {
 namespace {
 
-// A force that points at the mean vertex has no moment to compare with; this share of |x||f| replaces it.
+// A force directed at the mean vertex has no moment to compare with; this share of |x||f| replaces it.
 constexpr double kArmFloor = 1e-3;
 
 }  // namespace

@@ -1,7 +1,7 @@
-// From contact forces on a surface to forces on its vertices, and their sums over one communication interval.
+// Distributes contact forces on a surface to its vertices, and sums them over one communication interval.
 //
-// A force f at p = Σ w_a x_a of a triangle goes to its vertices as w_a f. Then Σ w_a f = f and Σ x_a × w_a f = p × f:
-// force and moment are handed over exactly in the configuration in which f was evaluated. A couple acts on the patch of
+// A force f at p = Σ w_a x_a of a triangle acts on its vertices as w_a f. Then Σ w_a f = f and Σ x_a × w_a f = p × f:
+// force and moment are transferred exactly in the configuration in which f was evaluated. A couple acts on the patch of
 // its triangle (surface_patches.hpp).
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace furrow::terrain {
 
-/// How one contact's force on the surface answers to the motion of the surface at its point:
+/// How one contact's force on the surface responds to the motion of the surface at its point:
 ///   df = −[k_n n nᵀ + k_t (I − n nᵀ)] dx − [c_n n nᵀ + c_t (I − n nᵀ)] dv.
 struct SurfaceContactTangent {
   Vec3 normal = Vec3::Zero();   // n, unit, W
@@ -38,7 +38,7 @@ struct SurfaceContactForce {
   Vec3 normal = Vec3::Zero();      // N, W
   Vec3 tangential = Vec3::Zero();  // N, W
   SurfaceContactTangent tangent;   // read only where tangents are wanted
-  PatchCouple couple;              // W, beside the force at the point
+  PatchCouple couple;              // W, in addition to the force at the point
   bool slides = false;             // its friction is at the limit
 };
 
@@ -51,18 +51,18 @@ struct SurfaceNow {
 
 class NodalForceSum {
  public:
-  /// @param tangents whether the vertices' tangents are summed as well: each contact's by the weights of its point,
-  /// so that they are exact for a motion that the three vertices share
-  /// @param patches on which couples act; without them there may be no couples
+  /// @param tangents whether to sum the vertices' tangents as well. Each contact's tangent is distributed by the
+  /// weights of its point, so the sum is exact for a motion that the three vertices share.
+  /// @param patches on which couples act; without patches there must be no couples
   explicit NodalForceSum(int vertex_count, bool tangents = false, SurfacePatches patches = {});
 
   const SurfacePatches& patches() const { return patches_; }
-  /// Those of a saved state.
+  /// Sets the patches of a saved state.
   void set_patches(SurfacePatches patches) { patches_ = std::move(patches); }
 
-  /// Adds the forces of one substep of length dt. Serial, in the order given: the caller keeps that order fixed
-  /// (for example by grain), then the bits do not depend on threads. Touches only vertices of touched triangles.
-  /// @param advance of the interval, of which tangents are means, s: where the forces act for another time
+  /// Adds the forces of one substep of length dt. It is serial, in the order given. The caller keeps that order fixed
+  /// (for example by grain), so that the bits do not depend on threads. Touches only vertices of touched triangles.
+  /// @param advance time that the substep advances, s: the weight of tangents in their means; forces act for dt instead
   /// @pre dt > 0, advance > 0; the surface has a position and a velocity for each vertex
   void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt, double advance);
   void add_substep(std::span<const SurfaceContactForce> contacts, const SurfaceNow& surface, double dt) {

@@ -31,7 +31,7 @@ TrianglePoint on_vertex(const Vec3& vertex, int index) {
   return result;
 }
 
-/// The candidates that carry something, with G restricted to them.
+/// The candidates that carry a share, with G restricted to them.
 struct ActiveSet {
   std::array<int, kMaxActive> index{};
   std::array<double, kMaxActive> lambda{};
@@ -64,7 +64,7 @@ std::array<double, kMaxActive> solve_active(const ActiveSet& active, std::span<c
     g[i][n] = overlap[active.index[i]];
   }
   for (int k = 0; k < n; ++k) {
-    // G can lose definiteness only by the cut at zero; the guard keeps the answer finite there.
+    // G can lose definiteness only because it is cut off at zero; this guard then keeps the result finite.
     if (std::abs(g[k][k]) < kRegularisation) g[k][k] = kRegularisation;
     for (int i = k + 1; i < n; ++i) {
       const double factor = g[i][k] / g[k][k];
@@ -182,7 +182,7 @@ int solve_push_out(std::span<const Vec3> normal, std::span<const double> overlap
 void share_depth(std::span<const Vec3> normal, std::span<const double> overlap, std::span<double> shared) {
   FURROW_ASSERT(normal.size() == overlap.size() && shared.size() == overlap.size(), normal.size(), overlap.size(),
                 shared.size());
-  constexpr double kFull = 0.7, kNone = 0.3;  // cosines between which w goes from 1 to 0
+  constexpr double kFull = 0.7, kNone = 0.3;  // cosines between which w falls from 1 to 0
   for (std::size_t i = 0; i < overlap.size(); ++i) {
     shared[i] = overlap[i];
     for (std::size_t j = 0; j < overlap.size(); ++j) {

@@ -9,7 +9,7 @@ namespace furrow::terrain {
 namespace {
 
 constexpr double kMaxCells = 1e6;
-constexpr double kCellShare = 2.0;  // cell / margin: longer lists per query against fewer cells to fill
+constexpr double kCellShare = 2.0;  // cell / margin: a larger cell means longer lists per query and fewer cells to fill
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void SurfaceGrid::size_cells(const Vec3& extent, double margin) {
   inverse_cell_ = 1.0 / cell_;
 }
 
-/// Calls visit(cell) for every cell with a point within `margin` of the triangle; some beyond it may be included.
+/// Calls visit(cell) for every cell that has a point within `margin` of the triangle, and possibly for some others.
 template <class Visit>
 void SurfaceGrid::visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, double margin, Visit&& visit) const {
   const Vec3 lo = a.cwiseMin(b).cwiseMin(c).array() - margin;
@@ -36,7 +36,7 @@ void SurfaceGrid::visit_cells(const Vec3& a, const Vec3& b, const Vec3& c, doubl
   const Vec3 cross = (b - a).cross(c - a);
   const double length = cross.norm();
   const Vec3 normal = length > 0.0 ? Vec3(cross / length) : Vec3::Zero();
-  // A cell is out when its centre is farther from the plane than margin + the cell's extent along the normal.
+  // A cell is too far if its centre is farther from the plane than margin + the cell's extent along the normal.
   const double limit = margin + 0.5 * cell_ * normal.lpNorm<1>() * (1.0 + 1e-9);
   for (int ix = from[0]; ix <= to[0]; ++ix)
     for (int iy = from[1]; iy <= to[1]; ++iy)
@@ -76,7 +76,7 @@ void SurfaceGrid::build(std::span<const Vec3> vertex, std::span<const std::array
   for_each_entry([&](std::size_t cell, int) { ++first_[cell + 1]; });
   for (std::size_t cell = 0; cell < cells; ++cell) first_[cell + 1] += first_[cell];
   entry_.resize(first_[cells]);
-  // Filling moves first_[cell] to the cell's end; shifting back by one cell restores the beginnings.
+  // Filling moves first_[cell] to the cell's end; shifting by one cell restores the beginnings.
   for_each_entry([&](std::size_t cell, int t) { entry_[first_[cell]++] = t; });
   for (std::size_t cell = cells; cell > 0; --cell) first_[cell] = first_[cell - 1];
   first_[0] = 0;

@@ -1,7 +1,7 @@
-// Broad phase of SurfaceCollider: which triangles may be within `reach + skin` of a point.
+// Broad phase of SurfaceCollider: finds the triangles that may be within `reach + skin` of a point.
 //
 // A uniform grid over the triangles' boxes. Every triangle is listed in each cell that it may reach, so a query reads
-// one cell. Lists are in triangle order, so the answer's order does not depend on when the grid was built.
+// one cell. Lists are in triangle order, so the order of results does not depend on when the grid was built.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace furrow::terrain {
 
 class SurfaceGrid {
  public:
-  /// @param margin  distance from a triangle up to which a point must find it, m (> 0)
+  /// @param margin  a point finds every triangle within this distance, m (> 0)
   void build(std::span<const Vec3> vertex, std::span<const std::array<int, 3>> triangle, std::span<const int> listed,
              double margin);
 

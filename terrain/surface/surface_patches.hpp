@@ -1,9 +1,9 @@
-// Couples on a triangulated surface. Vertices carry forces only, so that a couple M acts on the vertices around its
-// point as forces without a resultant. With their positions x_a from their centroid and J = Σ (|x_a|² I − x_a x_aᵀ),
+// Couples on a triangulated surface. Vertices carry only forces, so a couple M acts on the vertices around its point as
+// forces without a resultant. With their positions x_a from their centroid and J = Σ (|x_a|² I − x_a x_aᵀ),
 //
 //   f_a = (J⁻¹ M) × x_a,     Σ f_a = 0,   Σ x_a × f_a = M,   Σ f_a · v_a = M · ω_s,   ω_s = J⁻¹ Σ x_a × v_a:
 //
-// force, moment and power are exact for the spin ω_s, which is that of the vertices where they move as a rigid body.
+// force, moment and power are exact for ω_s, the spin of the vertices if they move as a rigid body.
 #pragma once
 
 #include <span>
@@ -15,11 +15,12 @@
 
 namespace furrow::terrain {
 
-/// For each triangle its vertices, and more around it where it is small.
+/// The vertices of each triangle, and more vertices around it if it is small.
 class SurfacePatches {
  public:
   SurfacePatches() = default;
-  /// @param reach within which vertices belong to a triangle, from its centroid and along connected triangles, m
+  /// @param reach distance from the triangle's centroid within which vertices belong to it, along connected triangles,
+  /// m
   /// @pre a position for each vertex
   SurfacePatches(const SurfaceMesh& mesh, std::span<const Vec3> position, double reach);
 
@@ -36,17 +37,17 @@ class SurfacePatches {
   std::vector<int> first_, vertex_;
 };
 
-/// A couple on a patch: what each of its vertices receives.
+/// A couple on a patch, as forces on its vertices.
 struct PatchCouple {
   Vec3 moment = Vec3::Zero();  // M, N m
   Vec3 turn = Vec3::Zero();    // J⁻¹ M, N/m
   Vec3 centre = Vec3::Zero();  // of the patch, m
 
-  /// On a vertex at x, N.
+  /// Force on a vertex at x, N.
   Vec3 force_at(const Vec3& x) const { return turn.cross(x - centre); }
 };
 
-/// A patch as it stands.
+/// A patch at its present position.
 class PatchTurn {
  public:
   /// @pre three vertices or more
@@ -54,14 +55,14 @@ class PatchTurn {
 
   /// ω_s, rad/s.
   Vec3 spin(std::span<const Vec3> velocity) const;
-  /// On vertices that stand in one line no moment about it can act.
+  /// If the vertices lie on one line, no moment about that line can act.
   PatchCouple couple(const Vec3& moment) const { return {moment, solved(moment), centre_}; }
-  /// −∂f/∂u of a vertex alone, where M = −K ω: [x]ᵀ J⁻¹ K J⁻¹ [x].
+  /// −∂f/∂u of one vertex if the others do not move, where M = −K ω: [x]ᵀ J⁻¹ K J⁻¹ [x].
   Mat3 resistance(int vertex, const Mat3& of_couple) const;
 
  private:
   Vec3 moment_of(const Vec3& turn) const;
-  /// J⁻¹ b. Once more with what is left over: J of a sliver is ill-conditioned.
+  /// J⁻¹ b, with one step of iterative refinement, because J of a sliver is ill-conditioned.
   Vec3 solved(const Vec3& b) const {
     const Vec3 first = inverse_ * b;
     return first + inverse_ * (b - moment_of(first));

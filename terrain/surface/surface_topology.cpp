@@ -27,7 +27,7 @@ SurfaceTopology::SurfaceTopology(const SurfaceMesh& mesh) {
       half.push_back({std::min(a, b), std::max(a, b), t, k});
       ++first[a + 1];
     }
-  // Sorted by their vertices, the half-edges of one edge stand side by side.
+  // After sorting by vertices, the half-edges of one edge are next to each other.
   std::sort(half.begin(), half.end(), [](const HalfEdge& p, const HalfEdge& q) { return p.key() < q.key(); });
   neighbour.assign(count, {-1, -1, -1});
   boundary_vertex.assign(mesh.vertex_count, 0);

@@ -1,4 +1,4 @@
-// Who borders whom in a contact surface: what pseudo-normals of edges and vertices are made of.
+// Neighbours in a contact surface, from which pseudo-normals of edges and vertices are computed.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace furrow::terrain {
 
 struct SurfaceTopology {
-  std::vector<std::array<int, 3>> neighbour;  // triangle across edge k (vertex k to k+1); −1 where there is not one
+  std::vector<std::array<int, 3>> neighbour;  // triangle across edge k (vertex k to k+1); −1 if there is none
   std::vector<std::uint8_t> boundary_vertex;  // 1: on an edge that does not border exactly two triangles
   std::vector<int> first, incident;           // vertex → its triangles, as slices of `incident`
 

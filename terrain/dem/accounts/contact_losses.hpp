@@ -1,14 +1,14 @@
-// What contacts lose, by mechanism, and what their springs hold. A law takes itself apart into these (Law::sample),
-// from what it is given, so that it may be sampled beside its evaluation, or not at all.
+// Energy that contacts lose, by mechanism, and energy that their springs store. A law computes these from its own
+// inputs (Law::sample), so it may be sampled in addition to its evaluation, or not at all.
 //
-// Cohesion is a potential: −F_c δ is what a contact's constant pull stores, nothing is lost when it opens.
+// Cohesion is a potential: the constant pull of a contact stores −F_c δ, and opening the contact loses nothing.
 #pragma once
 
 #include "protocol/core/fields.hpp"
 
 namespace furrow::terrain::dem {
 
-/// By mechanism: energy lost, J, or its rate, W.
+/// Energy lost, J, or its rate, W, by mechanism.
 template <class T>
 struct LossesOf {
   T sliding{}, normal_damping{}, tangential_damping{}, rolling{}, opening{};
@@ -24,7 +24,7 @@ void visit_fields(FieldsOf<Losses> auto& s, auto&& visit) {
 inline double total(const Losses& l) {
   return l.sliding + l.normal_damping + l.tangential_damping + l.rolling + l.opening;
 }
-/// Calls f(a's, b's) for each mechanism.
+/// Calls f(a's entry, b's entry) for each mechanism.
 template <class A, class B, class F>
 inline void for_both(LossesOf<A>& a, const LossesOf<B>& b, const F& f) {
   f(a.sliding, b.sliding), f(a.normal_damping, b.normal_damping), f(a.tangential_damping, b.tangential_damping);
@@ -34,7 +34,7 @@ inline void add(Losses& to, const Losses& l, double times) {
   for_both(to, l, [times](double& sum, double by) { sum += times * by; });
 }
 
-/// What contacts store beside their normal springs, J.
+/// Energy stored in contacts besides their normal springs, J.
 template <class T>
 struct StoredOf {
   T cohesion{};    // Σ −F_c δ
@@ -50,11 +50,11 @@ inline void add(Stored& to, const Stored& s, double times) {
   to.tangential += times * s.tangential;
 }
 
-/// Of one contact, or of several, in one evaluation.
+/// Sample of one contact, or of several, in one evaluation.
 template <class T>
 struct ContactSampleOf {
   LossesOf<T> power;   // W
-  StoredOf<T> stored;  // after it
+  StoredOf<T> stored;  // after the evaluation
 };
 using ContactSample = ContactSampleOf<double>;
 template <class A, class B, class F>

@@ -1,16 +1,17 @@
-// Energy of the grains by mechanism. What springs, damping and sliding take is too dear to be summed in every step:
-// contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*: in it the power
-// of each mechanism is summed over all contacts that are evaluated, with the forces and velocities of that step, and it
-// stands for its own step and for the nearer half of those on either side. Were every step a sample, the sums would be
-// exact. Strips that sleep lose nothing. kLossSampleSteps is a prime: samples do not fall into step with substeps or
-// treads.
+// Energy of the grains by mechanism. The energy taken by springs, damping and sliding is too expensive to be summed in
+// every step: contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*. In
+// it the power of each mechanism is summed over all evaluated contacts, with the forces and velocities of that step.
+// The sample represents its own step and the nearer half of the steps on either side. If every step were a sample, the
+// sums would be exact. Sleeping strips lose nothing. kLossSampleSteps is a prime, so that samples do not coincide
+// regularly with substeps or treads.
 //
-// The error of that: were powers of successive samples independent, the variance of one were ½⟨(P_k − P_{k−1})²⟩, so
+// Error of sampling: if powers of successive samples were independent, the variance of one would be
+// ½⟨(P_k − P_{k−1})²⟩, so
 //   error² = Σ ½ (P_k − P_{k−1})² Δt_k²,
-// P the sum of all sampled losses. Where powers change slowly against Δt it is an upper bound.
+// where P is the sum of all sampled losses. If powers change slowly compared with Δt, this is an upper bound.
 //
-// What is summed in every step, without an error of sampling: kinetic and potential energy, the sum of normal springs
-// and cohesion, what sleep takes, and the work of tires.
+// Summed in every step, without an error of sampling: kinetic and potential energy, the sum of normal springs and
+// cohesion, the energy removed by sleep, and the work of tires.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@
 
 namespace furrow::terrain::dem {
 
-/// Steps from one sample to the next.
+/// Number of steps from one sample to the next.
 inline constexpr int kLossSampleSteps = 47;
 
 class EnergyAccounts {
@@ -31,25 +32,25 @@ class EnergyAccounts {
   struct State {
     Losses lost;            // until the last sample, J
     Losses power;           // at the last sample, W
-    double since = 0.0;     // the last sample, s
-    double own = 0.0;       // of that: the step, or part of one, in which it was taken, s
-    double time = 0.0;      // since the accounts began, s
+    double since = 0.0;     // time since the last sample, s
+    double own = 0.0;       // part of `since`: the step, or part of one, in which the sample was taken, s
+    double time = 0.0;      // time since the accounts began, s
     double error2 = 0.0;    // J²
     double rotation = 0.0;  // ½ Σ I ω² now, J
     Stored stored;          // at the last sample
     std::int64_t samples = 0;
-    std::int64_t until = 0;  // the next sample, whole steps
+    std::int64_t until = 0;  // until the next sample, whole steps
   };
 
   /// @pre every > 0
   explicit EnergyAccounts(int every = kLossSampleSteps) : every_(every) { FURROW_ASSERT(every > 0, every); }
 
-  /// Begins again. @param stored by the contacts of each strip now
+  /// Starts the accounts again. @param stored by the contacts of each strip now
   void begin(std::vector<Stored> stored, double rotation);
   /// Whether the coming step is a sample.
   bool due() const { return state_.until == 0; }
-  /// Adds a sample. strips: how many; of(k): the sums of strip k, or null when it was not evaluated: it loses nothing
-  /// and holds what it held.
+  /// Adds a sample. strips: their number; of(k): the sums of strip k, or null if it was not evaluated. Such a strip
+  /// loses nothing and stores as much as before.
   template <class Of>
   void sample(int strips, const Of& of) {
     Losses power;
@@ -64,10 +65,10 @@ class EnergyAccounts {
     }
     take(power);
   }
-  /// Forces have acted for dt. @param whole the step is over, rather than a part of it
+  /// Call it after forces have acted for dt. @param whole whether the step is over, rather than a part of it
   void advance(double dt, bool whole, double rotation);
 
-  /// Until now, J.
+  /// Losses until now, J.
   Losses lost() const {
     Losses now = state_.lost;
     add(now, state_.power, state_.since);
@@ -77,7 +78,7 @@ class EnergyAccounts {
   const State& state() const { return state_; }
 
   void save(Archive& archive) const;
-  /// @param strips how many
+  /// @param strips their number
   void restore(const Archive& archive, std::size_t strips);
 
  private:
@@ -85,7 +86,7 @@ class EnergyAccounts {
 
   int every_;
   State state_;
-  std::vector<Stored> stored_;  // per strip, when it was last part of a sample
+  std::vector<Stored> stored_;  // per strip, from its last sample
 };
 void visit_fields(FieldsOf<EnergyAccounts::State> auto& s, auto&& visit) {
   visit(s.lost, Field{"lost", "J"});

@@ -1,4 +1,4 @@
-// Samples of contacts that come one by one (contact_losses.hpp), evaluated four at a time.
+// Collects samples of single contacts (contact_losses.hpp) and evaluates four at a time.
 #pragma once
 
 #include "protocol/core/assert.hpp"
@@ -8,18 +8,18 @@
 
 namespace furrow::terrain::dem {
 
-/// All contacts have the same coefficients.
+/// All contacts must have the same coefficients.
 template <class Law, bool kRolling>
 class SampleLanes {
   using Coefficients = typename Law::template Coefficients<double>;
 
  public:
-  /// @param sum  that samples are added to, at the latest by finish()  @pre dt > 0, s
+  /// @param sum  receives the samples, at the latest in finish()  @pre dt > 0, s
   SampleLanes(const Coefficients& c, double dt, ContactSample& sum) : c_(c), dt_(dt), sum_(sum) {
     FURROW_ASSERT(dt > 0.0, dt);
   }
 
-  /// @param share  of the sample that counts
+  /// @param share  weight of the sample
   void add(const ContactMotion<double>& motion, const ContactHistory<double>& history, double share) {
     put(motion_.normal, motion.normal), put(motion_.velocity, motion.velocity);
     put(motion_.roll, motion.roll);
@@ -30,7 +30,7 @@ class SampleLanes {
     share_[count_] = share;
     if (++count_ == kDoubleLanes) evaluate();
   }
-  /// Evaluates what waits.
+  /// Evaluates the remaining contacts.
   void finish() {
     if (count_ > 0) evaluate();
   }
@@ -39,7 +39,7 @@ class SampleLanes {
   void put(Triple<Double4>& to, const Triple<double>& v) const {
     to.x[count_] = v.x, to.y[count_] = v.y, to.z[count_] = v.z;
   }
-  /// Out of line, as sample_of() is. Lanes that nobody waits in hold a contact of before, and count for nothing.
+  /// Not inlined, like sample_of(). Unused lanes contain an earlier contact, with weight zero.
   [[gnu::noinline]] void evaluate() {
     for (int k = count_; k < kDoubleLanes; ++k) share_[k] = 0.0;
     const ContactSampleOf<Double4> s = Law::template sample<kRolling>(c_, dt_, motion_, history_);
@@ -47,7 +47,7 @@ class SampleLanes {
     count_ = 0;
   }
 
-  /// Any that can be evaluated.
+  /// A valid motion for lanes that were never used.
   static ContactMotion<Double4> some_motion() {
     const Double4 none{}, one = spread(1.0);
     return {{none, none, one}, one, one, {none, none, none}, none, {none, none, none}};

@@ -1,5 +1,5 @@
-// What contacts store where the grains stand now, from positions and histories alone: for the beginning of accounts,
-// before any force was taken.
+// Energy stored in contacts at the present positions, from positions and histories alone. Accounts begin with it,
+// before any force is evaluated.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace furrow::terrain::dem {
 
-/// What the listed pair p remembers since it was last evaluated.
+/// History of the listed pair p from its last evaluation.
 ContactHistory<double> pair_history(const Strip& strip, int p);
 
-/// Of the pairs and walls that each strip lists. `radius`: for which the coefficients are, m.
+/// Energy of the pairs and walls that each strip lists. `radius`: the one to which the coefficients refer, m.
 std::vector<Stored> stored_energy(const Grains& grains, const Strips& strips, LawKind law, const SolverCoefficients& c,
                                   double radius);
 

@@ -17,12 +17,12 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr std::int64_t kBedFormat = 6;         // raise when the bits of a bed or its digest may change
-constexpr const char* kDigest = "bed/digest";  // in files of the cache alone
+constexpr std::int64_t kBedFormat = 6;         // raise it when the bits of a bed or its digest may change
+constexpr const char* kDigest = "bed/digest";  // only in files of the cache
 
 constexpr ArchiveKind kBed{"bed", "a bed of furrow", kBedFormat, ""};
 
-/// What a bed says of itself. @throws Error(io) naming what it lacks
+/// Checks the labels of a bed. @throws Error(io) naming what is missing
 void require_label(const Archive& bed) {
   for (const char* count : {"count", "surfaces/count", "bed/periodic_sides"}) (void)bed.get_int(count);
   for (const char* four : {"bed/geometry", "bed/settled"}) (void)bed.get<double>(four, 4);
@@ -44,7 +44,7 @@ std::string bed_digest(const DemOptions& o, const std::string& arithmetic) {
   if (o.piece) hash.add("piece of a tiled bed");
   add(o.seed);
   add(settle_step(o));
-  // Beds kept before were placed anew, without their contacts, once they had fallen.
+  // Beds cached earlier were placed again after their fall, without their contacts.
   if (o.settling_friction >= 0.0) hash.add("goes on as it lies");
   if (o.gravity != standard_gravity()) hash.add(o.gravity.data(), 3 * sizeof(double));
   if (!o.bed.empty()) add_file(hash, o.bed);
@@ -57,7 +57,7 @@ std::filesystem::path bed_cache_file(const std::string& digest) {
 }
 
 void write_bed(const std::filesystem::path& file, const Archive& archive, const ProgressCall& progress) {
-  std::error_code failed;  // if the folder cannot be made, creating the file says so
+  std::error_code failed;  // if the folder cannot be created, creating the file reports it
   std::filesystem::create_directories(file.parent_path(), failed);
   PacedCall tell(progress, PacedCall::kInterval);
   write_archive(file, archive, kBed, [&] { tell("keeping the bed", 0.0); });

@@ -13,8 +13,8 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kPressSpeed = 1.0;     // m/s: the load grows over the time that this speed takes for the bed's depth
-constexpr double kMaxHold = 8.0;        // of that time
+constexpr double kPressSpeed = 1.0;     // m/s: the load grows for the bed's depth over this speed
+constexpr double kMaxHold = 8.0;        // in units of that time
 constexpr double kLidAtRest = 1e-3;     // m/s: a slower lid counts as at rest
 constexpr double kSolidFraction = 0.5;  // of a loose bed, for the lid's mass
 
@@ -23,7 +23,7 @@ struct Lid {
   SurfaceState state;
 };
 
-/// Fills the bin at height z, outside below.
+/// A lid that fills the bin at height z, with its outside facing down.
 Lid lid_at(const Bin& bin, double z) {
   Lid lid;
   const double half = 0.5 * bin.width;

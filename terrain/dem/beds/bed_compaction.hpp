@@ -1,4 +1,4 @@
-// A flat lid pressed on a settled bed and lifted again.
+// Presses a flat lid on a settled bed and lifts it again.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace furrow::terrain::dem {
 
-/// Presses a frictionless lid that fills the bin on the settled grains: the load grows to
-/// `compaction_pressure` × area, stays until the lid rests, and goes again. Side walls are without friction as while
-/// settling, so that the pressure reaches the floor. Returns the positions, by grain id; contacts are to be settled
-/// again. @throws Error(physics) when a grain is lost. @pre compaction_pressure > 0, some grains
+/// Presses a frictionless lid that fills the bin on the settled grains. The load grows to `compaction_pressure` × area,
+/// stays until the lid rests, and is removed again. Side walls have no friction, as during settling, so that the
+/// pressure reaches the floor. Returns the positions by grain id; contacts must settle again. @throws Error(physics)
+/// when a grain is lost. @pre compaction_pressure > 0, some grains
 std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress);
 
 /// Positions by grain id.

@@ -17,14 +17,14 @@ namespace {
 
 constexpr std::size_t kMaxLine = 1024;     // bytes
 constexpr std::size_t kCheckEvery = 1024;  // lines
-constexpr std::size_t kShown = 30;         // of a line in messages: files that are no beds are nobody's to print
+constexpr std::size_t kShown = 30;         // of a line in messages: other files should not be printed
 
-/// The lines of a file, none of them longer than kMaxLine.
+/// The lines of a file; a line longer than kMaxLine is an error.
 class Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : name_(file.string()), in_(file) {}
 
-  /// The next one, without its end; null at the end of the file. @throws Error(bad_input) for what is no line of text
+  /// The next line, without its end; null at the end of the file. @throws Error(bad_input) if it is not a line of text
   char* next() {
     if (!in_.getline(line_.data(), kMaxLine)) {
       if (in_.bad() || (row_ == 0 && !in_.eof() && in_.gcount() == 0))
@@ -67,7 +67,7 @@ std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const Pr
   const char* const first = lines.next();
   if (!first) throw input_error(file.string(), "", "is empty, expected a CSV file of positions");
   std::string header = first;
-  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // a byte-order mark, as spreadsheets write it
+  if (header.starts_with("\xEF\xBB\xBF")) header.erase(0, 3);  // a byte-order mark, which spreadsheets write
   std::erase_if(header, [](char c) { return c == '\r' || c == ' '; });
   const bool radii = header == "x_m,y_m,z_m,radius_m";
   if (header != "x_m,y_m,z_m" && !radii)

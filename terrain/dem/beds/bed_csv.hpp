@@ -1,4 +1,4 @@
-// Beds that users bring: a text file of positions.
+// Beds from users, as text files of positions.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@
 
 namespace furrow::terrain::dem {
 
-/// Reads rows `x_m,y_m,z_m` or `x_m,y_m,z_m,radius_m` (header line first), m; w: radius, 0 where the file has none.
-/// @throws Error(io) when the file cannot be read, Error(bad_input) naming the line that is not as many finite numbers.
+/// Reads rows `x_m,y_m,z_m` or `x_m,y_m,z_m,radius_m` (header line first), m; w: radius, 0 if the file has none.
+/// @throws Error(io) when the file cannot be read, Error(bad_input) naming a line without that many finite numbers.
 /// May throw what `progress` throws.
 std::vector<Quad> read_positions_csv(const std::filesystem::path& file, const ProgressCall& progress = {});
 
-/// Writes such a file, shifted by (0, y, 0), 17 digits, with radii where they differ. @throws Error(io)
+/// Writes such a file, shifted by (0, y, 0), with 17 digits, and with radii if they differ. @throws Error(io)
 void write_positions_csv(const std::filesystem::path& file, std::span<const Quad> positions, double y = 0.0);
 
 }  // namespace furrow::terrain::dem

@@ -26,7 +26,7 @@ namespace {
 constexpr double kMinDistance = 1.8;  // mean radii between centres in a user's bed: overlaps of 10 % of the diameter
 constexpr double kSingle = 1e-7;      // relative round-off of a float
 constexpr double kMinWall = 0.8;      // radii between a centre and a wall
-constexpr double kMaxFall = 100.0;    // largest radii between a grain's centre and that of the next one below it
+constexpr double kMaxFall = 100.0;    // largest radii from a grain's centre to the next one below
 constexpr std::size_t kMaxGrains = 500'000'000;
 
 Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
@@ -36,7 +36,7 @@ struct Lattice {
   double dx = 0.0, dy = 0.0;  // m
 };
 
-/// Fills the bin evenly, leaving room for jitter at the walls and for the shift of every other layer; `around`: goes on
+/// Fills the bin evenly, with space for jitter at the walls and for the shift of every other layer. `around`: continues
 /// across periodic sides of the bin.
 Lattice lattice_of(const Bin& bin, double radius, bool around) {
   const auto along = [&](double size, bool periodic, int& n, double& spacing) {
@@ -102,7 +102,7 @@ const Generator& generator_of(const DemOptions& o) {
 
 std::string place_text(const Quad& p) { return fmt::format("({:g}, {:g}, {:g}) m", p.x, p.y, p.z); }
 
-/// The first grain that hangs in the air, and by how much; nothing where none does.
+/// The first grain without support, and its height.
 struct Hanging {
   std::size_t grain = 0;
   double height = 0.0;  // above the next one below it, or above the floor, m
@@ -141,7 +141,7 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
   for (std::size_t g = 0; g < grains.size(); ++g) {
     double& radius = grains[g].w;
     if (radius == 0.0) radius = o.radius;
-    // Frames keep radii in single precision.
+    // Frames store radii in single precision.
     for (const double limit : {smallest_radius(o), largest_radius(o)})
       if (std::abs(radius - limit) < kSingle * limit) radius = limit;
     if (!(radius >= smallest_radius(o) && radius <= largest_radius(o)))

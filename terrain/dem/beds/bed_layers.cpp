@@ -25,12 +25,12 @@ class Uniform {
   std::mt19937_64 bits_;
 };
 
-/// One side of the rectangle that samples are drawn in, cut into cells that hold at most one sample each.
+/// One side of the rectangle of samples, cut into cells with at most one sample each.
 struct Side {
   double length = 0.0;  // m
   double cell = 0.0;    // m
   std::int64_t cells = 0;
-  bool around = false;  // what leaves at one end comes back at the other
+  bool around = false;  // periodic: a sample that leaves at one end enters at the other
 
   Side(double length_, double most, bool around_) : length(length_), cell(most), around(around_) {
     cells = static_cast<std::int64_t>(length / cell) + 1;
@@ -39,22 +39,22 @@ struct Side {
   std::int64_t cell_of(double v) const {
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(v / cell), 0, cells - 1);
   }
-  /// First and last cell that may hold a sample nearer than the spacing to one in cell `c`; beyond the ends for a side
-  /// that goes around.
+  /// First and last cell that may contain a sample nearer than the spacing to one in cell `c`; for a periodic side they
+  /// may be beyond its ends.
   std::pair<std::int64_t, std::int64_t> near(std::int64_t c) const {
     const std::int64_t from = c - 2, to = c + 2;
     return around ? std::pair(from, to) : std::pair(std::max<std::int64_t>(from, 0), std::min(to, cells - 1));
   }
   std::int64_t wrapped(std::int64_t c) const { return around ? (c + cells) % cells : c; }
   double shortest(double d) const { return around ? d - length * std::round(d / length) : d; }
-  /// Brings a candidate into the rectangle, or says that it is not in it.
+  /// Moves a candidate into the rectangle if the side is periodic. Returns whether it is inside.
   bool take(double& v) const {
     if (around) v -= length * std::floor(v / length);
     return v >= 0.0 && v <= length;
   }
 };
 
-/// The samples of one layer and who stands where.
+/// The samples of one layer, and the cell of each.
 class Samples {
  public:
   Samples(const Side& x, const Side& y, double spacing)
@@ -85,7 +85,7 @@ class Samples {
   std::vector<Quad> points_;
 };
 
-/// Fills the rectangle [Bridson 2007].
+/// Fills the rectangle with samples [Bridson 2007].
 void sample(const Side& x_side, const Side& y_side, double spacing, std::uint64_t seed, Samples& samples,
             const std::function<void()>& each) {
   Uniform uniform(seed);
@@ -156,7 +156,7 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
 double expected_layer_count(const Bin& bin, double radius, bool around) {
   FURROW_ASSERT(radius > 0.0, radius);
   const double disc = 0.25 * std::numbers::pi * kSpacing * kSpacing * radius * radius;
-  // Discs reach half a spacing beyond the samples' domain; half of that rim is gained.
+  // Discs extend half a spacing beyond the samples' domain; half of that rim is gained.
   const auto side = [&](double length, bool periodic) {
     return around && periodic ? length : length + (0.5 * kSpacing - 2.0) * radius;
   };

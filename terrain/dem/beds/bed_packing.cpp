@@ -14,10 +14,10 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kSampleSide = 30.0;  // largest radii: the fraction then has a standard deviation of 0.002
+constexpr double kSampleSide = 30.0;  // in largest radii: the fraction then has a standard deviation of 0.002
 constexpr int kMostTries = 5;
 constexpr double kSearchTolerance = 0.0015;
-constexpr double kClosest = 0.01;  // looseness: closer beds differ by chance alone
+constexpr double kClosest = 0.01;  // looseness: beds closer than this differ only by chance
 
 double drag_unit(const DemOptions& o) { return std::sqrt(o.gravity.norm() / o.radius); }
 
@@ -62,7 +62,7 @@ double PackingSearch::looseness_for(double wanted) {
   const double end = at(0.0) > wanted ? 1.0 : -1.0;
   if ((at(end) - wanted) * end >= 0.0) return end;
   for (int k = 0; k < kMostTries; ++k) {
-    auto loose = known_.end();  // the beds on either side of what is wanted
+    auto loose = known_.end();  // the next looser and the next denser bed
     while (std::prev(loose)->second < wanted) --loose;
     const auto dense = std::prev(loose);
     if (loose->first - dense->first < kClosest) break;

@@ -11,7 +11,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-/// All numbers of a dataset with this many columns; a vector has one.
+/// All numbers of a dataset with this many columns; a vector has one column.
 std::vector<double> numbers(const Hdf5Reader& file, const std::string& name, hsize_t columns,
                             const std::filesystem::path& path) {
   const auto wrong = [&](const std::string& what) {

@@ -19,15 +19,15 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr const char* kReached = "bed/solid_fraction";  // of a bed that was asked for one
-constexpr int kMostPackings = 4;                        // of a bed whose solid fraction is asked for
-constexpr double kSmallBed = 2.0;                       // samples: such a bed is its own sample
+constexpr const char* kReached = "bed/solid_fraction";  // of a bed with a prescribed fraction
+constexpr int kMostPackings = 4;                        // of a bed with a prescribed solid fraction
+constexpr double kSmallBed = 2.0;                       // in samples: a smaller bed is its own sample
 
 std::vector<double> geometry(const DemOptions& o) { return {o.radius, o.density, o.length, o.width}; }
 
 const char* sides(bool periodic) { return periodic ? "periodic" : "walls"; }
 
-/// A bed from a file must be one of this bin, these grains and this law.
+/// Checks that a bed from a file has this bin, these grains and this law.
 void check_bed(const Archive& bed, const DemOptions& o) {
   if (bed.get_int("surfaces/count") != 0) throw io_error(o.bed, "holds a tire besides its grains, expected a bed");
   const auto& made = bed.get<double>("bed/geometry", 4);
@@ -67,12 +67,12 @@ bool from_cache(const std::filesystem::path& file, const DemOptions& options, Ar
     return digest.empty() || digest == bed_digest(options);
   } catch (const Error& error) {
     if (error.code() != ExitCode::io && error.code() != ExitCode::bad_input) throw;
-    return false;  // absent or damaged: made again
+    return false;  // absent or damaged: the bed is made again
   }
 }
 
-/// The grains while they fall. Smoother ones come to rest more closely packed, rougher ones more loosely [Agnolin &
-/// Roux 2007, doi:10.1103/PhysRevE.76.061302].
+/// The options of the grains while they fall. Smoother ones come to rest more densely packed, rougher ones more loosely
+/// [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302].
 DemOptions falling(DemOptions o) {
   if (o.settling_cohesion >= 0.0) o.cohesion = o.settling_cohesion;
   if (o.settling_friction < 0.0) return o;
@@ -81,7 +81,7 @@ DemOptions falling(DemOptions o) {
   return o;
 }
 
-/// Progress of a part of the work under a name of its own.
+/// Progress of a part of the work, with a name of its own.
 ProgressCall named(const char* part, const ProgressCall& progress) {
   if (!progress) return {};
   return [part, &progress](const std::string& what, double share) {
@@ -89,13 +89,13 @@ ProgressCall named(const char* part, const ProgressCall& progress) {
   };
 }
 
-/// Copies of a settled piece, joined and settled once more.
+/// Copies of a settled piece, joined and settled again.
 Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
   const DemOptions of_piece = piece_of(options);
   GrainSolver solver(settling_params(of_piece));
   const PreparedBed piece = load_bed(solver, of_piece, named("a piece of the bed: ", progress));
   const std::vector<Quad> positions = tiled_positions(positions_by_id(solver), options, progress);
-  // Only what is near a joint or a wall has much to move: the rest may sleep meanwhile.
+  // Only grains near a joint or a wall have far to move; the others may sleep.
   SolverParams params = settling_params(options);
   params.activity = has_history(params.law);
   solver = GrainSolver(params);
@@ -106,7 +106,7 @@ Archive tiled_bed(const DemOptions& options, const ProgressCall& progress, Settl
   return bed_archive(solver, options, result);
 }
 
-/// A bed that falls as the keys of settling say.
+/// A bed that falls as the keys of settling prescribe.
 Archive settled_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
   const DemOptions first = falling(options);
   GrainSolver solver(settling_params(options));
@@ -139,15 +139,15 @@ BedStatistics statistics_of(const Archive& bed, const DemOptions& options) {
   return statistics_of(solver, options);
 }
 
-/// A bed of the solid fraction that is asked for. What packs so is looked for on a sample, whose beds are kept like any
-/// other; walls and chance make the bed itself differ a little, so that a few are made, and the nearest is taken.
+/// A bed with the prescribed solid fraction. The settings for it are searched on a sample, whose beds are cached like
+/// any other. Walls and chance make the bed itself differ a little, so a few are made and the nearest is taken.
 Archive packed_bed(const DemOptions& options, const ProgressCall& progress, SettleResult& result) {
   const double wanted = options.solid_fraction, tolerance = packing_tolerance(wanted);
   DemOptions as = options;
   as.solid_fraction = -1.0;
   Archive best;
   double nearest = INFINITY;
-  const auto settle_it = [&] {  // returns by how much it is too dense
+  const auto settle_it = [&] {  // returns the excess of its solid fraction
     SettleResult settled;
     Archive bed = settled_bed(as, progress, settled);
     const double reached = statistics_of(bed, as).solid_fraction_bulk, excess = reached - wanted;
@@ -193,7 +193,7 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
                                                    : settled_bed(options, progress, result);
 }
 
-/// Takes from the bed's archive how it was settled.
+/// Reads from the bed's archive how it settled.
 void read_settled(PreparedBed& prepared) {
   const auto& settled = prepared.bed.get<double>("bed/settled", 4);
   prepared.settled.settled = settled[0] != 0.0;
@@ -202,7 +202,7 @@ void read_settled(PreparedBed& prepared) {
   prepared.settled.time = settled[3];
 }
 
-/// A cache that cannot be written costs time, not the run.
+/// If the cache cannot be written, the run only loses time.
 bool keep(const std::filesystem::path& file, const DemOptions& options, Archive& bed, const ProgressCall& progress) {
   if (file.empty()) return false;
   try {
@@ -215,7 +215,7 @@ bool keep(const std::filesystem::path& file, const DemOptions& options, Archive&
   }
 }
 
-/// A bed that is settled now, whatever the cache holds.
+/// A newly settled bed, whatever the cache contains.
 PreparedBed settled_anew(const DemOptions& options, const std::filesystem::path& file, const ProgressCall& progress) {
   PreparedBed prepared;
   prepared.bed = made_bed(options, progress, prepared.settled);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kNone = -1, kFar = std::numeric_limits<int>::max();
 
-/// A largest matching, made of rounds of shortest augmenting paths that do not meet.
+/// A largest matching, found in rounds of shortest augmenting paths that do not meet.
 class Matching {
  public:
   Matching(const Conflicts& edges, int second)
@@ -23,8 +23,8 @@ class Matching {
   int mate_of_second(int b) const { return mate_of_second_[b]; }
 
  private:
-  /// Numbers the first grains by their distance from those without a mate. False when no path leads to a second grain
-  /// without one.
+  /// Numbers the first grains by their distance from those without a mate. Returns false if no path leads to a second
+  /// grain without one.
   bool layers() {
     depth_.assign(edges_.size(), kFar);
     next_.assign(edges_.size(), 0);
@@ -45,8 +45,8 @@ class Matching {
     return found;
   }
 
-  /// Follows the layers from `start`, an edge of each grain at most once in a round, and turns the path about if it
-  /// ends at a second grain without a mate.
+  /// Follows the layers from `start`, using an edge of each grain at most once in a round. If the path ends at a second
+  /// grain without a mate, its edges are exchanged.
   void augment(int start) {
     std::vector<int> path{start};  // first grains; next_[a] − 1 is the edge by which a is left
     while (!path.empty()) {
@@ -65,7 +65,7 @@ class Matching {
         const int taken = edges_[on_path][next_[on_path] - 1];
         mate_of_first_[on_path] = taken;
         mate_of_second_[taken] = on_path;
-        depth_[on_path] = kFar;  // no other path of this round goes through it
+        depth_[on_path] = kFar;  // no other path of this round uses it
       }
       return;
     }
@@ -83,8 +83,8 @@ SeamChoice most_compatible(const Conflicts& conflicts, int second) {
   for (const std::vector<int>& of_a : conflicts)
     for (const int b : of_a) FURROW_ASSERT(in_range(b, second), b, second);
   const Matching matching(conflicts, second);
-  // Reached on paths that leave first grains by any edge and second grains by their mate. The smallest cover are the
-  // first grains that are not reached and the second ones that are.
+  // Finds all grains on paths that leave first grains by any edge and second grains by their mate. The smallest cover
+  // consists of the first grains that are not reached and the second grains that are.
   SeamChoice stays;
   stays.first.assign(conflicts.size(), false);
   stays.second.assign(second, true);

@@ -13,8 +13,8 @@ namespace furrow::terrain::dem {
 namespace {
 
 constexpr double kStepShare = 0.8;         // of the stable step, with a law that has history
-constexpr double kStepShareWithout = 0.7;  // grains that fall on each other overlap more without history
-constexpr double kLyingSpeed = 0.03;       // rms, m/s: a bed that is slower gets the drag of one that lies
+constexpr double kStepShareWithout = 0.7;  // without history, falling grains overlap more
+constexpr double kLyingSpeed = 0.03;       // rms, m/s: a slower bed gets the drag of lying grains
 
 DemOptions with_impulse_limit(DemOptions options) {
   options.friction_impulse_limit = true;
@@ -75,7 +75,7 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
     const Accounts& a = solver.accounts();
     measure_rest(solver, result);
     result.time = dt * static_cast<double>(result.steps);
-    // Only a help to a bed of many contacts; one of few comes to rest without it.
+    // This only helps a bed of many contacts; one with few comes to rest without it.
     if (!lying && a.contacts > solver.grains().count && result.speed < kLyingSpeed) {
       lying = true;
       solver.set_drag(std::max(kRestDrag, drag));
@@ -83,7 +83,7 @@ SettleResult settle(GrainSolver& solver, const DemOptions& options, const Progre
     const bool rests = result.speed < kRestSpeed && a.kinetic < kRestEnergy * weight * grain.radius &&
                        result.force_ratio < kSettledForceRatio;
     result.settled = rests && result.floor_error < kSettledFloorError && all_awake;
-    // From the first rest on no grain sleeps: those asleep may hold up what the floor does not bear yet.
+    // After the first rest no grain sleeps: sleeping grains may support others that the floor does not carry yet.
     if (solver.params().activity && (rests || all_awake)) {
       all_awake = true;
       solver.wake_all();

@@ -1,8 +1,8 @@
-// Lets a new bed fall and come to rest.
+// Lets a new bed fall until it comes to rest.
 //
-// At rest are one grain or a million alike when what moves them has vanished against what holds them, whatever the
-// number of contacts, in the manner of [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302, §II.C], who ask for net
-// forces and kinetic energy small against the scales of the load:
+// A bed of any number of grains is at rest if the net forces are small compared with the contact forces. This does not
+// depend on the number of contacts. The criteria follow [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302, §II.C],
+// who require net forces and kinetic energy that are small on the scales of the load:
 //   Σ|net force| / Σ|contact force| < kSettledForceRatio,   |floor force − weight| / weight < kSettledFloorError,
 //   E_kin < ½ m kRestSpeed²,   E_kin < kRestEnergy m g r,   m: all grains.
 // The second bound on the kinetic energy is the stricter one for grains below 0.2 mm.
@@ -25,7 +25,7 @@ struct SettleResult {
   std::int64_t steps = 0;
 };
 
-/// Step used for settling, s: a fixed share of the stable one, independent of the run's step.
+/// Step for settling, s: a fixed share of the stable one, independent of the run's step.
 double settle_step(const DemOptions& options);
 
 /// Coefficients while the bed settles: side walls without friction, so that the floor carries the whole weight; the
@@ -34,18 +34,18 @@ SolverCoefficients settle_coefficients(const DemOptions& options);
 
 inline constexpr double kMaxSettleTime = 4.0;  // s
 inline constexpr double kFallDrag = 4.0;       // 1/s, while layers fall, unless settling_drag is given
-inline constexpr double kJointDrag = 60.0;     // 1/s, where the grains lie but for gaps of a grain or two
-inline constexpr double kRestDrag = 20.0;      // 1/s, once the grains lie; those on top must still roll to their places
-inline constexpr double kRestSpeed = 0.002;    // rms, m/s: slower counts as at rest
-inline constexpr double kRestEnergy = 1e-3;    // kinetic, of m g r: less counts as at rest
+inline constexpr double kJointDrag = 60.0;     // 1/s, if the grains lie except for gaps of a grain or two
+inline constexpr double kRestDrag = 20.0;      // 1/s, once the grains lie; those on top must still roll into place
+inline constexpr double kRestSpeed = 0.002;    // rms, m/s; slower grains count as at rest
+inline constexpr double kRestEnergy = 1e-3;    // kinetic energy over m g r; grains with less count as at rest
 inline constexpr int kSettleCheckEvery = 40;   // steps
 
-/// Sets force ratio, floor error and speed as after the solver's last step, whose sums were asked for.
+/// Sets force ratio, floor error and speed from the solver's last step, which must have measured its sums.
 void measure_rest(const GrainSolver& solver, SettleResult& result);
 
-/// Runs the solver until the bed is settled, all grains awake, or `most` seconds have passed.
+/// Runs the solver until the bed has settled with all grains awake, or `most` seconds have passed.
 /// May throw what `progress` throws.
-/// @param drag of the beginning; that of grains which lie is at least kRestDrag
+/// @param drag in the beginning; that of lying grains is at least kRestDrag
 /// @throws Error(physics) when a grain is lost.
 SettleResult settle(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress,
                     double most = kMaxSettleTime, double drag = kFallDrag);

@@ -34,7 +34,7 @@ class Middle {
       solid_[k] +=
           beside * (volume_below(p.w, p.z, low_ + (k + 1) * layer_) - volume_below(p.w, p.z, low_ + k * layer_));
   }
-  /// Takes away what two grains both cover, about this point.
+  /// Removes the volume that two grains both cover, about this point.
   void remove(double x, double y, double z, double volume) {
     const int k = static_cast<int>(std::floor((z - low_) / layer_));
     if (in_range(k, kLayers) && x_.holds(x) && y_.holds(y)) solid_[k] -= volume;
@@ -48,10 +48,10 @@ class Middle {
  private:
   struct Range {
     double from = 0.0, to = 0.0;
-    bool all = false;  // images of grains that reach out at one end reach in at the other
+    bool all = false;  // periodic: images of grains that extend beyond one end enter at the other
 
     bool holds(double x) const { return all || (x >= from && x < to); }
-    /// Of the volume of a sphere.
+    /// Share of a sphere's volume.
     double share(double x, double r) const {
       if (all) return 1.0;
       return (volume_below(r, x, to) - volume_below(r, x, from)) / volume_below(r, 0.0, r);

@@ -1,4 +1,4 @@
-// What can be said of a bed at rest from the positions of its grains.
+// Statistics of a bed at rest, from the positions of its grains.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace furrow::terrain::dem {
 
-/// Walls order the grains beside them: the middle of a bed begins so many radii from them, but not beyond a quarter.
+/// Walls order the grains near them, so the middle of a bed begins at this many radii from them, at most at a quarter.
 inline constexpr double kWallMargin = 8.0;
 
 struct BedStatistics {
@@ -26,10 +26,10 @@ struct BedStatistics {
   std::array<double, 4> profile{};   // of four layers of the middle, from below
   double grain_volume = 0.0;         // of all grains, m³
   double max_overlap = 0.0;          // of two grains, m
-  double median_by_mass = 0.0;       // radius: half of the mass is of grains that are not larger, m
+  double median_by_mass = 0.0;       // radius up to which grains have half of the mass, m
 };
 
-/// Of grains that stand at x y z with radius w, m. `radius`: r of the cells, m. May throw what `progress` throws.
+/// Statistics of grains at x y z with radius w, m. `radius`: r of the cells, m. May throw what `progress` throws.
 BedStatistics bed_statistics(const std::vector<Quad>& grains, const Bin& bin, double radius,
                              const ProgressCall& progress = {});
 

@@ -19,14 +19,14 @@ constexpr const char* kJoining = "joining the pieces of the bed";
 
 Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
 
-/// Grains of one column: from x = `from` − band to x = `to` + band, until its seams are made.
+/// Grains of one column from x = `from` − band to x = `to` + band, before its seams are made.
 struct Column {
   double from = 0.0, to = 0.0;  // m
   std::vector<Quad> grains;
   std::vector<bool> stays;
 };
 
-/// Where grain p of the piece is in column `number`, seen from the column's beginning and the middle of the piece.
+/// Position of the piece's grain p in column `number`, relative to the column's beginning and the middle of the piece.
 Quad moved(Quad p, const Tiling& tiling, const Bin& of_piece, int number) {
   if (number % 2 == 1) p.x = tiling.length - p.x;
   if (number % 4 == 1 || number % 4 == 2) p.y = -p.y;
@@ -35,7 +35,7 @@ Quad moved(Quad p, const Tiling& tiling, const Bin& of_piece, int number) {
   return p;
 }
 
-/// Whether a grain is free of those walls of the bin that the piece does not have.
+/// Whether a grain does not touch those walls of the bin that the piece does not have.
 bool free_of_walls(const Quad& p, const Bin& bin, const Bin& of_piece) {
   for (int wall = 0; wall < kFloor; ++wall)
     if (bin.has_wall(wall) && !of_piece.has_wall(wall) && bin.distance(wall, p) < p.w) return false;
@@ -52,7 +52,7 @@ Column column_of(const std::vector<Quad>& piece, const DemOptions& o, const Tili
     for (const Quad& grain : piece) {
       Quad p = moved(grain, tiling, of_piece, number);
       p.y += (across + 0.5) * tiling.width - 0.5 * o.width;
-      // Along x the column continues beyond its ends, as the piece does.
+      // Along x the column continues beyond its ends, like the piece.
       for (const double image : {-tiling.length, 0.0, tiling.length}) {
         Quad at = p;
         at.x += column.from + image;
@@ -64,7 +64,7 @@ Column column_of(const std::vector<Quad>& piece, const DemOptions& o, const Tili
   return column;
 }
 
-/// The largest overlap of two grains, of the sum of their radii.
+/// Largest overlap of two grains, relative to the sum of their radii.
 double largest_overlap(const std::vector<Quad>& piece, const DemOptions& of_piece, const ProgressCall& progress) {
   double largest = 0.0;
   const auto pair = [&](std::size_t a, std::size_t b, double distance) {
@@ -74,7 +74,7 @@ double largest_overlap(const std::vector<Quad>& piece, const DemOptions& of_piec
   return largest;
 }
 
-/// Numbers of a column's grains that stand at x in [from, to).
+/// Indices of a column's grains with x in [from, to).
 std::vector<int> between(const Column& column, double from, double to) {
   std::vector<int> found;
   for (std::size_t g = 0; g < column.grains.size(); ++g)
@@ -82,17 +82,17 @@ std::vector<int> between(const Column& column, double from, double to) {
   return found;
 }
 
-/// Grains of two columns around their seam, in one list: those of `before`, then those of `after`.
+/// Grains of two columns around their seam, in one list: first those of `before`, then those of `after`.
 struct SeamGrains {
-  std::vector<int> before, after;  // numbers in their columns
-  std::vector<Quad> points;        // seen from the beginning of a bin of its own
+  std::vector<int> before, after;  // indices in their columns
+  std::vector<Quad> points;        // relative to the beginning of a bin of its own
   Bin bin;
 };
 
 SeamGrains grains_at(double seam, double band, double reach, const Column& before, const Column& after,
                      const DemOptions& o) {
   SeamGrains s;
-  // Beyond the band one column alone stands: its grains stay, and those of the other must not be in their way.
+  // Beyond the band there is only one column: its grains stay, and those of the other must not collide with them.
   s.before = between(before, seam - band - reach, seam + band);
   s.after = between(after, seam - band, seam + band + reach);
   const double origin = seam - band - reach;
@@ -114,13 +114,13 @@ void join(Column& before, Column& after, double overlap, const DemOptions& o, co
   const SeamGrains s = grains_at(seam, band, reach, before, after, o);
   const auto firsts = static_cast<int>(s.before.size()), seconds = static_cast<int>(s.after.size());
   const auto fixed = [&](std::size_t g) {
-    const double x = s.points[g].x - reach;  // from the beginning of the band
+    const double x = s.points[g].x - reach;  // distance from the beginning of the band
     return x < 0.0 || x >= 2.0 * band;
   };
   Conflicts conflicts(firsts);
   std::vector<bool> barred(s.points.size(), false);
   const auto pair = [&](std::size_t a, std::size_t b, double distance) {
-    if (static_cast<int>(a) >= firsts || static_cast<int>(b) < firsts) return;  // of one column
+    if (static_cast<int>(a) >= firsts || static_cast<int>(b) < firsts) return;  // both are of one column
     if (distance >= (1.0 - overlap) * (s.points[a].w + s.points[b].w)) return;
     if (fixed(a)) barred[b] = true;
     if (fixed(b)) barred[a] = true;
@@ -190,7 +190,7 @@ std::vector<Quad> tiled_positions(const std::vector<Quad>& piece, const DemOptio
 double expected_tiled_grains(const DemOptions& o, double piece) {
   const Tiling tiling = tiling_of(o);
   const bool cut = tiling.across > 1 && !o.periodic_y();
-  const double wall = 2.0 * o.radius;  // no centre stands nearer to a wall than a radius
+  const double wall = 2.0 * o.radius;  // no centre is nearer to a wall than a radius
   return piece * (o.length - wall) * (o.width - (cut ? wall : 0.0)) / (tiling.length * tiling.width);
 }
 

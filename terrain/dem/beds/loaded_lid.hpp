@@ -1,10 +1,10 @@
-// A rigid lid that is pressed down on grains: its vertical motion.
+// A rigid lid that is pressed down on grains, and its vertical motion.
 //
 //   m v̇ = F − P − c v       v ← (v + dt (F − P)/m) / (1 + dt c/m),   z ← z + dt v
 //
-// F force of the grains (up), P load (down). The lid has the mass of the soil under it and the damper of its
-// impedance, Z = √(ρ M) per area with the modulus M ≈ E^{2/3} P^{1/3} of packed elastic spheres: it comes to rest
-// after about one swing, whatever the load.
+// F is the force of the grains (up), P the load (down). The lid has the mass of the soil under it and a damper with the
+// soil's impedance, Z = √(ρ M) per area, with the modulus M ≈ E^{2/3} P^{1/3} of packed elastic spheres. So it comes to
+// rest after about one swing, whatever the load.
 #pragma once
 
 #include <cmath>

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// What a grain's contact moves of a surface: its mass over the area that one of closely packed grains covers.
+/// Mass of a surface that a grain's contact moves: that of the area covered by one of closely packed grains.
 double surface_mass(const ContactMaterial& surface, double radius) {
   const double footprint = 2.0 * std::numbers::sqrt3 * radius * radius;
   return surface.area_density > 0.0 ? surface.area_density * footprint : kInfinite;
@@ -58,7 +58,7 @@ ContactCoefficients mix(const ContactMaterial& grain, const ContactMaterial& oth
       .radius = r,
       .reduced_radius = pair ? 0.5 * r : r,
       .mass = 1.0 / (1.0 / properties.mass + 1.0 / other_mass),
-      // Sliding also spins the spheres, which resist as 2/7 of their mass.
+      // Sliding also spins the spheres, which then resist like 2/7 of their mass.
       .slide_mass = 1.0 / (3.5 / properties.mass + (pair ? 3.5 : 1.0) / other_mass),
       .inertia = pair ? 0.5 * properties.inertia : properties.inertia,
       .friction = other.pair_friction >= 0.0 ? other.pair_friction : std::min(grain.friction, other.friction),

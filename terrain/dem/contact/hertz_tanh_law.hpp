@@ -1,10 +1,10 @@
-// Law hertz_tanh: Hertz with friction regularised by tanh, the law of the report.
+// Law hertz_tanh: Hertz with friction regularised by tanh, the law of the 2016 SBEL report.
 //   F_e = max(0, √δ (k_n δ − g_n v_n)),   F_t = μ F_e tanh(c |v_t|) against v_t; no history, no static friction     (2)
 //   with the impulse limit F_t ≤ β m_t |v_t| / dt, m_t = m/7 between equal spheres, 2m/7 against a surface.        (3)
 //
-// Mixing: k_n, g_n arithmetic mean; μ, c_t minimum. The stiffness is stated for one size of grains.
+// Mixing: k_n, g_n arithmetic mean; μ, c_t minimum. The stiffness is given for one size of grains.
 //
-// Losses. There are no springs but the normal one.
+// Losses. The normal spring is the only one.
 //   sliding −F_t·v_t,   rolling −M·ω,   normal damping (k_n δ^{3/2} − F_e) v_n, whether F_e is cut at 0 or not
 #pragma once
 
@@ -95,7 +95,7 @@ struct HertzTanhLaw {
     return {.cohesion = -(c.cohesion_force * overlap), .tangential = 0.0};
   }
 
-  /// k_n = 3/2 k_n √δ, c_n = g_n √δ, while friction is a dashpot c_t = F_t/|v_t|; without its limit it has no
+  /// k_n = 3/2 k_n √δ, c_n = g_n √δ. While friction is a dashpot, c_t = F_t/|v_t|; without its limit it has no
   /// stiffness.
   static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
                                          const ContactForce<double>& f, double share) {
@@ -112,8 +112,8 @@ struct HertzTanhLaw {
     return t;
   }
 
-  /// The impulse limit makes friction a dashpot c_t = β m/(7 dt), which takes its part of the 4 of stable_oscillation.
-  /// Friction without it is a dashpot c μ F_e at small |v_t|: 7 c μ F_e dt / m < 2 between equal spheres.
+  /// The impulse limit makes friction a dashpot c_t = β m/(7 dt), which uses a part of the 4 of stable_oscillation.
+  /// Without the limit, friction is a dashpot c μ F_e at small |v_t|: 7 c μ F_e dt / m < 2 between equal spheres.
   template <class Options>
   static StableStep stable_step(const Coefficients<double>& c, const Options& options, double mass, double overlap) {
     const double s = std::sqrt(overlap);
@@ -129,18 +129,18 @@ struct HertzTanhLaw {
 
   static double resting_force(const Coefficients<double>& c, double overlap) { return hertz_force(c, overlap); }
   static double resting_overlap(const Coefficients<double>& c, double force) { return hertz_overlap(c, force); }
-  /// That which gives two grains the stiffness k_n = 4/3 E* √R*, Pa.
+  /// The modulus that gives two grains the stiffness k_n = 4/3 E* √R*, Pa.
   template <class Options>
   static double young_modulus(const Options& options) {
     return 1.5 * (1.0 - options.poisson_ratio * options.poisson_ratio) * options.normal_stiffness /
            std::sqrt(0.5 * options.radius);
   }
-  /// Friction without its limiter chatters: such a bed never rests.
+  /// Without the limit, friction chatters and the bed never rests.
   template <class Options>
   static bool can_rest(const Options& options) {
     return options.friction_impulse_limit;
   }
-  /// Calls require(key, value, fits, expected) for what the law needs of a surface.
+  /// Calls require(key, value, fits, expected) for the law's requirements on a surface.
   template <class Material, class Require>
   static void check(const Material& m, const Require& require) {
     require("normal_stiffness", m.normal_stiffness, m.normal_stiffness > 0.0, "above 0 N/m^1.5");
@@ -149,7 +149,7 @@ struct HertzTanhLaw {
 
  private:
   static constexpr double kImpulseShare = 0.3;  // β of Eq. (3)
-  static constexpr double kViscous = 0.5;       // c |v_t| below which tanh is still nearly a dashpot
+  static constexpr double kViscous = 0.5;       // c |v_t| below which tanh is nearly linear, like a dashpot
 };
 
 }  // namespace furrow::terrain::dem

@@ -1,5 +1,5 @@
-// Where and how two bodies move against each other at their contact, and what the contact's force does to them: grain
-// with grain, grain with wall, grain with a facet of a tire. Each once, for every law, engine and number type.
+// Relative motion of two bodies at their contact, and the loads of the contact's force on them: grain with grain, grain
+// with wall, grain with a facet of a tire. Each formula is here once, for every law, engine and number type.
 #pragma once
 
 #include "terrain/dem/contact/contact.hpp"
@@ -9,9 +9,9 @@ namespace furrow::terrain::dem {
 // ---- grain i with grain j --------------------------------------------------------------------------------------
 //
 // With d = x_i − x_j the arms r − δ/2 are ±d/2, so v = v_i − v_j − ½ (ω_i + ω_j) × d, and the torque on i and on j is
-// −½ d × F_t. Grains of other sizes have the arms r_i − δ/2 = ½ (|d| + Δ) and ½ (|d| − Δ), Δ = r_i − r_j: then v gains
-// −½ Δ (ω_i − ω_j) × n, and the couple ∓½ Δ n × F_t stands beside that of rolling resistance. From δ = D − |d| digits
-// would be lost; with D = r_i + r_j it is (D² − d²)/(D + |d|).
+// −½ d × F_t. Grains of different sizes have the arms r_i − δ/2 = ½ (|d| + Δ) and ½ (|d| − Δ), Δ = r_i − r_j. Then v
+// gains −½ Δ (ω_i − ω_j) × n, and the couple ∓½ Δ n × F_t is added to that of rolling resistance. δ = D − |d| would
+// lose digits; with D = r_i + r_j it is computed as (D² − d²)/(D + |d|).
 
 /// Sets normal and overlap. @param gap D² − d² > 0, m²  @param sum D, m
 template <class T>
@@ -22,7 +22,7 @@ template <class T>
   to.root_overlap = root(to.overlap);
 }
 
-/// How grain i moves against grain j.
+/// Motion of grain i relative to grain j.
 template <class T>
 struct RelativeMotion {
   Triple<T> dv;    // v_i − v_j, m/s
@@ -41,7 +41,7 @@ template <bool kSizes, class T>
   to.spin = half * dot(relative.turn, to.normal);
 }
 
-/// On grain i: force, torque and couple are F, t and q; on grain j −F, t and −q.
+/// Loads on grain i: force, torque and couple are F, t and q; on grain j −F, t and −q.
 template <class T>
 struct PairLoads {
   Triple<T> force, torque, couple;  // N, N m
@@ -59,7 +59,8 @@ template <bool kSizes, class T>
 
 // ---- a grain with a surface, at a point of the surface ---------------------------------------------------------
 
-/// Against a surface at rest. @param arm from the grain's centre to the point, m  @param v, w of the grain, m/s, rad/s
+/// Sets the motion against a surface at rest. @param arm from the grain's centre to the point, m  @param v, w of the
+/// grain, m/s, rad/s
 template <class T>
 [[gnu::always_inline]] inline ContactMotion<T> motion_on_surface(const Triple<T>& normal, T overlap,
                                                                  const Triple<T>& arm, const Triple<T>& v,
@@ -67,7 +68,7 @@ template <class T>
   return {normal, overlap, root(overlap), v + cross(w, arm), constant<T>(0.5) * dot(w, normal), w};
 }
 
-/// A grain on a wall of the bin: the point is that of the wall's plane below the centre, arm −distance n.
+/// A grain on a wall of the bin. The point is the projection of the centre on the wall's plane, arm −distance n.
 template <class T>
 struct WallPoint {
   Triple<T> arm;  // m
@@ -90,7 +91,7 @@ template <class T>
   return {f.normal * at.motion.normal + f.tangential, cross(at.arm, f.tangential) + f.rolling};
 }
 
-/// At a point of a tire's facet that counts by `share`; on the tire −push and −drag.
+/// Loads at a point of a tire's facet that counts by `share`; on the tire −push and −drag.
 template <class T>
 struct FacetLoads {
   Triple<T> push, drag, torque;  // N, N, N m

@@ -1,4 +1,4 @@
-// The table of contact laws, and the one place that turns the law of the options into code.
+// The table of contact laws, and the only place that turns the law of the options into code.
 #pragma once
 
 #include <cstring>
@@ -11,12 +11,12 @@
 
 namespace furrow::terrain::dem {
 
-/// A line for each law (contact.hpp); the first is the default of terrain.law.
+/// One line per law (contact.hpp); the first is the default of terrain.law.
 using Laws = std::tuple<  //
     MindlinLaw,           //
     HertzTanhLaw>;
 
-/// The place of a law in the table.
+/// Index of a law in the table.
 enum class LawKind : int {};
 
 namespace detail {
@@ -28,13 +28,13 @@ decltype(auto) with_law_from(LawKind kind, const F& f) {
 }
 }  // namespace detail
 
-/// f(law) with the law itself.
+/// Calls f(law) with the law itself.
 template <class F>
 decltype(auto) with_law(LawKind kind, const F& f) {
   return detail::with_law_from<0>(kind, f);
 }
 
-/// f(law, rolling, sizes) with the law itself and two std::bool_constant. @pre the law has kSizes if `sizes`
+/// Calls f(law, rolling, sizes) with the law itself and two std::bool_constant. @pre the law has kSizes if `sizes`
 template <class F>
 decltype(auto) with_law(LawKind kind, bool rolling, bool sizes, const F& f) {
   return with_law(kind, [&](auto law) -> decltype(auto) {
@@ -55,11 +55,11 @@ void for_each_law(const See& see) {
 inline const char* law_name(LawKind kind) {
   return with_law(kind, [](auto law) { return law.kName; });
 }
-/// The law remembers contacts: it has static friction.
+/// Whether the law stores contact histories, and so has static friction.
 inline bool has_history(LawKind kind) {
   return with_law(kind, [](auto law) { return law.kHistory; });
 }
-/// The law admits grains of several sizes.
+/// Whether the law allows grains of several sizes.
 inline bool has_sizes(LawKind kind) {
   return with_law(kind, [](auto law) { return law.kSizes; });
 }
@@ -69,8 +69,8 @@ std::string law_names();
 /// @throws Error(bad_input) listing the valid names
 LawKind law_from(const std::string& name);
 
-/// The coefficients of one kind of partner (grain, wall, tire), already mixed, for whichever law made them: numbers
-/// that the law takes out again by its own names.
+/// The mixed coefficients of one kind of partner (grain, wall, tire), for whichever law made them. They are plain
+/// numbers; the law reads them under its own names.
 class ContactCoefficients {
  public:
   ContactCoefficients() = default;
@@ -79,7 +79,7 @@ class ContactCoefficients {
     static_assert(std::is_trivially_copyable_v<OfLaw> && sizeof c <= sizeof numbers_);
     std::memcpy(numbers_, &c, sizeof c);
   }
-  /// As numbers S. @pre `Law` made them
+  /// The coefficients as numbers S. @pre `Law` made them
   template <class Law, class S = double>
   typename Law::template Coefficients<S> of() const {
     typename Law::template Coefficients<S> c;
@@ -93,14 +93,14 @@ class ContactCoefficients {
   double numbers_[12] = {};
 };
 
-/// For two grains with radii r_i, r_j. @param radius that the coefficients are for, m
+/// Coefficients for two grains with radii r_i, r_j. @param radius to which the coefficients refer, m
 template <class Law>
 inline auto sized_pair(const typename Law::template Coefficients<double>& c, double radius, double r_i, double r_j) {
   if constexpr (Law::kSizes)
     if (r_i != radius || r_j != radius) return Law::scaled(c, pair_scale(r_i / radius, r_j / radius));
   return c;
 }
-/// For a grain of radius r on a surface. @param share as surface_scale takes it
+/// Coefficients for a grain of radius r on a surface. @param share as for surface_scale
 template <class Law>
 inline auto sized_surface(const typename Law::template Coefficients<double>& c, double radius, double r, double share) {
   if constexpr (Law::kSizes)

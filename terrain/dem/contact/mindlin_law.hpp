@@ -4,25 +4,25 @@
 //   dF_t = −8 G* √(R*δ) v_t dt, turned with the normal and with the mean spin about it, rescaled by √(δ/δ_old) on
 //   unloading [Thornton, Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012]; damping as in (2) with 8 G* for
 //   2 E* and 2/7 m* for m*, the mass with which a sphere's surface resists sliding                                (3)
-//   the sum of spring and damper is cut at the Coulomb limit and the spring keeps what is left.
+//   the sum of spring and damper is cut at the Coulomb limit, and the spring keeps the rest.
 //   Rolling resistance: elastic–plastic spring–dashpot, k_r = k_t R*², cut at μ_r R* F_e
 //   [Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030]                                                            (4)
 //
 // Mixing: μ, e, c_t minimum; 1/E* = Σ(1−ν²)/E, 1/G* = Σ 2(2−ν)(1+ν)/E.
 //
-// Losses. Spring and damper are in parallel, a slider that gives way at the Coulomb limit is in series with both. Of
-// the way v_t dt of a step the slider goes s, the spring is stretched by the rest e; S′ is the spring turned and
-// rescaled, S what the step leaves of it, k = k_t √δ, D = −c_t δ^¼ v_t, F = S + D:
+// Losses. Spring and damper are in parallel; a slider that gives way at the Coulomb limit is in series with both. Of
+// the displacement v_t dt of a step the slider takes s, and the rest e stretches the spring. S′ is the spring turned
+// and rescaled, S the spring after the step, k = k_t √δ, D = −c_t δ^¼ v_t, F = S + D:
 //   s = (S − S′ + k v_t dt)/k,   e = v_t dt − s                                                                   (5)
-//   sliding              −F·v_t dt + ½ (S′ + S)·e while it slides: friction's work, less what the spring takes of it
+//   sliding              −F·v_t dt + ½ (S′ + S)·e while it slides: friction's work, less the part stored in the spring
 //   tangential damping   −D·v_t dt while it holds
 //   opening              |S_old|²/2k_old − |S′|²/2k ≥ 0: what the spring gives up as the normal load changes, by
 //                        rescaling on unloading and by k on loading; ½ (S′ + S)·e while the contact pulls and so bears
-//                        no friction; and all that the spring still holds where the contact ends
+//                        no friction; and all energy still in the spring when the contact ends
 //   normal damping       c_n δ^¼ v_n²
-// A contact that parts always pulls in the end, F_e < 0. The law then sets S = −D: the spring takes up what no force
-// gave, and the end of the contact gives it up. Both are opening, and cancel.
-// Rolling resistance is the same for torque and relative spin; all that its parts lose is one mechanism, rolling.
+// A contact that parts always pulls in the end, F_e < 0. The law then sets S = −D: the spring takes up energy that no
+// force gave, and gives it up when the contact ends. Both are opening, and cancel.
+// Rolling resistance follows the same formulas for torque and relative spin; all its losses are one mechanism, rolling.
 #pragma once
 
 #include <cmath>
@@ -150,7 +150,7 @@ struct MindlinLaw {
                                .limit = limit},
                               dt);
     };
-    // Without friction there is no spring, though the law's history holds what its damper was cut by.
+    // Without friction there is no spring, although the law's history contains what the damper was cut by.
     const auto rubs = zero + c.friction > zero;
     const T k = c.shear_stiffness * s;
     const Triple<T> v_t = at.velocity - v_n * at.normal;
@@ -179,8 +179,8 @@ struct MindlinLaw {
     return out;
   }
 
-  /// k_n = dF/dδ = 3/2 K √δ, c_n = c_n δ^{1/4}; where friction holds k_t = 8 G* √(R*δ) and its damping. The change of
-  /// the dampers with δ is left out.
+  /// k_n = dF/dδ = 3/2 K √δ, c_n = c_n δ^{1/4}; while friction holds, k_t = 8 G* √(R*δ) and its damping. The change of
+  /// the dampers with δ is neglected.
   static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
                                          const ContactForce<double>& f, double share) {
     ContactStiffness t;
@@ -209,7 +209,7 @@ struct MindlinLaw {
 
   static double resting_force(const Coefficients<double>& c, double overlap) { return hertz_force(c, overlap); }
   static double resting_overlap(const Coefficients<double>& c, double force) { return hertz_overlap(c, force); }
-  /// Of the grains, Pa.
+  /// Young's modulus of the grains, Pa.
   template <class Options>
   static double young_modulus(const Options& options) {
     return options.young_modulus;
@@ -218,7 +218,7 @@ struct MindlinLaw {
   static bool can_rest(const Options&) {
     return true;
   }
-  /// Calls require(key, value, fits, expected) for what the law needs of a surface.
+  /// Calls require(key, value, fits, expected) for the law's requirements on a surface.
   template <class Material, class Require>
   static void check(const Material& m, const Require& require) {
     require("young_modulus", m.young_modulus, m.young_modulus > 0.0, "above 0 Pa");
@@ -239,13 +239,13 @@ struct MindlinLaw {
     return -l / std::sqrt(l * l + std::numbers::pi * std::numbers::pi);
   }
 
-  /// One of the two springs, with its damper and slider, in one evaluation.
+  /// One of the two springs in one evaluation, with its damper and slider.
   template <class T>
   struct SpringStep {
     Triple<T> before;     // its force when last evaluated
     T root_before, root;  // √δ then and now, √m
     Triple<T> normal;
-    T angle;         // by which the contact turned about its normal
+    T angle;         // turn of the contact about its normal
     T stiffness;     // k now
     T viscosity;     // of the damper
     Triple<T> rate;  // of its deformation

@@ -1,30 +1,30 @@
-// How the sizes of two grains change R*, m* and I* of their contact.
+// Changes of R*, m* and I* of a contact with the sizes of its two grains.
 //
-// Coefficients are mixed for grains of a reference radius r₀; a contact of other sizes has the same materials, so that
-// each coefficient of a law follows from its reference by a power law of these ratios.
+// Coefficients are mixed for grains of a reference radius r₀. A contact of other sizes has the same materials, so each
+// coefficient of a law follows from its reference value by a power law of these ratios.
 #pragma once
 
 #include "protocol/core/triple.hpp"
 
 namespace furrow::terrain::dem {
 
-/// Of a radius in reference radii: the volume and mass in those of the reference grain.
+/// a³. For a radius in reference radii: volume and mass relative to those of the reference grain.
 template <class T>
 inline T cube(T a) {
   return a * a * a;
 }
 
-/// Of a contact against the reference contact, all -.
+/// Ratios of a contact to the reference contact, all -.
 template <class T>
 struct SizeScale {
   T radius;      // R*/R₀*
   T mass;        // m*/m₀*
-  T slide_mass;  // of the mass that resists sliding
+  T slide_mass;  // ratio of the masses that resist sliding
   T inertia;     // I*/I₀*
   T smaller;     // smaller radius / r₀
 };
 
-/// Two grains with radii a r₀ and b r₀. The same bits for (b, a).
+/// Scale for two grains with radii a r₀ and b r₀; bitwise the same for (b, a).
 template <class T>
 inline SizeScale<T> pair_scale(T a, T b) {
   const T two = simd::constant<T>(2.0);
@@ -37,8 +37,8 @@ inline SizeScale<T> pair_scale(T a, T b) {
   return s;
 }
 
-/// A grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of surface
-/// it moves, 0 for a wall; that piece grows as r². @pre a > 0, share ≥ 0
+/// Scale for a grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of
+/// surface that it moves, 0 for a wall; that piece grows as r². @pre a > 0, share ≥ 0
 template <class T>
 inline SizeScale<T> surface_scale(T a, double share) {
   using simd::constant;

@@ -1,4 +1,4 @@
-// tanh for contact laws, the same bits on every machine and in every lane.
+// tanh for contact laws, with the same bits on every machine and in every lane.
 #pragma once
 
 #include "protocol/core/triple.hpp"

@@ -15,7 +15,7 @@ namespace {
 Vec3 vec(const Quad& q) { return {q.x, q.y, q.z}; }
 Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 
-/// What makes a contact harder than another, in the order in which contacts are visited.
+/// Collects the hardest contacts, in the order in which contacts are visited.
 class Search {
  public:
   Search(const GrainSolver& solver, double above, double ahead)
@@ -62,7 +62,7 @@ class Search {
   const HardContacts& found() const { return found_; }
 
  private:
-  /// @param parting speed along the normal, m/s
+  /// @param parting speed of separation along the normal, m/s
   template <class Between>
   void add(double overlap, double parting, double radius, int grain, const Between& between) {
     FURROW_ASSERT(radius > 0.0 && in_range(grain, grains_.count), radius, grain);

@@ -16,10 +16,11 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr char kSaved[] = "refinement";
-constexpr int kHalvings = 60;        // of the interval in which a limit is searched for
-constexpr double kSoundShare = 0.1;  // of the diameter: what advice aims at
+constexpr int kHalvings = 60;        // of the interval in which the limit is searched
+constexpr double kSoundShare = 0.1;  // overlap over the diameter that the advice aims at
 
-/// The overlap at which `step` is just stable, infinite if it still is at `deepest`; the stable step falls with it.
+/// The overlap at which `step` is just stable; infinite if it is still stable at `deepest`. The stable step falls with
+/// it.
 double limit_of(const DemOptions& options, double step, double deepest) {
   const auto stable = [&](double overlap) { return stable_at(options, overlap).step >= step; };
   if (stable(deepest)) return kInfinite;

@@ -1,24 +1,25 @@
-// How finely a bed is stepped: a step of the scenario is taken in 2, 4, 8, … equal parts for as long as a contact is so
-// deep that the whole step would be unstable.
+// Refines the step of a bed: a step of the scenario is taken in 2, 4, 8, … equal parts while a contact is so deep that
+// the whole step would be unstable.
 //
-// Hertz's stiffness grows with the overlap δ, so that the stable step falls as δ^(−1/4). Before each part the deepest
-// overlap is known from where grains and surfaces stand, which is the very overlap at which the forces of that part are
-// taken: no force is ever taken with a step above the stable one, and nothing has to be taken back. Once a part is too
-// long, the overlap that its approach speed would make of the contact within a whole step chooses the new one. The
-// parts grow again, one level at a time, after the overlap stayed below kRelaxShare of what the larger part bears for
-// kRelaxSteps steps: a contact that swings about the limit does not make the step flicker.
+// Hertz's stiffness grows with the overlap δ, so the stable step falls as δ^(−1/4). Before each part the deepest
+// overlap follows from the positions of grains and surfaces, the same positions at which the forces of that part are
+// evaluated. So no force is ever used with a step above the stable one, and no step has to be repeated. When a part is
+// too long, the new one is chosen by the overlap that the contact would reach within a whole step at its approach
+// speed. The parts grow again, one level at a time, after the overlap has stayed below kRelaxShare of the limit of the
+// larger part for kRelaxSteps steps. So a contact whose overlap oscillates about the limit does not make the step
+// flicker.
 //
-// What stays consistent when the step changes. Semi-implicit Euler is the leapfrog whose velocities belong to the
-// middle between two positions: where a part of dt follows one of dt′, forces act for ½ (dt + dt′) (StepPart::kick).
-// Else the energy would jump by ½ (dt′ − dt) F·v: elastic collisions caught half-way would part 3 to 13 % too fast,
-// where now they lose 0 to 5 %, the second order of the whole step at which they began. Impulses and work are booked
-// for the same time, so that momentum and energy balance as ever (the weight acts for the time between velocities).
-// Tangential and rolling springs grow by the way since their forces were last taken, which is v dt′. Means over an
-// interval are impulses, surfaces stand where the part begins. Sleep counts whole steps, and neighbour
-// lists stay good for a whole one.
+// Consistency when the step changes. Semi-implicit Euler is the leapfrog whose velocities are those at the middle
+// between two positions. If a part of dt follows one of dt′, forces act for ½ (dt + dt′) (StepPart::kick). Otherwise
+// the energy would jump by ½ (dt′ − dt) F·v: elastic collisions caught half-way would part 3 to 13 % too fast, whereas
+// now they lose 0 to 5 %, the second-order error of the whole step at which they began. Impulses and work are recorded
+// for the same time, so momentum and energy balance as always (the weight acts for the time between velocities).
+// Tangential and rolling springs grow by the displacement since their forces were last evaluated, v dt′. Means over an
+// interval are impulses, and surfaces are where the part begins. Sleep counts whole steps, and neighbour lists remain
+// valid for a whole one.
 //
-// Every decision follows from positions and velocities, in a fixed order: it is alike for any number of threads, and
-// `State` makes a continued run decide alike.
+// Every decision follows from positions and velocities, in a fixed order. So it is the same for any number of threads,
+// and with `State` a continued run makes the same decisions.
 #pragma once
 
 #include <cstdint>
@@ -34,47 +35,47 @@
 namespace furrow::terrain::dem {
 
 inline constexpr int kFinestLevel = 8;      // a step is taken in at most 2⁸ parts
-inline constexpr double kRelaxShare = 0.8;  // of the overlap that the larger part bears
+inline constexpr double kRelaxShare = 0.8;  // of the overlap at which the larger part is just stable
 inline constexpr int kRelaxSteps = 100;     // whole steps
 
 class StepRefinement {
  public:
   struct State {
     int level = 0;           // a step is taken in 2^level parts now
-    int calm = 0;            // whole steps for which larger parts would have done
+    int calm = 0;            // whole steps for which larger parts would have been stable
     std::int64_t added = 0;  // parts beyond one per step, since the run began
-    double time = 0.0;       // taken in parts, s
-    int finest = 0;          // the highest level so far
-    double since = 0.0;      // the part before, s
+    double time = 0.0;       // time taken in parts, s
+    int finest = 0;          // highest level so far
+    double since = 0.0;      // length of the previous part, s
   };
 
-  /// Refines nothing where the options allow an unstable step.
+  /// Refines nothing if the options allow an unstable step.
   explicit StepRefinement(const DemOptions& options) : options_(options) {}
 
-  /// Another whole step, s: begins at level 0. @pre step > 0
+  /// Sets another whole step, s, and begins at level 0. @pre step > 0
   void set_step(double step);
 
-  /// Before a part: chooses its length from the contacts as they stand. @param begins it is the first of its step
+  /// Chooses the length of the coming part from the contacts now. @param begins whether it is the first of its step
   /// @returns failure when a contact is deeper than any step can hold
   Outcome choose(const GrainSolver& solver, bool begins);
-  /// For an engine that learns of its contacts once they were evaluated: chooses the parts of the coming steps from the
-  /// hardest contact of those before. It refines sooner, at kRelaxShare of what a part bears, since it is late.
+  /// For an engine that obtains its contacts only by evaluating them: chooses the parts of the coming steps from the
+  /// hardest contact of the last ones. It refines earlier, at kRelaxShare of a part's limit, because its data are late.
   /// @returns failure when a contact was deeper than any step can hold
   Outcome follow(const HardContacts& met);
   int level() const { return state_.level; }
   double since() const { return state_.since; }
   void took(double dt) { state_.since = dt; }
-  /// After a step that was taken in this many parts.
+  /// Call it after a step that was taken in this many parts.
   void count(int parts);
 
   const State& state() const { return state_; }
-  /// Saves nothing as long as no step was taken in parts.
+  /// Saves nothing as long as no step has been taken in parts.
   void save(Archive& archive) const;
   void restore(const Archive& archive);
-  /// What the terrain says of its steps.
+  /// Reports the refinement of the steps.
   void report(TerrainState& state) const;
 
-  /// The overlap at which 2^level parts of the step are just stable, m; infinite: beyond kDeepestShare.
+  /// The overlap at which 2^level parts of the step are just stable, m; infinite if it is beyond kDeepestShare.
   double limit(int level) const { return limits_.at(level); }
 
  private:

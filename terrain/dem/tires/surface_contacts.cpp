@@ -88,7 +88,7 @@ void SurfaceContacts::reorder(const Resorted& range, const Strips& strips) {
   for (std::size_t g = 0; g < range.order.size(); ++g)
     new_of[range.order[g] - range.first] = range.first + static_cast<std::int32_t>(g);
   for (SurfaceHistory& h : all) h.grain = new_of[h.grain - range.first];
-  // By index: the buffer of std::stable_sort is not aligned as a Quad is.
+  // Sorts indices, because the buffer of std::stable_sort is not aligned for a Quad.
   std::vector<std::int32_t> sorted(all.size());
   std::iota(sorted.begin(), sorted.end(), 0);
   std::sort(sorted.begin(), sorted.end(), [&](std::int32_t a, std::int32_t b) {

@@ -1,4 +1,4 @@
-// One grain at one touched point of a surface: how it moves there, and which earlier point hands on its history.
+// One grain at one touched point of a surface: its motion there, and which earlier point passes on its history.
 #pragma once
 
 #include "terrain/dem/contact/kinematics.hpp"
@@ -12,14 +12,14 @@ inline Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 inline Triple<double> triple(const Quad& q) { return {q.x, q.y, q.z}; }
 inline Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 
-/// History passes between points whose normals differ by less than 60°: the cosine of that.
+/// Cosine of 60°: history passes between points whose normals differ by less.
 inline constexpr double kSameNormal = 0.5;
 
 /// Spin of a triangle about unit n: half the circulation of the vertex velocities over the area, rad/s.
 /// @pre the surface has the triangle
 double spin_about(const SurfaceCollider& surface, int triangle, const Vec3& n);
 
-/// @param patch around the point, for the roll of the grain against it; null where nothing resists that
+/// @param patch around the point, for the roll of the grain against it; null if nothing resists rolling
 /// @param arm from the grain's centre to the point, m  @param velocity of the centre, m/s  @param spin rad/s
 inline ContactMotion<double> motion_at(const SurfaceCollider& surface, const PatchTurn* patch, const SurfaceHit& hit,
                                        const Triple<double>& arm, const Triple<double>& velocity,
@@ -38,7 +38,7 @@ bool slides(const Coefficients& c, const ContactForce<double>& f) {
   return dot(f.tangential, f.tangential) >= limit * limit;
 }
 
-/// How a contact that counts by `share` answers to the motion of the surface.
+/// How a contact that counts by `share` responds to the motion of the surface.
 template <class Law>
 SurfaceContactTangent contact_tangent(const typename Law::template Coefficients<double>& c,
                                       const ContactMotion<double>& at, const ContactForce<double>& f, double share) {

@@ -1,4 +1,4 @@
-// The surface of a tire among grains: how it moves within an interval, and what an engine of grains saves of it.
+// The surface of a tire among grains: its motion within an interval, and its saved state.
 #pragma once
 
 #include <algorithm>
@@ -24,13 +24,13 @@ struct TireSurface {
   SurfaceCollider collider;
   NodalForceSum sum;
   ContactMaterial material;
-  double mass_share;             // of surface_scale
+  double mass_share;             // as for surface_scale
   std::vector<Vec3> start, end;  // of the interval, m
   ContactCoefficients coefficients;
   SurfaceBox near;  // bounds now, grown by the largest radius
   std::vector<SurfaceContactForce> forces;
 
-  /// @param reach of the largest grain, m  @param tangents are wanted
+  /// @param reach radius of the largest grain, m  @param tangents whether tangents are wanted
   TireSurface(const SurfaceMesh& mesh, double reach, bool tangents, const GrainProperties& grain,
               const ContactMaterial& of_tire, const SurfaceState& at)
       : collider(mesh, reach),
@@ -41,7 +41,7 @@ struct TireSurface {
         end(at.position) {
     collider.set_motion(start, end, 1.0);
   }
-  /// Begins an interval. @returns the way of the fastest vertex, m
+  /// Begins an interval. @returns the displacement of the fastest vertex, m
   double set_target(const SurfaceState& target, double duration) {
     FURROW_ASSERT(duration > 0.0, duration);
     start.swap(end);
@@ -53,13 +53,13 @@ struct TireSurface {
     collider.set_motion(start, end, duration);
     return std::sqrt(farthest2);
   }
-  /// To a share of the interval. @param largest radius of a grain, m
+  /// Moves the surface to a share of the interval. @param largest radius of a grain, m
   void move_to(double share, double largest) {
     collider.move_to(share);
     near = collider.bounds();
     near.lo.array() -= largest, near.hi.array() += largest;
   }
-  /// On which a couple at the point acts, none where the surface does not resist rolling.
+  /// The patch on which a couple at the point acts; none if the surface does not resist rolling.
   std::optional<PatchTurn> patch_at(const SurfaceHit& hit, bool rolling) const {
     if (!rolling) return std::nullopt;
     return std::optional<PatchTurn>(std::in_place, sum.patches().of(hit.triangle), collider.positions());
@@ -71,7 +71,7 @@ struct TireSurface {
   }
 };
 
-/// @param word of one of them in the saved state
+/// @param word name of one of them in the saved state
 template <class Surfaces>
 void save_surfaces(Archive& archive, const std::string& word, const Surfaces& surfaces) {
   archive.put(word + "s/count", static_cast<std::int64_t>(surfaces.size()));
@@ -84,8 +84,8 @@ void save_surfaces(Archive& archive, const std::string& word, const Surfaces& su
   }
 }
 
-/// Replaces the surfaces, if there are any by those of the same tires, through attach(mesh, material, start).
-/// @throws Error(io) when they are others
+/// Replaces the surfaces through attach(mesh, material, start); if there are any, they must be those of the same tires.
+/// @throws Error(io) when they are different
 template <class Surfaces, class Attach>
 void restore_surfaces(const Archive& archive, const std::string& word, Surfaces& surfaces, const Attach& attach) {
   const auto count = archive.get_int(word + "s/count");

@@ -6,8 +6,7 @@
 
 namespace furrow {
 
-/// tire k → terrain, from tires that state their contact. It follows the SurfaceMotion of the prompt exchange and has
-/// the same kind.
+/// tire k → terrain, after the SurfaceMotion of the prompt exchange and of its kind, from tires with stated contact.
 struct ContactStatement {
   static constexpr MessageKind kKind = MessageKind::surface_motion;
   StepHeader header;

@@ -12,7 +12,6 @@
 namespace furrow {
 namespace {
 
-/// Messages that have arrived at one node.
 struct Mailbox {
   std::mutex mutex;
   std::condition_variable changed;

@@ -14,8 +14,8 @@
 //   terrain → tire k  TerrainForces   nodal forces over [t_n, t_{n+1}]
 //   tire k → rig      PromptWrench    wrench over the same interval
 //
-// The ranks of a terrain exchange messages of the kind `group` (protocol/transport_group.hpp). The list of fields next
-// to each struct defines the contents of its message: it is packed and saved by that list.
+// The ranks of a terrain exchange messages of the kind `group` (protocol/transport_group.hpp). A message is packed and
+// saved by the list of fields next to its struct.
 #pragma once
 
 #include <cstdint>

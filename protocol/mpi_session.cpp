@@ -21,9 +21,8 @@ namespace {
 
 constexpr char kSingleCopy[] = "OMPI_MCA_btl_vader_single_copy_mechanism";
 
-/// Open MPI moves large messages by reading the other process's memory, and fails if a container forbids that call.
-/// This function tries the call on its own process. If it is refused, Open MPI is set to copy through shared memory
-/// instead.
+/// Open MPI moves large messages by reading the other process's memory, and fails if a container forbids that call. If
+/// the call is refused on this process itself, Open MPI is set to copy through shared memory instead.
 /// @returns whether the memory of other processes can be read
 bool choose_copy_mechanism() {
   char from = 1, to = 0;

@@ -36,7 +36,6 @@ class MpiSession {
 int world_size();
 int world_rank();
 
-/// A communicator that its owner frees.
 class Communicator {
  public:
   static Communicator duplicate(MPI_Comm of);

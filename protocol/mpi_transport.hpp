@@ -14,8 +14,7 @@ namespace furrow {
 std::vector<std::string> launcher_variables();
 /// True if at least one of them is set.
 bool launched_by_mpi();
-/// The rank of this process: from MPI once it has begun, before that from the first of these variables, or 0 without
-/// any.
+/// The rank of this process: from MPI once it has begun, before that from the first of these variables, else 0.
 int launched_rank();
 
 }  // namespace furrow

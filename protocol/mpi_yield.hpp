@@ -6,9 +6,8 @@
 // until all others have had their time.
 //
 // Open MPI decides this once, when it begins, by OMPI_MCA_mpi_yield_when_idle. The function that changes it later is
-// not part of MPI, so it is looked up in the loaded libraries; without it ranks never yield. A value that the
-// environment already contains comes from the user, or from the supervisor for ranks that poll inside an engine, and is
-// kept.
+// not part of MPI, so it is looked up in the loaded libraries; without it ranks never yield. A value that is set
+// already is kept: it comes from the user, or from the supervisor for ranks that poll inside an engine.
 #pragma once
 
 namespace furrow {

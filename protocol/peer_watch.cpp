@@ -95,7 +95,7 @@ void PeerWatch::tell_wait() {
 
 void PeerWatch::end_wait() {
   waits_for_ = -1;
-  if (told_ && !failed()) tell(-1);  // after a failure the others still need to know whom this node waited for
+  if (told_ && !failed()) tell(-1);  // after a failure the others still need the node that this one waited for
   told_ = false;
 }
 
@@ -109,7 +109,7 @@ void PeerWatch::tell(int target) {
 
 Error PeerWatch::lost(int from, const std::string& what, double timeout) {
   FURROW_ASSERT(in_range(from, peers_.size()), from, peers_.size());
-  told_ = false;  // a node whose wait times out now still needs to know whom this node waited for
+  told_ = false;  // a node whose wait times out now still needs the node that this one waited for
   std::string text = fmt::format("{} waited {:g} s for {} ({})", name(wire_.self()), timeout, name(from), what);
   std::vector<bool> met(peers_.size(), false);
   met[wire_.self()] = true;

@@ -51,8 +51,8 @@ class Wire {
   virtual int unsent_to() const = 0;
 
   /// Waits until a message may have arrived, and leaves the core to others.
-  /// @param polls  how often in a row there was nothing, from 0
-  /// @param waited time since the first of these polls, s
+  /// @param polls  empty polls in a row, from 0
+  /// @param waited time since the first of them, s
   virtual void idle(int polls, double waited) = 0;
 
   /// Called once after a node has failed: the wire must then not wait for ever, as it ends, for nodes that may be gone.

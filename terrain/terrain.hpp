@@ -1,9 +1,9 @@
 // The interface of every terrain: a body that exerts forces on the contact surfaces of tires.
 //
-// A terrain may span several ranks (TerrainContext::group). Each rank then has an object of its own. Every rank calls
-// prepare, attach, advance and all functions named gather_…, in the same order and with the same arguments. Their
-// results describe the whole terrain and are valid on the leader, rank 0. An advance that fails returns the same
-// outcome on every rank; a rank that fails alone throws.
+// A terrain may span several ranks (TerrainContext::group), each with an object of its own. Every rank calls prepare,
+// attach, advance and all functions named gather_…, in the same order and with the same arguments. Results describe the
+// whole terrain and are valid on the leader, rank 0. An advance that fails returns the same outcome on every rank; a
+// rank that fails alone throws.
 #pragma once
 
 #include <memory>
@@ -59,8 +59,8 @@ class Terrain {
   /// from its last position in the terrain to x + v·duration of targets[k], and its contact velocity is that of this
   /// motion. forces[k] and contact[k] receive the interval's means.
   /// @returns failure when a grain is lost, a surface leaves the terrain or is not finite, or no step is stable
-  /// @pre prepared or restored; targets, forces and contact have one entry for each attached surface, with a value for
-  /// each of its vertices; duration > 0, substeps > 0
+  /// @pre prepared or restored; targets, forces and contact have one entry for each attached surface, with all its
+  /// vertices; duration > 0, substeps > 0
   Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
                   std::span<ContactSums> contact);
 
@@ -71,7 +71,7 @@ class Terrain {
   virtual std::int64_t grains_here() const { return size(); }  // on this rank now
 
   /// State for a continuation, with contact history and last positions of the attached surfaces; each rank saves its
-  /// own. It is exact to the bit if the engine promises this (TerrainDescription::exact_restart).
+  /// own. Exact to the bit if the engine promises this (TerrainDescription::exact_restart).
   virtual void save(Archive& archive) const = 0;
   void restore(const Archive& archive);
 

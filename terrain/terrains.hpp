@@ -30,7 +30,6 @@ std::vector<std::string> terrain_keys(unsigned roles);
 
 /// Names of the engines whose terrain has grains, for messages: "'dem'".
 std::string engines_with_grains();
-/// Names of the engines that take contacts stated by tires, in the same form.
 std::string engines_with_stated_contacts();
 
 /// The terrain of a scenario that has no key of the section.

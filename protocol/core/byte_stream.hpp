@@ -1,5 +1,5 @@
-// Writing and reading message payloads: plain values, text, vectors, and structs with a list of fields
-// (core/fields.hpp) in the order of the list, in the machine's own byte order (all ranks of a run are of one build).
+// Writes and reads message payloads: plain values, text, vectors, and structs with a list of fields (core/fields.hpp)
+// in the order of the list. The byte order is the machine's own, as all ranks of a run are of one build.
 #pragma once
 
 #include <array>

@@ -18,7 +18,7 @@
 
 namespace furrow {
 
-/// What a value in a line is. Consecutive lines are some communication intervals apart.
+/// Kind of a value in a line. Consecutive lines are some communication intervals apart.
 enum class ColumnKind {
   instant,     // the value at the line's time
   mean,        // over the intervals since the previous line; the value of each interval is measured

@@ -46,7 +46,6 @@ struct IgnoreField {
 };
 }  // namespace detail
 
-/// Whether T has a list of fields.
 template <class T>
 concept HasFields = requires(T& t) {
   visit_fields(t, detail::IgnoreField{});

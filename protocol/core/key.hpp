@@ -8,8 +8,8 @@
 //     visit(s.stiffness, key("stiffness", "N/m³", allowed::above(0).to(1e15), "Pressure per depth."));
 //   }
 //
-// The schema (protocol/files/key_schema.hpp) follows from it, and from the schema follow checks, defaults, `furrow
-// explain` and the help of editors.
+// From it follows the schema (protocol/files/key_schema.hpp), and with that checks, defaults, `furrow explain` and the
+// help of editors.
 #pragma once
 
 #include <limits>
@@ -22,7 +22,6 @@ namespace role {
 inline constexpr unsigned by_hand = 1U << 5U;  // code that reads lists leaves this key to its caller
 }  // namespace role
 
-/// The effect of a missing key.
 enum class Missing {
   standard,  // the member keeps its default
   nothing,   // none; there is no default
@@ -104,7 +103,6 @@ constexpr Allowed not_empty() { return any.not_empty(); }
 struct Key : Field, Allowed {
   const char* description = "";
 
-  /// The same key with more roles.
   constexpr Key with(unsigned more) const {
     Key key = *this;
     key.roles |= more;
@@ -112,7 +110,7 @@ struct Key : Field, Allowed {
   }
 };
 
-/// Name of a struct in the definitions of a schema, so that other structs can refer to it; its static member kSchema.
+/// Name of a struct in the definitions of a schema, to which other structs refer; its static member kSchema.
 struct SchemaName {
   const char* name;
   const char* description;

@@ -1,6 +1,5 @@
 // The ranks that compute one model together, as that model sees them: their numbers, and the data that they exchange.
-// protocol/transport_group.hpp sends these data; a model with a parallel library of its own gives the library the
-// communicator.
+// protocol/transport_group.hpp sends the data; a parallel library of the model uses the communicator.
 //
 // All ranks of the group make every call, in the same order. A call ends with PeerFailure if a rank of the group fails
 // or falls silent.

@@ -1,7 +1,7 @@
-// Several numbers at once: the vector registers that all kernels use. Float8 and Double4 have the same width on every
-// machine; if it has no registers of 32 bytes, the compiler splits them (vector extensions of GCC and Clang). Beyond +
-// − × ÷ and comparison, this header has the few operations that kernels need. Triples, and the operations that single
-// numbers have too, are in triple.hpp.
+// Several numbers at once: the vector registers of all kernels. Float8 and Double4 have the same width on every
+// machine; without registers of 32 bytes the compiler splits them (vector extensions of GCC and Clang). Besides + − × ÷
+// and comparison, these are the few operations that kernels need. Triples, and the operations that single numbers have
+// too, are in triple.hpp.
 #pragma once
 
 #include <cmath>
@@ -36,7 +36,7 @@ inline void add_to(double* p, Double4 v) { store(p, load(p) + v); }
 inline Double4 spread(double s) { return Double4{s, s, s, s}; }
 /// Sum in lane order, so that the bits are the same everywhere.
 inline double sum(Double4 v) { return ((v[0] + v[1]) + v[2]) + v[3]; }
-/// Sum of the halves first, in an order that is also the same everywhere.
+/// Sum of the halves first; also the same everywhere.
 inline float sum(Float8 v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
 template <class Real>

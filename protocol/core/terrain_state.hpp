@@ -55,7 +55,6 @@ struct TerrainEnergies {
   double losses() const {
     return sliding_loss + normal_damping_loss + tangential_damping_loss + rolling_loss + opening_loss + sleep_loss;
   }
-  /// Energy stored now.
   double stored() const { return kinetic + rotational + potential + elastic_normal + elastic_tangential + cohesion; }
 };
 void visit_fields(FieldsOf<TerrainEnergies> auto& s, auto&& visit) {
@@ -94,8 +93,7 @@ void visit_fields(FieldsOf<TerrainMomenta> auto& s, auto&& visit) {
   visit(s.sleep_impulse, Field{"sleep_impulse", "N s"});
 }
 
-/// Momenta of a terrain without momentum of its own, which the world holds: the walls give it the impulse that tires
-/// take.
+/// Momenta of a terrain without momentum, which the world holds: the walls give it the impulse that tires take.
 inline TerrainMomenta held_by_the_world(const Vec3& surface_impulse) {
   TerrainMomenta momenta;
   momenta.surface_impulse = surface_impulse;
@@ -103,7 +101,7 @@ inline TerrainMomenta held_by_the_world(const Vec3& surface_impulse) {
   return momenta;
 }
 
-/// Measurements of a terrain; cumulative since the run began unless stated otherwise.
+/// Measurements of a terrain; cumulative since the run began unless stated.
 struct TerrainState {
   // Both are the engine's sums. The parts in `energies` add up to them but for round-off.
   double kinetic_energy = 0.0;  // J, now

@@ -24,8 +24,7 @@ void add_names(const std::filesystem::path& folder, std::vector<std::string>& na
     if (entry.path().extension() == ".json") names.push_back(entry.path().filename().string());
 }
 
-/// The file of `known` that is probably meant by a name without a file: the name with ".json", or one of similar
-/// spelling.
+/// The file of `known` that a name without a file probably means: with ".json" behind it, or of similar spelling.
 std::optional<std::string> meant(const std::string& typed, std::vector<std::string> known) {
   if (typed.size() > kMaxName) return {};
   std::sort(known.begin(), known.end());

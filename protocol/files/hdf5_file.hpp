@@ -60,7 +60,6 @@ class Hdf5Writer {
   hid_t handle_ = -1;
 };
 
-/// How the numbers of a dataset are stored.
 enum class Hdf5Type { float64, float32, int64, int32, uint64, uint8, other };
 
 /// Reads files of Furrow and of other programs. A dataset is read if it has plain numbers, and no more of them than the
@@ -76,7 +75,7 @@ class Hdf5Reader {
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  /// Whether the file has a dataset or group with that name; groups as in "a/b".
+  /// Whether there is a dataset or group of that name; groups as in "a/b".
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
 

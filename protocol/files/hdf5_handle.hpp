@@ -8,7 +8,6 @@
 
 namespace furrow {
 
-/// An HDF5 identifier that closes itself.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}

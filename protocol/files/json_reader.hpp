@@ -1,6 +1,6 @@
 // Reads an object of a JSON file key by key: tire files, soil files, studies, soil estimates. Every error message
-// contains the file, the dotted key, the offending value and the expected one. A key that is never read is an error,
-// whose message proposes the nearest valid key.
+// contains the file, the dotted key, the offending value and the expected one. A key that is never read is an error
+// that proposes the nearest valid key.
 #pragma once
 
 #include <string>

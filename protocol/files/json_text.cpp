@@ -147,7 +147,6 @@ class Builder final : public nlohmann::json_sax<Json> {
     std::string key;
   };
 
-  /// The place of the next value.
   Json* place_for() {
     if (levels_.empty()) return &root_;
     Level& level = levels_.back();

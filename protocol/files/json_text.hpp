@@ -10,7 +10,7 @@
 
 namespace furrow {
 
-/// Highest number of nested [ ] and { } in a document.
+/// Most levels of nested [ ] and { } in a document.
 inline constexpr std::size_t kMaxDepth = 64;
 
 /// @tparam Json nlohmann::json, or nlohmann::ordered_json if the order of keys matters

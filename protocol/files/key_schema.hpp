@@ -21,12 +21,12 @@ namespace furrow {
 /// @param standard the member's default; discarded if there is none
 nlohmann::ordered_json key_schema(const Key& key, const char* type, const nlohmann::ordered_json& standard);
 
-/// The word of a key that stands for a value of an enumeration; the words have the order of the values.
+/// The word of a key for a value of an enumeration, in the order of its values.
 std::string word_of(const Key& key, int value);
 int word_number(const Key& key, const std::string& word);
 
 /// Adds a key to `properties` and `required` of the schema of an object.
-/// @pre if a key of this name is already there, it is declared in the same way
+/// @pre a key of this name that is already there is declared in the same way
 void add_key(nlohmann::ordered_json& object, const Key& key, const nlohmann::ordered_json& node);
 
 /// {"type": "object", …}, without keys yet.
@@ -125,7 +125,7 @@ bool allows_type(const nlohmann::json& node, const std::string& type);
 /// and objects are not checked.
 std::string mistake(const nlohmann::json& node, const nlohmann::json& value);
 
-/// Checks a number or a text in the same way against its key, but not against the key's shape.
+/// The same check of a number or a text against its key, except for the key's shape.
 std::string mistake(const Key& key, const nlohmann::json& value);
 
 /// Checks a number or a text against its key. @throws Error(bad_input) naming file, key and what is expected

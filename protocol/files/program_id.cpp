@@ -15,9 +15,9 @@ std::string build_id() {
 
 namespace {
 
-/// Hash of results of the C library's functions. The library chooses variants by the processor and by settings, with or
-/// without fused multiplication. These round differently for one argument in some hundred or thousand. The compiler
-/// cannot fold the calls, because the arguments are volatile.
+/// Hash of results of the C library's functions. It chooses variants by the processor and settings, with or without
+/// fused multiplication, which round differently for one argument in some hundred or thousand. As the arguments are
+/// volatile, the compiler folds nothing.
 std::string mathematics_id() {
   constexpr int kArguments = 4096;  // without FMA 42 results of glibc 2.36 differ; takes 2 ms
   Hash hash;

@@ -8,9 +8,9 @@ namespace furrow {
 
 /// A hash of the program's own file; every build has a different one.
 std::string build_id();
-/// Identifies programs whose numbers are equal to the last bit. It is a digest of the compiler, its target and its
-/// options for arithmetic, made when the build is configured, with a hash of results of the C library's mathematical
-/// functions here. Sources do not count: a change of what is kept must raise the version of its format.
+/// Identifies programs whose numbers are equal to the last bit: a digest of the compiler, its target and its options
+/// for arithmetic, made when the build is configured, and a hash of results of the C library's mathematics here.
+/// Sources do not count: a change of what is kept must raise the version of its format.
 std::string arithmetic_id();
 /// The processor's "model name".
 std::string cpu_model();

@@ -22,8 +22,7 @@ Error failed(const std::filesystem::path& file, const std::string& what) {
   return io_error(file.string(), what + ": " + std::strerror(errno));
 }
 
-/// Passes the stream's contents to `use`, block by block; `use` returns false when it needs no more. @returns false
-/// after an error
+/// Passes the stream to `use`, block by block; `use` returns false when it needs no more. @returns false after an error
 template <class Use>
 bool read_blocks(std::ifstream& in, const Use& use) {
   std::vector<char> block(1 << 20);

@@ -10,7 +10,7 @@
 
 namespace furrow {
 
-/// Highest number of bytes in a text that a person wrote.
+/// Most bytes of a text that a person wrote.
 inline constexpr std::uintmax_t kMaxText = 16 << 20;
 
 /// All bytes of a file. @throws Error(io), also when there are more than `most`
@@ -37,7 +37,7 @@ void sync_folder(const std::filesystem::path& folder);
 /// The text without blanks (space, tab, carriage return) at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Number of bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 if none begins there. @pre at < text.size()
+/// Bytes of the UTF-8 character (RFC 3629) that begins at `at`; 0 if none does. @pre at < text.size()
 std::size_t utf8_length(const std::string& text, std::size_t at);
 
 /// Offset of the first byte that is not UTF-8, or is zero; npos if there is none.

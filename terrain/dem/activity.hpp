@@ -15,11 +15,11 @@
 //
 // The grains of a sleeping parcel are not moved, and contacts among them keep their forces and histories. Contacts
 // between it and awake parcels act on both. As long as a neighbour is awake, the net force on every sleeping grain is
-// evaluated in every step; since the grain does not move, this force contains all that has changed since it fell
-// asleep. Above a limit the whole parcel wakes, before its grains have moved. A front of waking advances by one parcel
-// per step, faster than any wave in the bed. A tire that comes near and a moving grain that comes in also wake it. The
-// mean contact force is sampled every `kSampleSteps` steps; a sleeping parcel contributes its value at the last sample
-// that evaluated it, or from when it fell asleep. Decisions use sums of fixed order, so they do not depend on threads.
+// evaluated in every step. It contains all that has changed since the grain fell asleep. Above a limit the whole parcel
+// wakes, before its grains have moved. A front of waking advances by one parcel per step, faster than any wave in the
+// bed. A tire that comes near and a moving grain that comes in also wake it. The mean contact force is sampled every
+// `kSampleSteps` steps; a sleeping parcel contributes its last sample, or its force when it fell asleep. Decisions use
+// sums of fixed order, so they do not depend on threads.
 //
 // Pairs that touch belong to the same parcel or to neighbours. So loads on a parcel come from its own list and from
 // those of the parcels before it: the previous one across, and three in the previous strip. A step treats a parcel in
@@ -76,8 +76,7 @@ class Activity {
     limits_ = limits;
   }
 
-  /// Decides what the coming step needs of which parcels, from those that are awake. @param sway_steps steps of a
-  /// window
+  /// Decides what the coming step needs of each parcel, from those that are awake. @param sway_steps steps of a window
   void plan(const Strips& strips, int sway_steps);
   /// Whether some list of strip k is evaluated.
   bool evaluated(int k) const { return any(k, kList); }

@@ -106,8 +106,7 @@ GrainSolver::Scratch<double>& GrainSolver::scratch() {
   return full_[omp_get_thread_num()];
 }
 
-/// Copies the motion of those grains of a strip that the step needs to `offset` of the scratch memory and clears their
-/// loads.
+/// Copies the motion of the grains of a strip that a step needs to `offset` of the scratch memory; clears their loads.
 template <class Real, bool kSizes>
 void GrainSolver::gather(Scratch<Real>& s, int strip, int offset) {
   FURROW_ASSERT(in_range(strip, strips_.count()) && offset >= 0, strip, strips_.count(), offset);

@@ -10,10 +10,9 @@
 // not depend on the number of threads.
 //
 // If strips are cut into parcels (parcel.hpp) and some of them sleep, a strip is stepped in rows of parcels
-// (activity.hpp). Awake parcels are evaluated together. Each sleeping parcel is evaluated alone, so that its sums are
-// known in later steps that do not evaluate it. A grain's forces are added in the same order however the strip is
-// divided, so awake parcels move with the same bits as a whole strip. Only the sums over a strip are rounded
-// differently.
+// (activity.hpp). Awake parcels are evaluated together. Each sleeping parcel is evaluated alone, so that its sums can
+// be used in later steps that do not evaluate it. A grain's forces are added in the same order however the strip is
+// divided, so awake parcels move with the same bits as a whole strip. Only the rounding of a strip's sums differs.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +41,7 @@ enum class Precision { mixed, full };
 struct SolverParams {
   LawKind law{};
   bool rolling = false;   // rolling resistance
-  GrainProperties grain;  // of the reference radius, to which the coefficients refer
+  GrainProperties grain;  // of the reference radius, that of the coefficients
   double smallest = 0.0;  // radius of the smallest grain, m; 0: all have the reference radius
   double largest = 0.0;   // radius of the largest grain, m; 0: as above
   Bin bin;
@@ -161,19 +160,16 @@ class GrainSolver {
   int index_of(int id) const;
   /// Height that no grain exceeds, m.
   double top() const;
-  /// Memory of the engine now, bytes.
   std::size_t bytes() const;
 
   /// One step. With `measure`, the force sums of Accounts are taken too.
   /// Returns the index of a grain that left the bin or is not finite, or −1. @pre dt > 0
   int step(double dt, bool measure = false) { return step_part({dt, dt, dt, true}, measure); }
-  /// Takes one part of a step. All counts of steps count whole steps. Afterwards the neighbour lists remain valid for a
-  /// whole step.
+  /// Takes one part of a step. All counts of steps count whole steps. The lists stay valid for a whole step after it.
   int step_part(const StepPart& part, bool measure = false);
 
-  /// Whether any contact that strip k lists may overlap by more than `overlap` at the present positions, m. The bound
-  /// follows from the overlaps of the last step and the displacements of grains and surfaces since. True if nothing is
-  /// known.
+  /// Whether any contact that strip k lists may overlap by more than `overlap`, m, at the present positions. The bound
+  /// is from the last step's overlaps and the displacements of grains and surfaces since. True if there is no bound.
   bool may_overlap(int k, double overlap) const {
     FURROW_ASSERT(in_range(k, strips_.count()), k, strips_.count());
     return overlap_bound_.empty() || !(overlap_bound_[k] <= overlap);
@@ -238,8 +234,7 @@ class GrainSolver {
   double measured_force(int k) const;
   bool sample_now() const { return params_.activity && until_sample_ == 0; }
   void restore_drift(const Archive& archive);
-  /// Samples the contact forces of the strips that this step evaluated. Samples of sleeping strips stay, as nothing
-  /// moves there.
+  /// Samples the contact forces of the strips that this step evaluated. Sleeping strips do not change and keep theirs.
   void take_samples();
   std::int32_t grains_awake(const Strip& strip) const;
   void reduce(const StepPart& part, Wanted wanted);

@@ -1,5 +1,4 @@
-// The contact law on the touching pairs of a strip, one register at a time: eight pairs in single precision, four in
-// double.
+// The contact law on the touching pairs of a strip, a register at a time: eight in single precision, four in double.
 //
 // Velocity and spin of a grain are one row. So a pair costs two loads and one subtraction of rows, and one
 // transposition turns the rows of eight pairs into lanes. Forces are added in double precision, with the same magnitude
@@ -54,7 +53,7 @@ template <class Law, class Real>
 struct PairLaw {
   typename Law::template Coefficients<Real> coefficients;
   Real diameter = 0;    // m; not used for grains of several sizes
-  Real per_radius = 0;  // 1 / radius to which the coefficients refer, 1/m
+  Real per_radius = 0;  // 1 / radius of the coefficients, 1/m
   Real step = 0;        // s
   Wanted wanted;
 };

@@ -2,7 +2,7 @@
 //
 // The grains of a strip are sorted by columns of cells along y, its pairs by their first grain, its wall contacts by
 // their grain. A parcel consists of some columns, so its grains, pairs and wall contacts are each one range of the
-// strip's. The same holds for several neighbouring parcels, so a step evaluates only a few ranges of a strip.
+// strip's. So are those of a row of parcels, and a step evaluates only a few ranges of a strip.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,7 @@ namespace furrow::terrain::dem {
 inline constexpr int kParcelColumns = 4;  // columns of cells across, fewest in a parcel
 inline constexpr int kFewestParcels = 3;  // of a strip that is cut; with fewer the strip is one parcel
 
-/// Number of parcels into which a strip with that many columns is cut. A narrower bed is not cut, because a wheel then
-/// moves its whole width.
+/// Number of parcels of a strip with that many columns. A narrower bed is not cut: a wheel moves its whole width.
 constexpr int parcels_across(int columns) {
   const int parcels = columns / kParcelColumns;
   return parcels < kFewestParcels ? 1 : parcels;
@@ -76,7 +75,7 @@ struct Parcel {
   int calm = 0;         // steps since a force on it was last too large or, unless it sways, its speed
   bool sways = false;   // its grains may be fast, but drifted slowly over the last window
   int window = 0;       // steps since its last window ended
-  // Only while it is asleep or about to fall asleep; awake parcels are evaluated together with their neighbours.
+  // Only while it is asleep or about to fall asleep; awake parcels are evaluated with their neighbours.
   ContactTotals contact;
   double measured_force = 0.0;  // contact.contact_force when last measured, N
   Stored stored;                // contact.sample.stored when last sampled

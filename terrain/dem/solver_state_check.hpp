@@ -16,7 +16,7 @@ void check_solver_state(const Archive& archive, const Strips& strips, double sma
 /// Name of the array with the number of parcels into which the strips of a saved state are cut.
 inline constexpr char kAcross[] = "parcels/across";
 std::int64_t saved_across(const Archive& archive);
-/// A bed that is read may be cut into other parcels; it then wakes. The parcels of a continued run must be the same.
+/// A bed that is read may be cut into other parcels and then wakes; a continued run must have the same parcels.
 /// @throws Error(io) naming the array
 void require_same_parcels(const Archive& archive, const Strips& strips);
 

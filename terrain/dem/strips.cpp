@@ -11,8 +11,7 @@ namespace {
 
 constexpr int padded(int n) { return (n + kFloatLanes - 1) / kFloatLanes * kFloatLanes; }
 
-/// Number of cells of at least `size` along a side; three if the side is periodic, so that no two neighbours are the
-/// same.
+/// Number of cells of at least `size` along a side; at least three if it is periodic, so that neighbours differ.
 int cells_along(double length, double size, bool periodic, const char* side) {
   const int n = std::max(1, static_cast<int>(length / size));
   if (periodic && n < 3)

@@ -1,18 +1,17 @@
 // Finds pairs of grains that may touch: the bin is cut into strips across x, each with the list of its pairs.
 //
-// Grains are sorted by strip, and within a strip by cell (y, then z). A strip is at least as wide as the distance up to
-// which two grains are listed, so a grain's partners are in its own strip or in the two neighbouring ones. A pair
-// (i, j) is listed once, by the strip of the lower index: j is in the same strip or in the next.
+// Grains are sorted by strip, and within a strip by cell (y, then z). A strip is at least as wide as the reach of a
+// list, so a grain's partners are in its own strip or in the two next to it. A pair (i, j) is listed once, by the strip
+// of the lower index: j is in the same strip or in the next.
 //
 // Lists are rebuilt only where grains have moved. Every strip adds up the distance of its fastest grain per step
 // (`travel`). When this exceeds half the skin since the strip was sorted, the strip and its two neighbours are sorted
-// again among themselves, and the lists that contain their grains are rebuilt. The rest of the bed keeps its lists.
-// Cells are a skin wider than the reach of a list, so grains that drifted by half a skin still find each other in
-// neighbouring cells. Neither the choice of rebuilt strips nor the order of lists depends on threads.
+// again among themselves, and the lists that contain their grains are rebuilt. Cells are a skin wider than the reach of
+// a list, so grains that drifted by half a skin still find each other in neighbouring cells. Neither the choice of
+// rebuilt strips nor the order of lists depends on threads.
 //
-// If grains may sleep, strips that are wide enough are cut across into parcels (parcel.hpp), in the same way in all
-// strips. A grain's partners are in its own parcel or in the eight around it.
-// grain's partners are in its own parcel or in the eight around it.
+// If grains may sleep, wide strips are cut across into parcels (parcel.hpp), all in the same way. A grain's partners
+// are in its own parcel or in the eight around it.
 #pragma once
 
 #include <cstdint>
@@ -95,8 +94,8 @@ struct Strip {
     return const_cast<Strip*>(this)->history<Real>();
   }
 };
-/// The saved state of a strip besides its lists. It includes sums, because those of sleeping strips are not computed
-/// again. If strips are cut, Parcel's fields are saved as well.
+/// The saved state of a strip besides its lists, with sums, which sleeping strips keep. If strips are cut, Parcel's
+/// fields are added.
 void visit_fields(FieldsOf<Strip> auto& s, auto&& visit) {
   visit(s.first, Field{"first"});
   visit(s.last, Field{"last"});
@@ -171,7 +170,7 @@ class Strips {
   int across() const { return across_; }
   /// Whether any of a parcel's columns are between these y, m. The outer ones extend beyond the sides.
   bool parcel_between(int p, double y_min, double y_max) const;
-  /// Updates `asleep` and the sums of motion after parcels of strip k were moved or changed otherwise.
+  /// Updates `asleep` and the sums of motion after parcels of strip k have changed.
   void sum_parcels(int k);
   /// Call it after parcels of strip k fell asleep or woke.
   void sleep_changed(int k) {
@@ -187,26 +186,23 @@ class Strips {
   /// @pre rebuild_all was called; threads > 0
   std::vector<Resorted> rebuild_moved(Grains& grains, double dt, int threads);
 
-  /// Sum over grains of how often each was sorted; divided by their number, this is the number of rebuilds of the whole
-  /// list.
+  /// Sum over grains of how often each was sorted; divided by their number, the rebuilds of the whole list.
   std::int64_t resorted() const { return resorted_; }
   void set_resorted(std::int64_t n) {
     FURROW_ASSERT(n >= 0, n);
     resorted_ = n;
   }
 
-  /// Memory of the lists and of their rebuilding, bytes.
   std::size_t bytes() const;
 
   static constexpr int kMaxCellsZ = 512;  // higher grains share the top cell
 
-  /// Allocates a strip's arrays for `pairs` pairs.
   void size_lists(Strip& strip, int pairs) const;
-  /// Finds the parts of a strip that was read from a saved state with its grains, cells, pairs and walls.
+  /// Finds the parts of a strip after its grains, cells, pairs and walls were read.
   void find_parts(Strip& strip) const;
   int cells_y() const { return ny_; }
   int cells_z() const { return nz_; }
-  /// After strips were read from a saved state: sets the cells along z and the sum of resorted().
+  /// Sets the cells along z and the sum of resorted() from a saved state.
   void restore_shape(int cells_z, std::int64_t resorted);
 
  private:
@@ -219,7 +215,6 @@ class Strips {
   void carry_walls(std::span<const Strip> old, int old_from, const Resorted& range);
   void mark_stale(std::span<const Strip> old, int old_from, const Resorted& range);
   int strip_at(double x) const;
-  /// The first column of parcel p.
   int column_of(int p) const { return p * ny_ / across_; }
 
   Options options_;

@@ -16,7 +16,7 @@ struct SolverCoefficients {
 };
 
 /// Adds the forces of the strip's wall contacts [from, to) to `loads` (which starts at its first grain) and to `sums`.
-/// radius: the one to which the coefficients refer; without kSizes that of all grains, m. @pre radius > 0, dt > 0
+/// radius: that of the coefficients; without kSizes that of all grains, m. @pre radius > 0, dt > 0
 template <class Law, bool kRolling, bool kSizes>
 void wall_forces(const Grains& grains, Strip& strip, int from, int to, const Bin& bin, double radius,
                  const SolverCoefficients& all, double dt, Wanted wanted, const Loads& loads, ContactTotals& sums) {

@@ -1,5 +1,5 @@
-// Where along x the ranks' parts of the bin meet: so that all own about as many grains. The numbers of grains decide,
-// not measured times: the borders of a run are the same each time.
+// Borders between the ranks' parts of the bin along x, so that all ranks own about as many grains. They follow from
+// numbers of grains, not from measured times, and so are the same in each run.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace furrow::terrain::liggghts {
 
-/// How many grains stand where along the bin.
+/// Distribution of the grains along the bin.
 class Crowd {
  public:
   /// @pre length > 0, m
@@ -16,9 +16,9 @@ class Crowd {
 
   void add(double x);  // m
   std::span<const std::int64_t> counts() const { return counts_; }
-  /// Adds those of other ranks, one behind the other.
+  /// Adds the counts of other ranks, given one after another.
   void set_sum_of(std::span<const std::int64_t> counts);
-  /// ranks − 1 places that leave as many grains on either side as they should, m, rising; none when there is no grain.
+  /// ranks − 1 positions, m, rising, between which the ranks own equal numbers of grains; none if there are no grains.
   std::vector<double> borders(int ranks) const;
 
  private:
@@ -26,6 +26,5 @@ class Crowd {
   double length_;
   std::vector<std::int64_t> counts_;
 };
-
 
 }  // namespace furrow::terrain::liggghts

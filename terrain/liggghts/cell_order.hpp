@@ -1,5 +1,5 @@
-// The order of grains in memory: by cells of the bin, so that neighbours in space are neighbours in memory. A bed
-// numbers its grains as they were dropped, and messages bring them as they arrive.
+// Order of the grains in memory: by cells of the bin, so that neighbours in space are neighbours in memory. Otherwise a
+// bed has them in the order in which they were dropped, and messages in the order of arrival.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace furrow::terrain::liggghts {
 
-/// What grains are sorted by: the cell, z fastest, then y, then x; within it the number. Cells are as wide as the
-/// largest grain. @param x  of its centre, m  @param largest  radius > 0, m
+/// Sort key of a grain: its cell, z fastest, then y, then x; within a cell its number. Cells are as wide as the largest
+/// grain. @param x  of its centre, m  @param largest  radius > 0, m
 inline auto place_in_order(const double* x, int number, double largest) {
   FURROW_ASSERT(largest > 0.0, largest);
   const double per_cell = 0.5 / largest;

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kFile[] = "libfurrow_liggghts.so";
-constexpr int kFoldersUp = 3;  // from a program of the tests to the build folder
+constexpr int kFoldersUp = 3;  // from a test program to the build folder
 
 [[noreturn]] void refuse(const std::string& why) {
   throw input_error("scenario", "terrain.engine", "'liggghts' " + why);
@@ -30,17 +30,16 @@ std::uintmax_t size_of(const fs::path& file) {
   return error ? 0 : size;
 }
 
-/// Where the table of sections ends, which stands last in a file of the format ELF: loading
-/// a shorter one ends the process.
+/// End of the table of sections, which is the last part of an ELF file. Loading a shorter file would end the process.
 std::uintmax_t least_size(const fs::path& file) {
   Elf64_Ehdr head{};
   std::ifstream in(file, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
-    return sizeof head;  // dlopen says what else may be wrong
+    return sizeof head;  // dlopen reports other mistakes
   return head.e_shoff + std::uintmax_t{head.e_shnum} * head.e_shentsize;
 }
 
-/// The library, kept until the program ends: LIGGGHTS' code must outlive its objects.
+/// The library, kept until the program ends, because LIGGGHTS' code must outlive its objects.
 void* library() {
   static void* const handle = [] {
     require_engine_library();

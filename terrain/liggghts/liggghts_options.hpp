@@ -1,4 +1,4 @@
-// The keys of the section `terrain` with engine liggghts: those of dem but for what this engine always or never does.
+// The keys of the section `terrain` with engine liggghts: the keys of dem, except those whose value this engine fixes.
 #pragma once
 
 #include <string_view>

@@ -12,7 +12,7 @@ namespace furrow::terrain::liggghts {
 namespace {
 
 constexpr int kMostRanks = 4096;
-// Of the rank that owns it, at the most: while the engine takes over the bed. Measured by the peak of the processes,
+// Peak of the rank that owns the grain, while the engine takes over the bed. Measured by the peak of the processes,
 // which grew by 1840 bytes for each grain from 24,340 to 97,684 on one rank, and by 1590 to 1770 on each of two.
 constexpr double kBytesPerGrain = 1800.0;
 

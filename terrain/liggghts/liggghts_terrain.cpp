@@ -38,7 +38,7 @@ namespace {
 
 using namespace liggghts;
 
-constexpr double kMostImbalance = 0.05;  // above it the borders move
+constexpr double kMostImbalance = 0.05;  // with more, the borders move
 constexpr int kBalanceEvery = 500;       // intervals: moving borders costs about as much as ten steps
 
 class LiggghtsTerrain final : public Terrain {
@@ -194,7 +194,7 @@ class LiggghtsTerrain final : public Terrain {
     return s;
   }
 
-  /// Makes the engine anew with these grains. @param exchange  as Engine::begin takes it
+  /// Makes a new engine with these grains. @param exchange  as for Engine::begin
   void start(const StartingBed& bed, bool own_only, bool exchange) {
     if (!own_only) size_ = bed.size(), top_ = bed.top;
     engine_.reset();
@@ -238,7 +238,7 @@ class LiggghtsTerrain final : public Terrain {
     }
   }
 
-  /// Of an error on this rank alone the others do not hear: they are ended with it.
+  /// The other ranks do not receive an error on this rank alone, so they are ended with it.
   [[noreturn]] void engine_failed(const EngineError& error) const {
     throw Error(ExitCode::rank_lost, fmt::format("terrain {}: LIGGGHTS failed{}: {}", group() ? group()->rank() : 0,
                                                  error.on_all ? "" : " on this rank", error.what()));
@@ -260,7 +260,7 @@ class LiggghtsTerrain final : public Terrain {
     return refinement_.follow(hard);
   }
 
-  /// Moves the borders where some rank owns too many grains. All ranks see the same numbers.
+  /// Moves the borders if some rank owns too many grains. All ranks see the same numbers.
   void balance() {
     since_balance_ = 0;
     const OwnGrains own = engine_->own();
@@ -293,11 +293,11 @@ class LiggghtsTerrain final : public Terrain {
   std::unique_ptr<Engine> engine_;   // uses contacts_
   std::int64_t size_ = 0;            // grains of all ranks
   std::vector<double> borders_;      // between the ranks' parts along x, m
-  int since_balance_ = 0;            // intervals since they were looked at
-  std::vector<StateReport> states_;  // of all ranks since the last interval, on the leader; empty: not asked yet
+  int since_balance_ = 0;            // intervals since the borders were checked
+  std::vector<StateReport> states_;  // of all ranks since the last interval, on the leader; empty: not gathered yet
   double top_ = 0.0;                 // of the bed at the beginning, m
-  double dt_, part_;                 // the step, and the part of it that contacts are evaluated for, s
-  double since_ = 0.0;               // forces were last taken, s; 0: not yet
+  double dt_, part_;                 // the step, and the part of it for which contacts are evaluated, s
+  double since_ = 0.0;               // time since forces were last evaluated, s; 0: never
   double surface_work_ = 0.0;        // by tires on the grains, J
 };
 

@@ -16,10 +16,10 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
-constexpr double kRoom = 10.0;     // around a rank's grains for what they may move in one interval, largest radii
+constexpr double kRoom = 10.0;     // margin around a rank's grains for their motion in one interval, largest radii
 constexpr double kFar = 1e6;       // farther than any wall, m; as in Bin::holds
-constexpr int kPart = 256;         // grains whose box is known
-constexpr double kTireRoom = 1.0;  // that a tire may move before grains near it are looked for again, skins
+constexpr int kPart = 256;         // grains per box
+constexpr double kTireRoom = 1.0;  // by which a tire may move before grains near it are searched again, skins
 
 using dem::ContactForce;
 using dem::ContactHistory;
@@ -35,7 +35,7 @@ ContactHistory<double> history_of(const Carried& c) {
   return {triple(c.tangential), c.root_overlap, triple(c.rolling)};
 }
 
-/// What is not a number is not inside.
+/// False for a position that is not a number.
 bool inside(const SurfaceBox& box, const double* x) {
   return x[0] > box.lo.x() && x[0] < box.hi.x() && x[1] > box.lo.y() && x[1] < box.hi.y() && x[2] > box.lo.z() &&
          x[2] < box.hi.z();
@@ -99,7 +99,7 @@ void RankContacts::begin_interval(std::span<const SurfaceState> targets, double 
 void RankContacts::lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) {
   order_ = order;
   looked_ = walls_listed_ = false;
-  box_ = {Vec3::Constant(-kFar), Vec3::Constant(kFar)};  // to a rank without grains they may come from anywhere
+  box_ = {Vec3::Constant(-kFar), Vec3::Constant(kFar)};  // grains may come to an empty rank from anywhere
   parts_.clear();
   if (grains.count == 0) return;
   for (int first = 0; first < grains.count; first += kPart) {
@@ -155,7 +155,7 @@ void RankContacts::add_forces_of(const OwnGrains& grains, int last, bool losses)
     touch_tires<Law, kRolling>(grains, touchable_[next_], losses);
 }
 
-/// What a grain remembers is looked at only where it touches a tire or did so in the step before.
+/// Reads a grain's histories only if the grain touches a tire, or did so in the previous step.
 template <class Law, bool kRolling>
 void RankContacts::touch_tires(const OwnGrains& grains, Touchable& t, bool losses) {
   const double* const x = grains.position[t.grain];
@@ -195,8 +195,8 @@ void RankContacts::note_lost(const OwnGrains& grains, int g) {
   if (interval_.lost < 0.0) interval_.lost = grains.id[g] - 1, interval_.lost_at = {x[0], x[1], x[2]};
 }
 
-/// Most grains touch nothing but each other. From one making of the lists to the next they move by a skin against where
-/// they stand now at the most: half a skin from where they stood when lists were made, on either side.
+/// Finds grains that may touch a wall or a tire, as most touch only each other. Between two makings of the lists a
+/// grain is at most a skin from its present position: half a skin on either side of its position when lists were made.
 void RankContacts::look(const OwnGrains& grains) {
   if (!walls_listed_) {
     if (const auto lost = walls_.list(grains, order_, params_.skin)) note_lost(grains, *lost);
@@ -211,7 +211,7 @@ void RankContacts::look(const OwnGrains& grains) {
     t.grid = t.collider.grid_rebuilds();
     t.looked_for.lo = t.near.lo.array() - room, t.looked_for.hi = t.near.hi.array() + room;
   }
-  // Whoever carries a history with a tire was found before, unless the numbers of grains were others then.
+  // Grains with a history of a tire were found before, unless the indices of grains have changed since.
   bool all = !numbered_;
   carries_.assign(grains.count, 0);
   for (int g = 0; g < grains.count && !numbered_; ++g) carries_[g] = !grains.carried[g].empty();
@@ -227,7 +227,7 @@ void RankContacts::look(const OwnGrains& grains) {
   numbered_ = looked_ = true;
 }
 
-/// Whether grains that stood in this box when lists were made may stand where a tire is looked for.
+/// Whether grains that were in this box when lists were made may now be where grains near a tire are searched.
 bool RankContacts::any_near(const SurfaceBox& part) const {
   const double way = params_.skin;
   return std::any_of(tires_.begin(), tires_.end(), [&](const Tire& t) {

@@ -1,5 +1,5 @@
-// The walls and tires on the grains of one rank, and what that rank adds up: the work that Furrow does in each step of
-// a distributed engine (engine.hpp). The laws are those of terrain/dem; the histories are carried by the grains.
+// The walls and tires that act on the grains of one rank, and the sums of that rank: Furrow's work in each step of a
+// distributed engine (engine.hpp). The laws are those of terrain/dem; the grains carry the histories.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@
 
 namespace furrow::terrain::liggghts {
 
-/// Of the grains of one rank; cumulative since the run began unless stated.
+/// Sums over the grains of one rank; cumulative since the run began unless stated.
 struct RankSums {
   double elastic = 0.0;                 // normal springs and cohesion, last step, J
   Vec3 wall_impulse = Vec3::Zero();     // N s
   Vec3 surface_impulse = Vec3::Zero();  // N s
-  double gravity_time = 0.0;            // for which the weight has acted, s
+  double gravity_time = 0.0;            // time for which the weight has acted, s
   double floor_force = 0.0;             // last step, N
   double contacts = 0.0;                // last step
   MotionSums motion;                    // now
@@ -39,7 +39,7 @@ void visit_fields(FieldsOf<RankSums> auto& s, auto&& visit) {
   visit(s.motion, Field{"motion", ""});
 }
 
-/// What decides how an interval ended. All ranks receive that of all.
+/// Outcome of an interval on one rank. All ranks receive the reports of all.
 struct IntervalReport {
   double lost = -1.0;              // number of a grain; −1: none
   Vec3 lost_at = Vec3::Zero();     // m
@@ -59,7 +59,7 @@ class RankContacts final : public StepWork {
  public:
   explicit RankContacts(const dem::DemOptions& options);
 
-  /// Contacts are evaluated for steps of `dt` from now on, s.
+  /// From now on contacts are evaluated for steps of `dt`, s.
   void set_step(double dt);
 
   void attach(const SurfaceMesh& mesh, const ContactMaterial& material, const SurfaceState& start);
@@ -69,19 +69,18 @@ class RankContacts final : public StepWork {
 
   /// Declares the motion of the coming interval of `steps` steps.
   void begin_interval(std::span<const SurfaceState> targets, double duration, int steps);
-  /// Of the coming steps.
   void set_times(const StepTimes& times) { times_ = times; }
-  /// The grains are those of another engine.
+  /// Call it when another engine has replaced the grains.
   void forget_grains();
   void lists_made(const OwnGrains& grains, std::span<const std::int32_t> order) override;
   void numbers_change(const OwnGrains& grains) override;
   StepWish begin_step() override;
   void add_forces(const OwnGrains& grains, int first, int last, bool losses) override;
   void end_step(const PairSums& pairs, const MotionSums& motion, bool losses) override;
-  /// This rank's share of the interval's means.
+  /// Returns this rank's share of the interval's means.
   void end_interval(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
-  /// Of this rank's grains in the interval: the first one that was lost, and the hardest contact.
+  /// Report on this rank's grains in the interval: the first one that was lost, and the hardest contact.
   const IntervalReport& interval() const { return interval_; }
 
   const RankSums& sums() const { return sums_; }
@@ -89,15 +88,15 @@ class RankContacts final : public StepWork {
   dem::EnergyAccounts& energies() { return energies_; }
   const dem::GrainProperties& grain() const { return params_.grain; }
   const dem::SolverParams& params() const { return params_; }
-  /// What an engine must know of these grains; ranks, borders and the height of the bed are left to the caller.
+  /// Setup of an engine for these grains; the caller sets ranks, borders and the height of the bed.
   EngineSetup setup() const;
   const dem::SolverCoefficients& coefficients() const { return coefficients_; }
   /// Begins the accounts. @param stored by the contacts of this rank's grains now  @param elastic J
   void begin_accounts(const dem::Stored& stored, double elastic);
-  /// These are the rank's grains now, other ones than before.
+  /// Sums the motion of the grains that the rank has now, after they were replaced.
   void sum_motion(const OwnGrains& grains);
 
-  /// What the grains remember of walls and tires, grain by grain.
+  /// Histories of walls and tires that the grains carry, grain by grain.
   std::vector<CarriedBy> carried(const OwnGrains& grains) const;
 
   void save(Archive& archive) const;
@@ -106,16 +105,16 @@ class RankContacts final : public StepWork {
  private:
   struct Tire : dem::TireSurface {
     using TireSurface::TireSurface;
-    SurfaceBox looked_for;  // where grains were looked for the last time
-    std::int64_t grid = 0;  // how often the collider had made its grid then
-    double way = 0.0;       // of the fastest vertex in a step, m
-    double moved = 0.0;     // by vertices at most since grains were looked for, m
+    SurfaceBox looked_for;  // where grains were last searched
+    std::int64_t grid = 0;  // the collider's grid_rebuilds() at that time
+    double way = 0.0;       // displacement of the fastest vertex in a step, m
+    double moved = 0.0;     // largest displacement of vertices since grains were searched, m
   };
 
   struct Touchable {
-    int place, grain;      // in order_, in OwnGrains
-    int near = 0;          // in near_begin_: where its triangles of each tire begin, and their end
-    bool carries = false;  // a history with a tire
+    int place, grain;      // index in order_, index in OwnGrains
+    int near = 0;          // in near_begin_: beginnings of its triangles for each tire, and their end
+    bool carries = false;  // has a history with a tire
   };
 
   template <class Law, bool kRolling, bool kSizes>
@@ -124,12 +123,12 @@ class RankContacts final : public StepWork {
   void touch_tires(const OwnGrains& grains, Touchable& t, bool losses);
   template <class Law, bool kRolling>
   void touch_tire(const OwnGrains& grains, int g, int k, std::span<const SurfaceHit> hits, bool losses);
-  /// Finds the grains that may touch a wall or a tire, where what was found before holds no longer.
+  /// Finds the grains that may touch a wall or a tire, if the last result is no longer valid.
   void look(const OwnGrains& grains);
   bool looked_far_enough() const;
   bool any_near(const SurfaceBox& part) const;
   void look_at(const OwnGrains& grains, int first, int last);
-  /// What a grain and a tire may come nearer to each other before the next look, m.
+  /// Distance by which a grain and a tire may approach each other before the next look, m.
   double look_room() const;
   void note_lost(const OwnGrains& grains, int g);
   void note(double overlap, double share, const double* at);
@@ -138,7 +137,7 @@ class RankContacts final : public StepWork {
   dem::SolverParams params_;
   dem::SolverCoefficients coefficients_;
   std::vector<Tire> tires_;
-  bool tires_roll_ = false;  // some tire resists the rolling of grains, whether or not grains do
+  bool tires_roll_ = false;  // whether some tire resists the rolling of grains, even if grains do not
   StepTimes times_;
   int steps_ = 1, step_ = 0;  // of the interval
   dem::EnergyAccounts energies_;
@@ -147,18 +146,18 @@ class RankContacts final : public StepWork {
   Vec3 on_grains_ = Vec3::Zero();  // by tires, this step, N
   IntervalReport interval_;
   WallContacts walls_;
-  bool walls_listed_ = false;            // they still hold
-  std::span<const std::int32_t> order_;  // of lists_made
-  std::vector<Touchable> touchable_;     // in that order
+  bool walls_listed_ = false;            // the lists of walls are valid
+  std::span<const std::int32_t> order_;  // from lists_made
+  std::vector<Touchable> touchable_;     // in the order of order_
   std::vector<int> near_, near_begin_;   // triangles that touchable grains may touch
-  std::size_t next_ = 0;                 // of those, in this step
-  std::vector<std::uint8_t> carries_;    // of each grain, while one looks
-  bool looked_ = false;                  // touchable_ still holds
-  bool numbered_ = false;                // the numbers of its grains still hold
-  std::vector<SurfaceBox> parts_;        // of kPart grains in that order each, when lists were made
+  std::size_t next_ = 0;                 // of touchable_, in this step
+  std::vector<std::uint8_t> carries_;    // of each grain, during a look
+  bool looked_ = false;                  // touchable_ is valid
+  bool numbered_ = false;                // the indices of its grains are valid
+  std::vector<SurfaceBox> parts_;        // boxes of kPart grains each in that order, when lists were made
   SurfaceBox box_;                       // of the centres, when lists were made
-  std::vector<Carried> past_;            // of the grain at hand, as it was before this step
-  std::vector<std::uint8_t> taken_;      // of those: a point has taken it over
+  std::vector<Carried> past_;            // histories of the present grain before this step
+  std::vector<std::uint8_t> taken_;      // which of them a point has taken over
 };
 
 }  // namespace furrow::terrain::liggghts

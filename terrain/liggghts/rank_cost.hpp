@@ -1,7 +1,7 @@
-// What a step of a bed on several ranks costs one of them. A rank owns its share of the grains and keeps copies of
-// those within reach of its two borders, the ghosts: of a bed of N grains, L long and cut
-// across, N reach/L at each border.
-//   ghosts = min(2, ranks − 1) N reach/L, at most all that others own
+// Cost of a step on one of the ranks of a bed. A rank owns its share of the grains and keeps copies of those
+// within reach of its two borders, the ghosts. A bed of N grains and length L, cut across, has N reach/L of them at
+// each border.
+//   ghosts = min(2, ranks − 1) N reach/L, at most all grains of the other ranks
 //   t      = c (N/ranks + ghosts)
 // All grains are awake, and each rank has one core.
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace furrow::terrain::liggghts {
 
-/// Processor time of a grain-step over that of the engine dem in the program's measure of this machine
+/// Processor time of a grain-step, relative to that of engine dem in the program's measurement of this machine
 /// (nodes/scenario/machine_speed.hpp): 149 to 185 against 45 to 59 ns, six times in turn (2.9 to 3.4), on 24,340 grains
 /// under a flexible tire with walls, accounts and reports.
 inline constexpr double kGrainStep = 3.2;
@@ -19,10 +19,10 @@ struct RankLoad {
   double own = 0.0, ghosts = 0.0;  // grains
 };
 
-/// Of an inner rank. @pre ranks > 0
+/// Grains of an inner rank. @pre ranks > 0
 RankLoad rank_load(const dem::DemOptions& options, int ranks);
 
-/// Of one step on its core, s. @param grain_step  of the machine, s
+/// Time of one step on the rank's core, s. @param grain_step  of the machine, s
 double rank_step(const RankLoad& load, double grain_step);
 
 }  // namespace furrow::terrain::liggghts

@@ -1,4 +1,4 @@
-// A rank's grains as the rest of the program takes them: for heights, and for frames of all ranks.
+// A rank's grains in the form of the rest of the program: for heights, and for frames of all ranks.
 #pragma once
 
 #include "protocol/core/rank_group.hpp"
@@ -10,11 +10,11 @@
 
 namespace furrow::terrain::liggghts {
 
-/// Positions, radii and numbers.
+/// Positions, radii and numbers of the grains.
 dem::Grains grains_of(const OwnGrains& own, const dem::Bin& bin);
 
-/// The whole frame on the leader, grains in the order of their numbers; nothing on the others.
-/// @param group  null: there is one rank
+/// Gathers the whole frame on the leader, grains in the order of their numbers; nothing on the others.
+/// @param group  null if there is one rank
 void gather_frame(RankGroup* group, const OwnGrains& own, const dem::Bin& bin, TerrainFrame& out);
 
 }  // namespace furrow::terrain::liggghts

@@ -10,7 +10,7 @@
 namespace furrow::terrain::liggghts {
 namespace {
 
-/// What the ranks' tires felt at one vertex after another; both lists rise.
+/// Adds the forces of another rank's tires, vertex by vertex; both lists rise.
 void merge(NodalForces& into, const NodalForces& more) {
   NodalForces all;
   std::size_t a = 0, b = 0;
@@ -25,7 +25,7 @@ void merge(NodalForces& into, const NodalForces& more) {
     left ? take(into, a++) : take(more, b++);
     if (!both) continue;
     all.force.back() += more.force[b];
-    if (!more.tangent.empty()) {  // position and velocity of the vertex are alike on all ranks
+    if (!more.tangent.empty()) {  // position and velocity of the vertex are the same on all ranks
       all.tangent.back().stiffness += more.tangent[b].stiffness;
       all.tangent.back().damping += more.tangent[b].damping;
     }

@@ -1,4 +1,4 @@
-// What the ranks of a terrain tell each other after an interval, as numbers in a fixed order.
+// Exchange of reports between the ranks of a terrain after an interval, as numbers in a fixed order.
 #pragma once
 
 #include <span>
@@ -9,22 +9,21 @@
 
 namespace furrow::terrain::liggghts {
 
-/// What the ranks know of an interval once they have told each other.
 struct SharedReports {
   std::vector<IntervalReport> intervals;  // of all ranks, on each of them
-  std::vector<StateReport> states;        // of all ranks, in their order, on the leader; the own one elsewhere
+  std::vector<StateReport> states;        // of all ranks, in their order, on the leader; only its own on another rank
 };
 
-/// After an interval, in one message of each rank to the leader and one back. Adds up what
-/// tires felt on all ranks, in the
-/// order of ranks; what it leaves in `forces` and `sums` counts on the leader. @param group  null: there is one rank
+/// Exchanges the reports after an interval: each rank sends one message to the leader and gets one back. Adds the
+/// forces on tires over all ranks, in the order of ranks; `forces` and `sums` are valid on the leader.
+/// @param group  null if there is one rank
 SharedReports share_reports(RankGroup* group, const IntervalReport& interval, const StateReport& state,
                             std::span<NodalForces> forces, std::span<ContactSums> sums);
 
 /// Highest tops of grains per cell over all ranks, on each of them.
 void merge_heights(RankGroup* group, HeightField& field);
 
-/// Of all ranks, in their order, on the leader; the own one elsewhere.
+/// Reports of all ranks, in their order, on the leader; only its own on another rank.
 std::vector<StateReport> gather_states(RankGroup* group, const StateReport& own);
 
 }  // namespace furrow::terrain::liggghts

@@ -37,7 +37,7 @@ TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& g
   s.contacts = std::llround(all.sums.contacts);
   s.active = std::llround(all.grains);
   s.list_rebuilds = std::llround(all.list_builds);
-  e.potential = -grain.mass * gravity.dot(motion.place);  // Σ m |g| h = −g·Σ m x with the places x
+  e.potential = -grain.mass * gravity.dot(motion.place);  // Σ m |g| h = −g·Σ m x with the positions x
   e.elastic_normal = all.sums.elastic - all.stored.cohesion;
   e.elastic_tangential = all.stored.tangential;
   e.cohesion = all.stored.cohesion;

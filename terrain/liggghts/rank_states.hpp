@@ -1,4 +1,4 @@
-// A rank's share of the terrain's state, and the state that the shares of all ranks make.
+// A rank's share of the terrain's state, and the sum of the shares of all ranks.
 #pragma once
 
 #include "protocol/core/terrain_state.hpp"
@@ -23,13 +23,13 @@ void visit_fields(FieldsOf<StateReport> auto& s, auto&& visit) {
   visit(s.list_builds, Field{"list_builds"});
 }
 
-/// @param grains of this rank  @param of_all grains  @param list_builds of this rank
+/// @param grains of this rank  @param of_all grains of all ranks  @param list_builds of this rank
 StateReport state_report(const RankContacts& contacts, double grains, double of_all, double list_builds);
 
 void add(StateReport& to, const StateReport& one);
 
-/// Without what all ranks know: refined steps. @param all  summed over the ranks  @param gravity m/s²
-/// @param surface_work by tires on the grains, J
+/// The terrain's state, except for refined steps, which all ranks have. @param all  sum over the ranks
+/// @param gravity m/s²  @param surface_work by tires on the grains, J
 TerrainState terrain_state(const StateReport& all, const dem::GrainProperties& grain, const Vec3& gravity,
                            double surface_work);
 

@@ -29,7 +29,7 @@ void grain_of(std::int32_t grain, std::int64_t size, const char* array) {
   if (grain < 0 || grain >= size) damaged(fmt::format("'{}' names grain {} of {}", array, grain, size));
 }
 
-/// The numbers of an entry, in their order in the saved state.
+/// The numbers of an entry, in the order of the saved state.
 auto numbers_of(auto& of) {
   using Entry = std::remove_cvref_t<decltype(of)>;
   if constexpr (std::is_same_v<Entry, NewGrain>)

@@ -37,7 +37,7 @@ std::array<double, 3> array_of(const Row& row) {
   return {row.x, row.y, row.z};
 }
 
-/// The number of the grain at this place of the list of strip k.
+/// The number of the grain at this index of the list of strip k.
 int number_of(const dem::GrainSolver& solver, int k, int place) {
   const dem::Strips& strips = solver.strips();
   const dem::Strip& strip = strips[k];

@@ -1,4 +1,4 @@
-// A settled bed as a distributed engine takes it: from the solver of terrain/dem on the leader to all ranks.
+// A settled bed for a distributed engine: from the solver of terrain/dem on the leader to all ranks.
 #pragma once
 
 #include <span>
@@ -14,20 +14,20 @@ struct StartingBed {
   std::vector<NewGrain> grains;
   std::vector<PairRecord> pairs;
   std::vector<CarriedBy> walls;
-  double top = 0.0;  // no grain stands higher, m
+  double top = 0.0;  // height that no grain exceeds, m
 
   std::int64_t size() const { return static_cast<std::int64_t>(grains.size()); }
 };
 
 /// Grains in the order of cells.
 StartingBed starting_bed(const dem::GrainSolver& solver);
-/// The other way round. @pre grains are in the order of their numbers, 0, 1, …
+/// Sets the solver's grains from a bed. @pre grains are in the order of their numbers, 0, 1, …
 void begin_from(dem::GrainSolver& solver, const StartingBed& bed);
 
-/// Gives a rank's own grains the histories that they carry.
+/// Gives a rank's own grains their histories.
 void hand_out(std::span<const CarriedBy> carried, const OwnGrains& own);
 
-/// The leader's bed on all ranks; null: there is one.
+/// Sends the leader's bed to all ranks. @param group null if there is one rank
 void share(RankGroup* group, StartingBed& bed);
 
 }  // namespace furrow::terrain::liggghts

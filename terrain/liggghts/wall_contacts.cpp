@@ -68,7 +68,7 @@ std::optional<int> WallContacts::list(const OwnGrains& grains, std::span<const s
   return lost;
 }
 
-/// Of the lists before.
+/// Indexes the previous lists by grain.
 void WallContacts::remember() {
   for (int wall = 0; wall < dem::kWalls; ++wall) {
     Listed& now = walls_[wall];

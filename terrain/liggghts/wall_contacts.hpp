@@ -1,7 +1,7 @@
-// The contacts of one rank's grains with the walls of the bin. Who may touch which wall is listed when the lists of
-// pairs are made; the histories lie beside that list, wall by wall, so that four contacts are
-// evaluated at a time and nothing is looked for. Before grains change their numbers the histories go to the grains,
-// which carry them from rank to rank (engine.hpp).
+// The contacts of one rank's grains with the walls of the bin. The grains that may touch a wall are listed when the
+// lists of pairs are made. The histories are stored in the same order, wall by wall, so that four contacts are
+// evaluated at a time without any search. Before grains change their indices the histories move to the grains, which
+// carry them from rank to rank (engine.hpp).
 #pragma once
 
 #include <algorithm>
@@ -24,33 +24,32 @@ namespace furrow::terrain::liggghts {
 
 class WallContacts {
  public:
-  /// What some contacts showed.
   struct Findings {
     int lost = -1;         // a grain whose centre is not within the walls
-    int hardest = -1;      // a grain of the contact whose share is the largest
-    double share = 0.0;    // its overlap over the diameter, -
+    int hardest = -1;      // a grain of the contact with the largest share
+    double share = 0.0;    // overlap of that contact over the diameter, -
     double overlap = 0.0;  // largest, m
   };
   struct Step {
     const dem::SolverCoefficients& coefficients;
     double dt;    // s
-    bool losses;  // are sampled
+    bool losses;  // whether losses are sampled
   };
 
-  /// @param reference  the radius that coefficients are for, m  @pre reference > 0
+  /// @param reference  the radius of the coefficients, m  @pre reference > 0
   WallContacts(const dem::Bin& bin, double reference) : bin_(bin), reference_(reference) {
     FURROW_ASSERT(reference > 0.0, reference);
   }
 
-  /// Lists, in this order, the grains that stand within `room` of touching a wall, m. Takes over what they carry of
-  /// walls.
+  /// Lists the grains within `room` of touching a wall, m, in this order. Takes over the histories of walls that they
+  /// carry.
   /// @returns a grain whose centre is not within the walls
   std::optional<int> list(const OwnGrains& grains, std::span<const std::int32_t> order, double room);
-  /// What is remembered goes to the grains; list() takes it back. Their numbers may change meanwhile.
+  /// Moves the histories to the grains, whose indices may then change; list() takes them back.
   void hand_back(const OwnGrains& grains);
-  /// The grains are other ones: nothing is remembered.
+  /// Call it when the grains were replaced: discards all histories.
   void forget();
-  /// What is remembered, wall by wall: see(grain, history).
+  /// Calls see(grain, history) for all histories, wall by wall.
   template <class See>
   void for_touching(const See& see) const {
     for (int wall = 0; wall < dem::kWalls; ++wall)
@@ -58,7 +57,7 @@ class WallContacts {
         if (walls_[wall].root[n] > 0.0) see(walls_[wall].grain[n], walls_[wall].carried(wall, n));
   }
 
-  /// Adds what walls do to the grains before place `last` of that order that were not asked for since begin().
+  /// Adds the forces of walls to grains before index `last` of that order that were not handled since begin().
   /// @pre radii of listed grains are `reference` unless kSizes; step.dt > 0
   template <class Law, bool kRolling, bool kSizes>
   void add_forces(const OwnGrains& grains, int last, const Step& step, dem::ContactTotals& sums, Findings& found);
@@ -67,12 +66,12 @@ class WallContacts {
  private:
   static constexpr std::size_t kLanes = simd::kDoubleLanes;
 
-  /// The grains that may touch one wall, and what they remember of it. Arrays have room for kLanes more.
+  /// The grains that may touch one wall, with their histories. Arrays have kLanes extra elements.
   struct Listed {
     std::size_t count = 0;
-    std::vector<int> grain, place;                           // in OwnGrains, in the order
+    std::vector<int> grain, place;                           // index in OwnGrains, index in the order
     std::array<std::vector<double>, 3> tangential, rolling;  // springs on the grain, N, N m
-    std::vector<double> root;                                // √δ of the step before, √m; 0: apart
+    std::vector<double> root;                                // √δ of the previous step, √m; 0: apart
 
     void clear();
     void add(int g, int at);
@@ -86,8 +85,8 @@ class WallContacts {
     void take(std::size_t n, const Carried& c);
   };
   using Grains = OwnGrains;
-  /// Of `count` contacts from n on, as many as T has lanes or fewer; further lanes are evaluated too, as grains that do
-  /// not touch.
+  /// Evaluates `count` contacts from n on, at most as many as T has lanes. Further lanes are evaluated as grains that
+  /// do not touch.
   template <class T, class Law, bool kRolling, bool kSizes>
   void evaluate(const Grains& grains, int wall, std::size_t n, std::size_t count, const Step& step,
                 dem::ContactTotals& sums, Findings& found);
@@ -116,9 +115,9 @@ class WallContacts {
   dem::Bin bin_;
   double reference_;  // m
   std::array<Listed, dem::kWalls> walls_, before_;
-  std::array<std::size_t, dem::kWalls> next_{};  // of each wall, in this step
-  bool numbered_ = false;                        // the numbers in walls_ are those of the grains now
-  std::vector<int> before_at_;                   // of each grain, its place among those before; -1: none
+  std::array<std::size_t, dem::kWalls> next_{};  // next contact of each wall, in this step
+  bool numbered_ = false;                        // the indices in walls_ are those of the present grains
+  std::vector<int> before_at_;                   // for each grain its index among the previous ones; −1: none
 };
 
 template <class Law, bool kRolling, bool kSizes>
@@ -130,7 +129,7 @@ void WallContacts::add_forces(const OwnGrains& grains, int last, const Step& ste
     std::size_t& next = next_[wall];
     std::size_t end = next;
     while (end < listed.count && listed.place[end] < last) ++end;
-    if (step.losses)  // one by one, so that the sums of what is lost have an order
+    if (step.losses)  // one by one, so that the sums of losses have a fixed order
       for (; next < end; ++next) evaluate<double, Law, kRolling, kSizes>(grains, wall, next, 1, step, sums, found);
     for (; next < end; next += std::min(kLanes, end - next))
       evaluate<simd::Double4, Law, kRolling, kSizes>(grains, wall, next, std::min(kLanes, end - next), step, sums,
@@ -156,7 +155,7 @@ void WallContacts::evaluate(const Grains& grains, int wall, std::size_t n, std::
   const auto touches = (overlap > none) & (order < many);
   const dem::WallPoint<T> at =
       dem::point_on_wall<T>({constant<T>(n_of.x), constant<T>(n_of.y), constant<T>(n_of.z)}, distance,
-                            touches ? overlap : radius,  // of the others any that can be evaluated
+                            touches ? overlap : radius,  // for the others, any overlap that can be evaluated
                             gather<T>(grains.velocity, g), gather<T>(grains.spin, g));
   dem::ContactHistory<T> history{listed.vector<T>(listed.tangential, n), simd::load_lanes<T>(&listed.root[n]), {}};
   if constexpr (kRolling) history.rolling = listed.vector<T>(listed.rolling, n);

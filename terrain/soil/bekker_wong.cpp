@@ -56,7 +56,7 @@ WheelEstimate rigid_wheel(const SoilStrength& soil, const RigidWheel& wheel, dou
                 soil.phi);
   WheelEstimate e;
   double low = 0.0, high = kMaxEntry;
-  if (!(integrate(soil, wheel, slip, high).lift >= wheel.load)) return e;  // nor one whose numbers overflow
+  if (!(integrate(soil, wheel, slip, high).lift >= wheel.load)) return e;  // also if its numbers overflow
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (low + high);
     (integrate(soil, wheel, slip, middle).lift < wheel.load ? low : high) = middle;

@@ -1,5 +1,5 @@
-// What soil theory says of a rigid wheel: sinkage, resistance and drawbar pull from Bekker's pressure–sinkage
-// relation and Janosi & Hanamoto's shear law, with the contact stresses of Wong & Reece.
+// Soil theory of a rigid wheel: sinkage, resistance and drawbar pull from Bekker's pressure–sinkage relation and Janosi
+// & Hanamoto's shear law, with the contact stresses of Wong & Reece.
 //
 // Angles θ from the vertical, positive towards the front; entry θ₁, exit θ₂ = 0, largest pressure at θ_m.
 //   σ(θ) = (k_c/b + k_φ) [R (cos θ − cos θ₁)]ⁿ                           θ_m ≤ θ ≤ θ₁
@@ -7,7 +7,7 @@
 //   θ_m  = (c₁ + c₂ i) θ₁                                                [Wong & Reece 1967a]
 //   τ(θ) = (c + σ tan φ)(1 − exp(−j/K)),  j = R [θ₁ − θ − (1 − i)(sin θ₁ − sin θ)]
 //   W = b R ∫ (σ cos θ + τ sin θ) dθ,   T = b R² ∫ τ dθ,   pull = b R ∫ (τ cos θ − σ sin θ) dθ
-// b is the wheel's width for both the stresses and the plate width of Bekker's k.
+// b is the wheel's width, both for the stresses and as the plate width of Bekker's k.
 //
 // [Wong & Reece 1967a,b] Prediction of rigid wheel performance based on the analysis of soil–wheel stresses,
 //   J. Terramechanics 4(1), 81–98, doi:10.1016/0022-4898(67)90105-X and 4(2), 7–25.

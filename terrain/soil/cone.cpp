@@ -14,7 +14,7 @@
 namespace furrow::terrain::soil {
 namespace {
 
-constexpr double kLeastReach = 0.5;  // diameters that the base must come below the surface
+constexpr double kLeastReach = 0.5;  // diameters by which the base must go below the surface
 
 }  // namespace
 

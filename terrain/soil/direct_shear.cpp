@@ -16,23 +16,23 @@ namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kLift = 0.3;         // radii by which the lower plate lifts the grains off the floor
-constexpr double kClear = 0.5;        // radii between grains and lid at first
+constexpr double kClear = 0.5;        // initial radii between grains and lid
 constexpr double kGrowSpeed = 0.05;   // m/s, of the lower teeth
-constexpr double kLoadTime = 15.0;    // s per m of grain radius, in which the load grows
+constexpr double kLoadTime = 15.0;    // s per m of grain radius, time in which the load grows
 constexpr double kMaxHold = 60.0;     // s per m of grain radius, for consolidation
 constexpr double kRestSpeed = 2e-3;   // m/s: a slower lid is at rest
-constexpr double kStartShare = 0.01;  // of the travel over which the speed grows
+constexpr double kStartShare = 0.01;  // of the travel, in which the speed grows
 constexpr double kBulkShare = 0.5;    // solid fraction for the lid's mass
-constexpr double kNearFace = 4.0;     // radii below the face over which the solid fraction is taken
+constexpr double kNearFace = 4.0;     // radii below the face in which the solid fraction is measured
 
-/// Of the grains beside the upper plate.
+/// Sums over the grains next to the upper plate.
 struct FaceSums {
   double rolls = 0.0, passes = 0.0;  // ω r, speed of the plate against the centre, m/s
   double sliding = 0.0, contacts = 0.0;
   double solid = 0.0, space = 0.0;  // m³
 };
 
-/// The cell with its two plates; lower first.
+/// The cell with its two plates; the lower one is first.
 class ShearCell {
  public:
   ShearCell(const Specimen& specimen, const ShearTest& test, std::function<void()> each_step)
@@ -52,7 +52,8 @@ class ShearCell {
     frame_.motion = true;
   }
 
-  /// One step with the lid at `speed` along x, bearing `share` of its load; held in height when `share` is negative.
+  /// Takes one step. The lid moves at `speed` along x and bears `share` of its load, or keeps its height if it is
+  /// negative.
   void step(double speed, double share) {
     const double dt = specimen_.step();
     const double vertical = share < 0.0 ? 0.0 : lid_.step(sums_[1].force.z(), share * load_, dt);
@@ -64,7 +65,7 @@ class ShearCell {
     height_ += dt * vertical;
   }
 
-  /// Lets the lower plate's teeth grow out of the floor.
+  /// Makes the lower plate's teeth grow out of the floor.
   void grow(const ShearTest& test) {
     const double time = (kLift + test.tooth) * r_ / kGrowSpeed;
     const auto steps = static_cast<int>(std::ceil(time / specimen_.step()));
@@ -89,7 +90,7 @@ class ShearCell {
     }
   }
 
-  /// Adds the grains beside the upper plate, which moves at `speed` along x. @param face of the plate
+  /// Adds the grains next to the upper plate, which moves at `speed` along x. @param face of the plate
   void look_at_face(double speed, Face face, FaceSums& sums) {
     terrain_->gather_frame(frame_);
     const double lowest = height_ - (face == Face::glued ? r_ : 0.0);
@@ -111,7 +112,7 @@ class ShearCell {
   const ContactSums& lower_sums() const { return sums_[0]; }
   const ContactSums& upper_sums() const { return sums_[1]; }
   double floor_force() const { return terrain_->gather_state().floor_force; }
-  /// Of the flats of the two plates, m.
+  /// Distance between the flats of the two plates, m.
   double gap() const { return height_ - kLift * r_; }
 
  private:
@@ -123,7 +124,7 @@ class ShearCell {
     for (Vec3& x : flat) teeth_.push_back(x.z()), x.z() = 0.0;
     return {sheet.mesh(), std::move(flat)};
   }
-  /// Long enough to cover the cell at the end of its travel.
+  /// A plate long enough to cover the cell at the end of its travel.
   Tool upper(const Specimen& s, const ShearTest& test, double r) {
     const double room = 3.0 * r;
     height_ = s.top() + (kLift + kClear + 2.0 * test.tooth) * r;
@@ -146,7 +147,6 @@ class ShearCell {
   TerrainFrame frame_;
 };
 
-/// Sums of one sample.
 struct Sample {
   double shear = 0.0, normal = 0.0, below = 0.0, across = 0.0;
 };

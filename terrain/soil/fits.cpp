@@ -12,7 +12,7 @@ namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr int kSearchPoints = 80;    // of the first, logarithmic, search for K
+constexpr int kSearchPoints = 80;    // of the first, logarithmic search for K
 constexpr int kGoldenSections = 60;  // after it
 
 double mean(std::span<const double> values) {
@@ -24,7 +24,7 @@ double mean(std::span<const double> values) {
 
 double square(double x) { return x * x; }
 
-/// n and ln k_i of p = k_i zⁿ for each curve.
+/// n and ln k_i of p = k_i zⁿ for all curves.
 struct CommonExponent {
   double n = 0.0;
   std::vector<double> log_k;

@@ -1,5 +1,5 @@
-// From measured curves to the parameters of terramechanics. Every fit is plain algebra on arrays: no units inside,
-// no files. Stresses and pressures are positive in compression; sinkage and travel are positive.
+// Parameters of terramechanics from measured curves. Every fit is plain algebra on arrays, without units or files.
+// Stresses and pressures are positive in compression; sinkage and travel are positive.
 //
 // [Wong 2008] J. Y. Wong, Theory of Ground Vehicles, 4th ed., Wiley, §2.4.
 // [Janosi & Hanamoto 1961] The analytical determination of drawbar pull as a function of slip for tracked vehicles,
@@ -11,11 +11,10 @@
 
 namespace furrow::terrain::soil {
 
-/// A value with what is known of its error.
 struct Measured {
   double value = 0.0;
-  double standard_error = 0.0;  // NaN: one sample only
-  int samples = 0;              // that the error was taken from
+  double standard_error = 0.0;  // NaN if there is only one sample
+  int samples = 0;              // from which the error was computed
   double freedom = 0.0;         // degrees of freedom of that error
   /// Half the width of the 95 % confidence interval: Student's t × standard error; NaN without an error.
   double half_interval() const;
@@ -24,7 +23,6 @@ struct Measured {
 /// Mean of independent samples and its standard error. @pre at least one sample
 Measured mean_of(std::span<const double> samples);
 
-/// A pressure–sinkage curve of one plate.
 struct PlateCurve {
   double width = 0.0;            // b, the smaller side or the radius of a disc [Wong 2008], m
   std::vector<double> sinkage;   // z > 0, m
@@ -39,12 +37,12 @@ struct BekkerFit {
   double goodness = 0.0;  // 1 − Σ(p − p_fit)²/Σ(p − p̄)² over all plates; at most 1
   std::vector<double> k;  // of each plate, Pa/mⁿ
 };
-/// Weighted least squares of ln p = ln k_i + n ln z with weights p² [Wong 2008]: such weights make the
-/// error of the pressure itself small, not that of its logarithm. Points with z ≤ 0 or p ≤ 0 are left out.
+/// Weighted least squares of ln p = ln k_i + n ln z with weights p² [Wong 2008]. These weights minimise the error of
+/// the pressure itself, not that of its logarithm. Points with z ≤ 0 or p ≤ 0 are left out.
 /// @pre two plates or more of different widths, each with two usable points or more
 BekkerFit fit_bekker(std::span<const PlateCurve> plates);
 
-/// p = k zⁿ of plates of one size, by the same least squares.
+/// p = k zⁿ for plates of one size, by the same least squares.
 struct PowerFit {
   double n = 0.0;
   double k = 0.0;  // Pa/mⁿ
@@ -58,7 +56,7 @@ struct JanosiFit {
   double K = 0.0;         // m
   double goodness = 0.0;  // 1 − Σ(τ − τ_fit)²/Σ(τ − τ̄)²
 };
-/// Least squares: τ_max follows from K, K is searched for between the smallest travel and ten times the largest.
+/// Least squares: τ_max follows from K, which is searched between the smallest travel and ten times the largest.
 /// @pre three points or more
 JanosiFit fit_janosi(std::span<const double> travel, std::span<const double> stress);
 
@@ -69,10 +67,10 @@ struct CoulombFit {
   Measured phi;           // rad
   double goodness = 0.0;  // R²
 };
-/// Least squares line, standard errors from the scatter about it. @pre two different σ or more
+/// Least-squares line with standard errors from the scatter about it. @pre two different σ or more
 CoulombFit fit_coulomb(std::span<const double> normal, std::span<const double> shear);
 
-/// τ = σ tan φ, for soil that is known to have no cohesion: least squares, error of φ in rad from the scatter about it.
+/// τ = σ tan φ, for soil without cohesion: least squares, with the error of φ in rad from the scatter about the line.
 /// @pre one value or more, some σ above 0
 Measured fit_friction(std::span<const double> normal, std::span<const double> shear);
 

@@ -13,12 +13,12 @@ namespace furrow::terrain::soil {
 namespace {
 
 constexpr double kSides = 4.0;     // height of the plate's sides beyond the sinkage, radii
-constexpr double kUnloaded = 0.1;  // of the load: what a lifted plate still bears; below it the hole falls in
-constexpr double kRest = 0.5;      // of the time in which the plate sank: the soil comes to rest
-constexpr double kPressing = 0.6;  // share of the work, where the plate is lifted after it
-constexpr double kWindow = 6.0;    // sizes of a disc over which volumes are accounted for, about its middle
+constexpr double kUnloaded = 0.1;  // share of the load that a lifted plate still bears; with less the hole collapses
+constexpr double kRest = 0.5;      // of the time in which the plate sank, for the soil to come to rest
+constexpr double kPressing = 0.6;  // share of the work if the plate is lifted afterwards
+constexpr double kWindow = 6.0;    // disc diameters: side of the window about its middle for the volume account
 
-/// All of a bed, or the window about a disc in a larger one.
+/// The whole bed, or a window about a disc in a larger bed.
 Region region_about(const Specimen& specimen, const Footprint& plate) {
   const dem::DemOptions& o = specimen.options();
   const double half = 0.5 * specimen.width();
@@ -44,7 +44,7 @@ std::vector<dem::Quad> grains_of(const Terrain& terrain) {
   return grains;
 }
 
-/// A plate above a bed, and what it meets on its way.
+/// A plate above a bed, its motion and the forces on it.
 class Press {
  public:
   Press(const Specimen& specimen, const PlateTest& test, const WorkCall& work)
@@ -56,7 +56,7 @@ class Press {
     steps_ = std::max(1, static_cast<int>(std::ceil(interval_ / specimen.step())));
   }
 
-  /// One sample at this velocity, up. Returns the mean force on the plate, N.
+  /// Takes one sample at this upward velocity. Returns the mean force on the plate, N.
   double move(double velocity) {
     plate_.set_velocity(Vec3(0.0, 0.0, velocity));
     const Outcome outcome = terrain_->advance({&plate_.state(), 1}, interval_, steps_, forces_, sums_);
@@ -103,7 +103,7 @@ class Press {
   std::vector<ContactSums> sums_{1};
 };
 
-/// Lifts the plate until it bears nothing, and waits until the soil rests.
+/// Lifts the plate until it bears almost nothing, and waits until the soil rests.
 void unload(Press& press, const PlateTest& test, double load) {
   int lifting = 0;
   while (lifting++ < test.samples && press.move(test.speed) > kUnloaded * load) {
@@ -127,13 +127,13 @@ PlateResult plate_sinkage(const Specimen& specimen, const PlateTest& test, const
     const double begin = press.sinkage();
     force = press.move(-test.speed);
     press.share = pressing * (k + 1) / test.samples;
-    // The force is the mean over the interval and belongs to its middle.
+    // The force is the mean over the interval, so it belongs to the middle of the interval.
     result.curve.sinkage.push_back(0.5 * (begin + press.sinkage()));
     result.curve.pressure.push_back(force / press.area());
     if (2 * k >= test.samples) off += (press.floor_force() - specimen.weight() - force) / force;
   }
   const dem::DemOptions& o = specimen.options();
-  const bool walls = !o.periodic_x || !o.periodic_y();  // which bear a part
+  const bool walls = !o.periodic_x || !o.periodic_y();  // walls, which bear a part of the load
   result.balance_error = walls ? std::numeric_limits<double>::quiet_NaN() : std::abs(off) / (0.5 * test.samples);
   result.volume = press.account();
   if (!test.unload) return result;

@@ -17,7 +17,7 @@ constexpr double kSlumpShare = 0.02;  // of the square of the cut's height
 constexpr int kCheckEvery = 100;      // steps
 constexpr double kLow = 0.15, kHigh = 0.85;
 
-/// Mean over y of the highest grain top in cells of 2r, for each cell along x; the base where there is none.
+/// Mean over y of the highest grain top in cells of 2r, for each cell along x; the base if there are no grains.
 std::vector<double> profile(const dem::Grains& grains, const Specimen& s, std::vector<double>& x) {
   const double r = s.options().radius, cell = 2.0 * r;
   const int nx = static_cast<int>(s.length() / cell), ny = std::max(1, static_cast<int>(s.width() / cell));
@@ -45,10 +45,10 @@ double flank_angle(const std::vector<double>& x, const std::vector<double>& heig
   double crest = 0.0;
   for (std::size_t k = 0; k < tenth; ++k) crest += height[k] / static_cast<double>(tenth);
   const double low = base + kLow * (crest - base), high = base + kHigh * (crest - base);
-  std::size_t first = 0;  // the last point that is still high
+  std::size_t first = 0;  // last point that is still high
   for (std::size_t k = 0; k < x.size(); ++k)
     if (height[k] >= high) first = k;
-  std::size_t last = first;  // the first one after it that is low
+  std::size_t last = first;  // first point after it that is low
   while (last + 1 < x.size() && height[last] > low) ++last;
   if (last - first < 5) return last > first ? std::atan((height[first] - height[last]) / (x[last] - x[first])) : 0.0;
   const auto part = [&](const std::vector<double>& v) {

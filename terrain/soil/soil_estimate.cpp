@@ -22,7 +22,7 @@ using nlohmann::json;
 constexpr int kFormatVersion = 1;
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
-/// A number that theory cannot do without, above zero or any.
+/// A number that the theory needs, above zero or any.
 double number(JsonReader& reader, const std::string& key, bool positive = false) {
   if (!reader.has(key)) reader.fail(key, "is missing: not the expected file, or not all soil tests were run");
   return positive ? reader.positive(key) : reader.number(key);
@@ -42,7 +42,7 @@ SoilStrength strength_of(JsonReader& soil, double width) {
   return s;
 }
 
-/// Error of the pull from the parameters' standard errors, as if they were independent, N; NaN where none is known.
+/// Error of the pull from the parameters' standard errors, as if they were independent, N; NaN if none is known.
 double pull_error(JsonReader& soil, const SoilStrength& s, const RigidWheel& wheel, double slip) {
   const json stated = soil.object_or_empty("standard_error");
   JsonReader errors(stated, soil.file(), soil.full("standard_error"));
@@ -77,7 +77,7 @@ void require_grains(const json& scenario, const std::filesystem::path& file) {
                     "is '" + name + "', expected " + engines_with_grains() + ": theory needs a soil");
 }
 
-/// The summary of a run with the values of wheel 0, for which the estimate is.
+/// The summary of a run with the values of wheel 0, to which the estimate applies.
 json summary_of_wheel(const std::filesystem::path& file) {
   json summary = load_json(file, "the summary of a finished run");
   JsonReader reader(summary, file.string());

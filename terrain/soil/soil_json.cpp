@@ -18,13 +18,13 @@ constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-constexpr double kBrixiusDepth = 0.15;           // of the mean cone index, m
-constexpr double kLeastFreedom = 2.0;            // of an interval: with one, it is wider than what is known without
-constexpr double kWidestAngle = 10.0 * kDegree;  // half an interval of an angle that says something, rad
+constexpr double kBrixiusDepth = 0.15;           // depth down to which the mean cone index is taken, m
+constexpr double kLeastFreedom = 2.0;            // of an interval: with one it is wider than prior knowledge
+constexpr double kWidestAngle = 10.0 * kDegree;  // largest half interval of a useful angle, rad
 constexpr char kQuickWarning[] =
     "a quick look: one bed in small boxes, with a bias that is larger than its scatter; not to be quoted";
 
-/// Why there is no standard error, or no interval; empty where there is one.
+/// Why there is no standard error, or no interval; empty if there is one.
 std::string no_error_because(const Measured& m, bool quick) {
   if (m.samples == 0) return "not tested";
   if (quick) return kQuickWarning;
@@ -37,7 +37,7 @@ std::string no_interval_because(const Measured& m, bool quick, bool angle) {
   return "";
 }
 
-/// The parameters: values flat, errors beside them under the same names, or why there is none.
+/// Writes the parameters: values at the top level, and errors, or the reason for none, under the same names.
 class Parameters {
  public:
   Parameters(json& target, bool quick) : target_(target), quick_(quick) {}
@@ -97,7 +97,7 @@ json volume_json(const VolumeAccount& volume) {
           {"solid_fraction_below_after", volume.solid_after}};
 }
 
-/// p = k zⁿ of each plate, and where the soil went.
+/// p = k zⁿ of each plate, and the volume account of the soil.
 json each_plate_json(const SoilRun& run, const SoilParameters& p) {
   const double r = run.options.material.radius;
   json list = json::array();
@@ -164,7 +164,7 @@ json plate_json(const SoilRun& run, const SoilParameters& p) {
   return j;
 }
 
-/// What the tests in the shear cell begin with.
+/// The first entries of the tests in the shear cell.
 template <class Tests>
 json cell_json(const char* what, const SoilRun& run, const Tests& tests, const ShearTest& test) {
   return {{"what", what},
@@ -242,7 +242,7 @@ json interface_json(const SoilRun& run, const SoilParameters& p) {
   return j;
 }
 
-/// The least and the largest of the cones' values.
+/// The lowest and the highest of the cones' values.
 json band(const std::vector<ConeParameters>& cones, Measured ConeParameters::*value) {
   const auto less = [&](const ConeParameters& a, const ConeParameters& b) {
     return (a.*value).value < (b.*value).value;
@@ -255,7 +255,7 @@ json cone_json(const SoilRun& run, const SoilParameters& p) {
   const double r = run.options.material.radius;
   const ConeTest& test = run.plan.cones.front();
   const auto& tests = run.results.cone;
-  // Of all cones alike, so that their values are of the same depths.
+  // The same depth for all cones, so that their values are comparable.
   double reached = tests.front().result.reached;
   for (const auto& t : tests) reached = std::min(reached, t.result.reached);
   json j = {{"what", "30° cone after ASABE S313.3, base diameter in grains, polished (friction at most 0.3)"},
@@ -309,7 +309,7 @@ json repose_json(const SoilRun& run) {
   return j;
 }
 
-/// The keys of engine scm from the plate and the shear tests; none of a test that was not made or gives no soil.
+/// Adds the keys of engine scm from the plate and the shear tests; skips tests that were not made or give no soil.
 void add_empirical(const SoilParameters& p, json& terrain) {
   if (p.n.samples > 0 && p.k_phi.value > 0.0 && p.n.value > 0.0) {
     terrain["bekker_k_c"] = p.k_c.value;
@@ -317,7 +317,7 @@ void add_empirical(const SoilParameters& p, json& terrain) {
     terrain["bekker_n"] = p.n.value;
   }
   if (p.phi.samples > 0 && p.phi.value >= 0.0 && p.K.value > 0.0) {
-    terrain["mohr_cohesion"] = std::max(p.cohesion.value, 0.0);  // a line through scatter may begin below 0
+    terrain["mohr_cohesion"] = std::max(p.cohesion.value, 0.0);  // the fitted line may begin below 0
     terrain["mohr_friction_angle"] = p.phi.value / kDegree;
     terrain["janosi_k"] = p.K.value;
   }
@@ -365,7 +365,7 @@ json soil_json(const SoilRun& run) {
                  {"young_modulus_Pa", o.young_modulus},
                  {"bed_generator", o.bed_generator},
                  {"compaction_pressure_Pa", o.compaction_pressure}};
-  j["terrain"] = fields_json(o, role::soil);  // all that soil files may say: of the grains,
+  j["terrain"] = fields_json(o, role::soil);  // all keys that soil files may have: of the grains,
   add_empirical(p, j["terrain"]);             // and of the soil as a whole
   if (run.options.plate) j["plate"] = plate_json(run, p);
   if (run.options.shear) j["shear"] = shear_json(run, p.coulomb_goodness);

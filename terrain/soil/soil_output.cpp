@@ -19,7 +19,7 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
     });
     write_whole_file(folder / name, text);
   };
-  // Plates in metres differ in more than their b.
+  // Plates given in metres differ in more than their b.
   const bool metres = !run.plan.plate_beds.empty() && run.plan.plate_beds.front().exact;
   write(run.options.plate, "plate.csv",
         metres ? "seed,width_m,sinkage_m,pressure_Pa,diameter_m,bed_depth_m\n" : "seed,width_m,sinkage_m,pressure_Pa\n",
@@ -49,7 +49,7 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
               row(t, {t.result.face == Face::glued ? 1.0 : 0.0, t.result.normal_nominal, t.result.travel[k],
                       t.result.shear[k], t.result.normal[k], t.result.rise[k]});
         });
-  // That of the index alone, and all sizes.
+  // Value of the cone of the index, or of all sizes.
   const auto cones = [&](const auto& row, bool all) {
     const std::size_t each = run.plan.cones.size();
     for (std::size_t at = 0; at < run.results.cone.size(); at += all ? 1 : each) {
@@ -79,7 +79,7 @@ void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) 
 
 namespace {
 
-constexpr double kOpenAccount = 0.1;  // of the displaced volume, that is not accounted for
+constexpr double kOpenAccount = 0.1;  // of the displaced volume, left over by the account
 
 std::string plate_text(const json& plate) {
   double displaced = 0.0, depth = 0.0, count = 0.0;
@@ -120,7 +120,7 @@ std::string soil_text(const json& soil) {
     };
     const double error = in(soil["standard_error"]);
     if (std::isfinite(error)) return fmt::format("{:.4g} ± {:.2g}", in(soil), error);
-    // Two digits of what is not known better.
+    // Two digits, if the value is not more accurate.
     return quick ? fmt::format("about {:.2g}", in(soil)) : fmt::format("{:.4g} (no error)", in(soil));
   };
   if (soil["k_phi"].is_number())

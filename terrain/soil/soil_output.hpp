@@ -1,4 +1,4 @@
-// What `furrow soil` leaves behind: soil.json and one CSV per test.
+// Output of `furrow soil`: soil.json and one CSV per test.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,20 @@
 namespace furrow::terrain::soil {
 
 struct SoilRun {
-  std::string scenario, scenario_digest;  // name of the scenario, and what identifies it
+  std::string scenario, scenario_digest;  // name of the scenario, and its digest
   const SoilOptions& options;
   const SoilPlan& plan;
   const SoilResults& results;
   double wall_s = 0.0;
 };
 
-/// soil.json. Numbers under names with their unit; null where a test was not run or an error is not known.
+/// Contents of soil.json. Names of numbers include their unit; null if a test was not run or an error is not known.
 nlohmann::ordered_json soil_json(const SoilRun& run);
 
-/// plate.csv, shear.csv, cone.csv, repose.csv, of the tests that were run. @throws Error(io)
+/// Writes plate.csv, shear.csv, cone.csv and repose.csv of the tests that were run. @throws Error(io)
 void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run);
 
-/// A few lines for people.
+/// A few lines for users.
 std::string soil_text(const nlohmann::ordered_json& soil);
 
 }  // namespace furrow::terrain::soil

@@ -1,4 +1,4 @@
-// What follows from the results of all tests: SoilParameters of soil_tests.hpp.
+// Computes SoilParameters of soil_tests.hpp from the results of all tests.
 #include <algorithm>
 #include <span>
 #include <vector>
@@ -8,7 +8,7 @@
 namespace furrow::terrain::soil {
 namespace {
 
-/// The part of a curve that is fitted.
+/// The part of a curve that is used for fits.
 PlateCurve from_sinkage(const PlateCurve& curve, double least) {
   PlateCurve part;
   part.width = curve.width;
@@ -32,7 +32,7 @@ VolumeShares shares_of(const std::vector<VolumeAccount>& accounts) {
           mean([](const VolumeAccount& a) { return a.residual(); })};
 }
 
-/// Means over the seeds, with the values of one fit to all curves: k and n go together.
+/// Means over the seeds; k and n are those of one fit to all curves, as they depend on each other.
 PlateParameters parameters_of_plate(std::span<const Tested<PlateResult>> tests, std::size_t each, double from) {
   PlateParameters p;
   std::vector<double> k, n;
@@ -66,7 +66,7 @@ BedParameters parameters_of_bed(std::span<const Tested<PlateResult>> tests, std:
   }
   const BekkerFit fit = fit_bekker(all);
   p.k_c = mean_of(k_c), p.k_phi = mean_of(k_phi), p.n = mean_of(n);
-  // k and n go together: the values are those of one fit to all curves, the errors those between seeds.
+  // Values are from one fit to all curves, since k and n depend on each other; errors are those between seeds.
   p.k_c.value = fit.k_c, p.k_phi.value = fit.k_phi, p.n.value = fit.n;
   p.goodness = fit.goodness;
   return p;

@@ -1,4 +1,4 @@
-// What is tested on which beds: SoilPlan of soil_tests.hpp.
+// Plans the tests and their beds: SoilPlan of soil_tests.hpp.
 #include <algorithm>
 #include <vector>
 
@@ -11,13 +11,13 @@
 namespace furrow::terrain::soil {
 namespace {
 
-constexpr int kMetreSamples = 300;        // of a curve of a plate in metres
+constexpr int kMetreSamples = 300;        // of the curve of a plate given in metres
 constexpr double kStripLength = 10.0;     // of strips, radii
-constexpr double kConeDepth = 0.15;       // of the mean of a cone in metres [Brixius 1987], m
-constexpr double kConeWidths = 6.0;       // of the largest cone: its bed
+constexpr double kConeDepth = 0.15;       // depth of the mean of a cone given in metres [Brixius 1987], m
+constexpr double kConeWidths = 6.0;       // width of the bed in diameters of the largest cone
 constexpr double kLeastConeWidth = 24.0;  // radii
 
-/// Periodic boxes: grains must not meet their own images, so three cells of the neighbour search between their sides.
+/// Widens periodic boxes to three cells of the neighbour search, as grains must not touch their own images.
 void widen(const SoilOptions& o, Box& box) {
   const double least = 6.0001 * (dem::largest_radius(o.material) / o.material.radius + dem::kSkinShare);
   if (box.periodic_x) box.length = std::max(box.length, least);
@@ -50,7 +50,7 @@ void plan_plates(const SoilOptions& o, SoilPlan& plan) {
   plan.plate_from = 2.0;
 }
 
-/// Cones that are read between the same depths, as pressure grows with depth.
+/// Plans cones that are evaluated between the same depths, as pressure grows with depth.
 void plan_cones(const SoilOptions& o, SoilPlan& plan) {
   const double r = o.material.radius;
   const auto add = [&](double diameter) {
@@ -67,7 +67,7 @@ void plan_cones(const SoilOptions& o, SoilPlan& plan) {
     return;
   }
   const double width = std::max(o.bed_width > 0.0 ? o.bed_width / r : kConeWidths * widest / r, kLeastConeWidth);
-  const double room = cone_height(widest, kConeAngle) + widest;  // m, below the base of the deepest
+  const double room = cone_height(widest, kConeAngle) + widest;  // m, below the base of the deepest cone
   const double depth =
       o.depths.empty() ? kConeDepth + 1.05 * room : *std::max_element(o.depths.begin(), o.depths.end());
   plan.cone_box.length = plan.cone_box.width = width, plan.cone_box.depth = depth / r;

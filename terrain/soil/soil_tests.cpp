@@ -17,18 +17,18 @@
 namespace furrow::terrain::soil {
 namespace {
 
-constexpr double kSettleSteps = 12e3;  // that a bed takes to settle, about
+constexpr double kSettleSteps = 12e3;  // typical number of steps until a bed has settled
 constexpr double kReposeSteps = 30e3;
-constexpr double kNarrow = 36.0;                        // sides of the box that shows how deep a bed becomes, radii
-constexpr auto kTick = std::chrono::milliseconds(100);  // between looks at what is done
+constexpr double kNarrow = 36.0;                        // sides of the box that gives the depth of a bed, radii
+constexpr auto kTick = std::chrono::milliseconds(100);  // between progress reports
 constexpr double kReferenceStep = 6e-3;                 // s per m of grain radius, for estimates of the work
 
-/// One bed and what is done on it.
+/// One bed and the tests on it.
 struct Job {
   double settling = 0.0, testing = 0.0;  // estimated work, grain-steps
   std::function<void(const Job&, const WorkCall&)> run;
   double work() const { return settling + testing; }
-  /// Progress of the part [from, to] of the tests that follow settling.
+  /// Progress of settling; test_call gives that of the part [from, to] of the tests that follow.
   WorkCall settle_call(const WorkCall& call) const {
     const double share = settling / work();
     return [=](double done) { call(share * done); };
@@ -39,7 +39,7 @@ struct Job {
   }
 };
 
-/// Runs jobs on a few threads; the calling one reports.
+/// Runs jobs on a few threads; the calling thread reports progress.
 class JobPool {
  public:
   JobPool(const std::vector<Job>& jobs, int threads, const ProgressCall& progress)
@@ -54,7 +54,7 @@ class JobPool {
     try {
       for (int t = 0; t < threads_; ++t) threads.emplace_back([this] { take_jobs(); });
     } catch (const std::system_error& error) {
-      threads_ = static_cast<int>(threads.size());  // those that the system grants do the work
+      threads_ = static_cast<int>(threads.size());  // continue with those that the system grants
       if (threads_ == 0) throw limit_error(std::string("no thread could be started: ") + error.what());
     }
     while (working_ < threads_) {
@@ -125,7 +125,7 @@ double grains_in(const Box& box, const dem::DemOptions& material) {
   return 0.12 * box.length * box.width * box.depth / dem::mean_volume_ratio(material);
 }
 
-/// The box with as many layers as a bed of its depth needs, by the packing of a narrow one that is settled first.
+/// The box with as many layers as a bed of its depth needs, from the packing of a narrow bed that is settled first.
 Box to_depth(const dem::DemOptions& material, Box box, std::uint64_t seed, const WorkCall& work) {
   Box narrow = box;
   narrow.length = std::min(box.length, kNarrow), narrow.width = std::min(box.width, kNarrow);
@@ -139,7 +139,7 @@ Box to_depth(const dem::DemOptions& material, Box box, std::uint64_t seed, const
   return box;
 }
 
-/// Makes the list of jobs; each writes to places of its own.
+/// Makes the list of jobs; each job writes its own results.
 class Planner {
  public:
   Planner(const SoilOptions& options, const SoilPlan& plan, SoilResults& results) : o_(options), grains_(o_.material) {
@@ -168,14 +168,14 @@ class Planner {
       if (o_.material.cohesion > 0.0)
         add(s, {dry, plan.repose_box}, {&plan.repose, 1}, kReposeSteps, angle_of_repose, results.dry);
     }
-    // Threads that have no job of their own help with the others.
+    // Threads without a job of their own help with the others.
     if (!jobs.empty()) grains_.threads = std::max(1, o_.threads / static_cast<int>(jobs.size()));
-    // The longest first, so that no thread is left with one at the end.
+    // The longest job comes first, so that no thread starts one at the end.
     std::stable_sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.work() > b.work(); });
   }
 
   std::vector<Job> jobs;
-  double most_grains = 0.0;  // of a bed, about
+  double most_grains = 0.0;  // of a bed, approximately
 
  private:
   struct Bed {
@@ -183,9 +183,9 @@ class Planner {
     Box box;
     bool exact = false;
   };
-  /// Steps for a way of `radii` at the test's speed.
+  /// Number of steps for a path of `radii` at the test's speed.
   double steps_for(double radii) const { return radii / o_.speed / kReferenceStep; }
-  /// One bed, on which all of these tests are run one after another.
+  /// Adds a job: one bed on which all of these tests run one after another.
   template <class Test, class Result>
   void add(int s, const Bed& bed, std::type_identity_t<std::span<const Test>> tests, double test_steps,
            Result (*run)(const Specimen&, const Test&, const WorkCall&), std::vector<Tested<Result>>& to) {

@@ -27,7 +27,7 @@ Specimen::Specimen(const dem::DemOptions& material, const Box& box, std::uint64_
     : options_(dem::level(material)) {
   FURROW_ASSERT(box.own || (box.length > 0.0 && box.width > 0.0 && box.depth > 0.0), box.length, box.width, box.depth);
   FURROW_ASSERT(material.radius > 0.0, material.radius);
-  options_.activity = false;  // tools move slowly: what they shear must not fall asleep
+  options_.activity = false;  // tools move slowly, and sheared grains must not fall asleep
   options_.seed = seed;
   options_.threads = options_.settle_threads = std::max(1, material.threads);
   if (!box.own) put_in(box);
@@ -53,7 +53,7 @@ void Specimen::put_in(const Box& box) {
   options_.cache = false;
   options_.length = box.length * r;
   options_.width = box.width * r;
-  const double widest = dem::largest_radius(options_) / r;  // grains of a layer keep its distance
+  const double widest = dem::largest_radius(options_) / r;  // grains of a layer keep the distance of the largest
   const double layer = kLayerHeight * dem::mean_volume_ratio(options_) / (widest * widest);
   options_.layers = box.layers > 0 ? box.layers : static_cast<int>(std::ceil(box.depth / layer));
   options_.periodic_x = box.periodic_x;

@@ -1,4 +1,4 @@
-// A bed of a scenario's grains to test: a box sized in grain radii, settled like the scenario's own bed, or that bed.
+// A bed of a scenario's grains for tests: a box sized in grain radii that settles like the scenario's bed, or that bed.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,26 @@
 
 namespace furrow::terrain::soil {
 
-/// Called now and then with the share done, 0…1, of the work at hand; may throw to stop it.
+/// Called from time to time with the share done, 0…1, of the present work; may throw to stop it.
 using WorkCall = std::function<void(double share)>;
 
 struct Box {
   double length = 0.0, width = 0.0, depth = 0.0;  // wanted, in grain radii
   bool periodic_x = true, periodic_y = true;
-  int layers = 0;    // of grains dropped; 0: about as many as the depth wants
-  bool own = false;  // the scenario's bed instead, whatever its size: from its file, the cache, or settled now
+  int layers = 0;    // of grains dropped; 0: about as many as the depth requires
+  bool own = false;  // use the scenario's bed, whatever its size: from its file, the cache, or settled now
 };
 
-/// The step that tests of these grains take: a fixed share of the stable one, s; the scenario's own where unstable
-/// steps are allowed.
+/// Step for tests of these grains, s: a fixed share of the stable one, or their own if unstable steps are allowed.
 double test_step(const dem::DemOptions& material);
 
 class Specimen {
  public:
-  /// Fills the box and lets it settle, with the generator and the compaction of `material`; from a file only where
-  /// the box is the scenario's own. Takes material.threads.
+  /// Fills the box and lets it settle, with the generator and the compaction of `material`; reads a file only if the
+  /// box is the scenario's own. Uses material.threads.
   Specimen(const dem::DemOptions& material, const Box& box, std::uint64_t seed, const WorkCall& work);
 
-  /// The settled bed, ready for tools. Each call gives a new one in the same state.
+  /// The settled bed, ready for tools. Each call returns a new one in the same state.
   /// @param each_substep is called in every substep of its advances and may throw to stop
   std::unique_ptr<Terrain> terrain(std::function<void()> each_substep = {}) const;
 

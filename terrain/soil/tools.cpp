@@ -11,7 +11,7 @@ namespace furrow::terrain::soil {
 namespace {
 
 constexpr int kFacets = 24;             // around the cone
-constexpr int kDiscSides = 48;          // even
+constexpr int kDiscSides = 48;          // must be even
 constexpr double kSteelFriction = 0.3;  // of the cone
 
 void quad(SurfaceMesh& mesh, int a, int b, int c, int d) {
@@ -48,7 +48,7 @@ Tool disc_plate(double x, double y, double diameter, double z, double height) {
     const int next = (k + 1) % kDiscSides;
     quad(mesh, k, next, next + kDiscSides, k + kDiscSides);
   }
-  // The face between chords along y, from the corner at +x to that at −x: no corner has more than four triangles.
+  // Divides the face between chords along y from the corner at +x to that at −x: at most four triangles per corner.
   for (int k = 0; 2 * k < kDiscSides - 2; ++k) {
     const int a = k, b = k + 1, c = (kDiscSides - k) % kDiscSides, d = kDiscSides - k - 1;  // c below a, d below b
     if (a != c) mesh.triangles.push_back({a, c, d});
@@ -68,7 +68,7 @@ Tool toothed_sheet(double from, double to, double half, double z, double pitch, 
     for (const double y : {-half, half}) x.emplace_back(px, y, z + sign * height);
     const int n = static_cast<int>(x.size());
     if (n < 4) return;
-    // Previous column n−4 (−half), n−3 (+half); this one n−2, n−1.
+    // Vertices: previous column n−4 (−half), n−3 (+half); present column n−2, n−1.
     if (sign > 0)
       quad(mesh, n - 4, n - 2, n - 1, n - 3);
     else

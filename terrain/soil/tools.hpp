@@ -17,15 +17,14 @@ class Tool {
   }
 
   const SurfaceMesh& mesh() const { return mesh_; }
-  const SurfaceState& state() const { return state_; }  // what Terrain::advance takes
+  const SurfaceState& state() const { return state_; }  // input of Terrain::advance
 
-  /// Sets the velocity of the coming interval.
   void set_velocity(const Vec3& v) { state_.velocity.assign(state_.velocity.size(), v); }
   void set_velocity(std::size_t vertex, const Vec3& v) {
     FURROW_ASSERT(in_range(vertex, state_.velocity.size()), vertex, state_.velocity.size());
     state_.velocity[vertex] = v;
   }
-  /// The interval is over.
+  /// Moves the tool to the end of an interval.
   void moved(double duration) {
     FURROW_ASSERT(duration > 0.0, duration);
     for (std::size_t a = 0; a < state_.position.size(); ++a) state_.position[a] += duration * state_.velocity[a];
@@ -38,17 +37,18 @@ class Tool {
 
 /// A plate b wide along x about x = centre, from y = −half to half, its lower face at z, with sides `height` high.
 Tool strip_plate(double centre, double width, double half, double z, double height);
-/// A round plate about (x, y), its lower face at z, with sides `height` high: a polygon of the area of the circle.
+/// A round plate about (x, y), its lower face at z, with sides `height` high: a polygon with the area of the circle.
 Tool disc_plate(double x, double y, double diameter, double z, double height);
 
-/// A sheet from x = from to `to` and y = −half to half with ridges across x, one every `pitch`, of a triangular
-/// section 2·`tooth` wide and `tooth` high; flats at z. Outside is up (sign 1) or down (sign −1); teeth point there.
+/// A sheet from x = from to `to` and y = −half to half with flats at z and ridges across x, one every `pitch`. Their
+/// section is a triangle 2·`tooth` wide and `tooth` high. The outside and the teeth face up (sign 1) or down (sign −1).
 /// @pre from < to; pitch, tooth > 0
 Tool toothed_sheet(double from, double to, double half, double z, double pitch, double tooth, int sign);
 
-/// A flat sheet over the same rectangle, outside down.
+/// A flat sheet over the same rectangle, with its outside down.
 Tool flat_sheet(double from, double to, double half, double z);
-/// The sheet with half-spheres of this radius glued to it, closely packed, each made of facets a third of it wide.
+/// The flat sheet with closely packed half-spheres of this radius glued to it, made of facets a third of the radius
+/// wide.
 /// @pre from < to; radius > 0
 Tool studded_sheet(double from, double to, double half, double z, double radius);
 
@@ -59,9 +59,9 @@ double cone_height(double diameter, double angle);
 /// Area of the cone's base as meshed, m².
 double cone_base_area(double diameter);
 
-/// As rough as the grains, without cohesion.
+/// Material as rough as the grains, without cohesion.
 ContactMaterial rough_material(const dem::DemOptions& grains);
-/// Polished steel: friction as the grains', at most 0.3.
+/// Polished steel: friction of the grains, at most 0.3.
 ContactMaterial smooth_material(const dem::DemOptions& grains);
 
 }  // namespace furrow::terrain::soil

@@ -10,8 +10,8 @@
 namespace furrow::terrain::soil {
 namespace {
 
-constexpr double kSpacing = 0.5;     // of the points, radii
-constexpr double kMostPoints = 3e8;  // more widely spaced where there would be more
+constexpr double kSpacing = 0.5;     // of the grid points, radii
+constexpr double kMostPoints = 3e8;  // with more points the spacing is widened
 constexpr std::uint8_t kAny = 0, kHull = 1, kSolid = 2;
 
 /// Points on a grid over the region, from the floor up.
@@ -24,7 +24,7 @@ class Points {
     marks_.assign(static_cast<std::size_t>(nx_) * ny_ * nz_, 0);
   }
 
-  /// Marks what is within a grain, and within `reach` of one.
+  /// Marks the points within a grain, and those within `reach` of one.
   void mark(std::span<const dem::Quad> grains, double reach) {
     std::fill(marks_.begin(), marks_.end(), 0);
     const double length = region_.x_max - region_.x_min, width = region_.y_max - region_.y_min;
@@ -74,17 +74,17 @@ class Points {
   std::vector<std::uint8_t> marks_;  // [(ix * ny + iy) * nz + iz]
 };
 
-/// Calls visit(height before, height after, share of the cell beside the plate, its area) for the region's cells.
+/// Calls visit(height before, height after, share of the cell outside the plate, its area) for the region's cells.
 template <class Visit>
 void each_cell(const Region& region, const Footprint& plate, const HeightField& before, const HeightField& after,
                const Visit& visit) {
-  constexpr int kParts = 8;  // of a cell's side, to find what the plate covers of it
+  constexpr int kParts = 8;  // of a cell's side, to find the part that the plate covers
   FURROW_ASSERT(before.nx == after.nx && before.ny == after.ny, before.nx, after.nx);
   for (int i = 0; i < before.nx; ++i)
     for (int j = 0; j < before.ny; ++j) {
       const double x = before.x0 + i * before.cell, y = before.y0 + j * before.cell, half = 0.5 * before.cell;
       if (x < region.x_min || x > region.x_max || y < region.y_min || y > region.y_max) continue;
-      // The last cell of a row is as long as what is left of a bed that it reaches the end of.
+      // The last cell of a row extends to the end of the bed, if it reaches it.
       const double right = i + 1 == before.nx ? std::max(x + half, region.x_max) : x + half;
       const double left = j + 1 == before.ny ? std::max(y + half, region.y_max) : y + half;
       const double dx = (right - x + half) / kParts, dy = (left - y + half) / kParts;
@@ -122,7 +122,7 @@ VolumeAccount volume_account(const Region& region, const Footprint& plate, doubl
   const double ground = (region.x_max - region.x_min) * (region.y_max - region.y_min);
   Points points(region, top, std::max(kSpacing * radius, std::cbrt(ground * top / kMostPoints)));
   const auto outside_plate = [&](double x, double y, double z) { return z < face || !plate.covers(x, y); };
-  // Grains lie looser along a flat face, within their diameter of it, whatever the soil.
+  // Grains are packed more loosely along a flat face, within their diameter of it, whatever the soil.
   const double high = face - 2.0 * radius, deep = std::max(0.0, high - plate.size);
   const auto below = [&](double x, double y, double z) { return z > deep && z < high && plate.covers(x, y); };
   const double space = points.volume(kAny, below);

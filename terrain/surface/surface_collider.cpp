@@ -20,7 +20,7 @@ constexpr double kFadeTo = 0.5;      // overlap from which only the nearest poin
 constexpr double kSamePoint = 1e-9;  // candidates nearer to each other than this count as one
 constexpr double kSkinShare = 0.5;   // skin / reach
 
-/// Plane n·x = offset of a triangle; n = 0 for a triangle without area, which the edges of its neighbours replace.
+/// Plane n·x = offset of a triangle; n = 0 if it has no area, as its neighbours' edges replace it.
 struct TrianglePlane {
   Vec3 normal = Vec3::Zero();
   double offset = 0.0;  // m
@@ -130,8 +130,7 @@ void SurfaceCollider::Data::rebuild() {
   ++rebuilds;
 }
 
-/// Whether the centre is behind the nearest point, by the pseudo-normal of its feature. Boundary edges have no back
-/// side.
+/// Whether the centre is behind the nearest point, by its feature's pseudo-normal. Boundary edges have no back side.
 bool SurfaceCollider::Data::behind(const Candidate& nearest, const Vec3& centre) const {
   const Vec3 offset = centre - nearest.at.point;
   const int t = nearest.triangle;
@@ -273,7 +272,7 @@ void SurfaceCollider::restrict_to(const SurfaceBox& box) {
   Data& d = *data_;
   const SurfaceBox& built = d.built_limit;
   d.beyond_built_limit = (box.lo.array() < built.lo.array()).any() || (box.hi.array() > built.hi.array()).any();
-  // The margin allows small changes without building a new grid for each.
+  // The margin allows small changes without a new grid for each.
   d.limit.lo = box.lo.array() - 2.0 * d.reach;
   d.limit.hi = box.hi.array() + 2.0 * d.reach;
 }
@@ -306,7 +305,7 @@ int SurfaceCollider::hits(const Vec3& centre, double radius, std::span<const int
                           std::span<SurfaceHit> out) const {
   FURROW_ASSERT(radius > 0.0 && radius <= data_->reach, radius, data_->reach);
   const Data& d = *data_;
-  // Most grains near a tire do not touch it: the function returns here for them, before the candidate list exists.
+  // Most grains near a tire do not touch it: for them the function returns before a candidate list exists.
   std::size_t first = 0;
   while (first < listed.size() && d.off_plane(listed[first], centre, radius)) ++first;
   if (first == listed.size() || out.empty()) return 0;

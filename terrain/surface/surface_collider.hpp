@@ -12,12 +12,12 @@
 //
 // δ̂_i is δ_i, except that walls of nearly one direction share the depth of the deepest (surface_geometry.hpp). On flat
 // or convex surfaces s = 1 for the deepest candidate and 0 for all others. In the middle of a valley whose face normals
-// differ by θ, s = 1/(1 + cos θ) for each and |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, f(δ) on each wall at θ =
-// 90°. D, hence F, is continuous in c and in the vertices because p_i is.
+// differ by θ, each has s = 1/(1 + cos θ), and |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, and f(δ) on each wall
+// at θ = 90°. D, hence F, is continuous in c and in the vertices because p_i is.
 //
-// The rule needs δ < r/2. In an emergency with deeper contact, the other candidates fade out between δ = 0.4 r and 0.5
-// r, beyond which only the nearest point counts. A grain whose centre is behind the surface has δ = r + depth, down to
-// a depth of r; the pseudo-normal of the nearest feature shows this [Bærentzen & Aanæs 2005, doi:10.1109/TVCG.2005.49].
+// The rule needs δ < r/2. If contact is deeper (an emergency), the other candidates fade out from δ = 0.4 r to 0.5 r,
+// and the nearest point alone counts. A grain whose centre is behind the surface, by the pseudo-normal of the
+// nearest feature [Bærentzen & Aanæs 2005, doi:10.1109/TVCG.2005.49], has δ = r + depth, down to a depth of r.
 #pragma once
 
 #include <array>
@@ -40,7 +40,6 @@ struct SurfaceHit {
   std::array<double, 3> weight{};  // barycentric: point = Σ weight · vertex, Σ weight = 1, each ≥ 0
 };
 
-/// Largest number of hits that SurfaceCollider::hits returns.
 inline constexpr int kMaxSurfaceHits = 6;
 
 /// Axis-aligned box, m.

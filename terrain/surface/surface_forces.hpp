@@ -42,7 +42,6 @@ struct SurfaceContactForce {
   bool slides = false;             // its friction is at the limit
 };
 
-/// A surface as it is in one substep.
 struct SurfaceNow {
   std::span<const std::array<int, 3>> triangles;
   std::span<const Vec3> position;  // m
@@ -57,7 +56,6 @@ class NodalForceSum {
   explicit NodalForceSum(int vertex_count, bool tangents = false, SurfacePatches patches = {});
 
   const SurfacePatches& patches() const { return patches_; }
-  /// Sets the patches of a saved state.
   void set_patches(SurfacePatches patches) { patches_ = std::move(patches); }
 
   /// Adds the forces of one substep of length dt. It is serial, in the order given. The caller keeps that order fixed

@@ -23,7 +23,6 @@ struct TrianglePoint {
 /// [Ericson, Real-Time Collision Detection, 2005, §5.1.5]. @pre the triangle has an area
 TrianglePoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Largest number of candidates that solve_push_out takes.
 inline constexpr int kMaxCandidates = 16;
 
 /// Multipliers λ ≥ 0 of the shortest push-out D = Σ λ_i n_i with D·n_i ≥ δ_i: the complementarity problem

@@ -1,9 +1,8 @@
-// Energy of the grains by mechanism. The energy taken by springs, damping and sliding is too expensive to be summed in
-// every step: contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*. In
-// it the power of each mechanism is summed over all evaluated contacts, with the forces and velocities of that step.
-// The sample represents its own step and the nearer half of the steps on either side. If every step were a sample, the
-// sums would be exact. Sleeping strips lose nothing. kLossSampleSteps is a prime, so that samples do not coincide
-// regularly with substeps or treads.
+// Energy of the grains by mechanism. Summing the energy taken by springs, damping and sliding in every step is too
+// expensive: contact_losses.hpp costs as much as the law itself. So every kLossSampleSteps-th step is a *sample*: the
+// power of each mechanism is summed over all evaluated contacts, with the step's forces and velocities. It represents
+// its own step and the nearer half of the steps on either side. If every step were a sample, the sums would be exact.
+// Sleeping strips lose nothing. kLossSampleSteps is a prime, so that samples do not follow substeps or treads.
 //
 // Error of sampling: if powers of successive samples were independent, the variance of one would be
 // ½⟨(P_k − P_{k−1})²⟩, so
@@ -24,7 +23,6 @@
 
 namespace furrow::terrain::dem {
 
-/// Number of steps from one sample to the next.
 inline constexpr int kLossSampleSteps = 47;
 
 class EnergyAccounts {
@@ -65,7 +63,7 @@ class EnergyAccounts {
     }
     take(power);
   }
-  /// Call it after forces have acted for dt. @param whole whether the step is over, rather than a part of it
+  /// After forces have acted for dt. @param whole the step is over, rather than a part of it
   void advance(double dt, bool whole, double rotation);
 
   /// Losses until now, J.
@@ -78,7 +76,6 @@ class EnergyAccounts {
   const State& state() const { return state_; }
 
   void save(Archive& archive) const;
-  /// @param strips their number
   void restore(const Archive& archive, std::size_t strips);
 
  private:

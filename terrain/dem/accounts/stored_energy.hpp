@@ -13,7 +13,7 @@ namespace furrow::terrain::dem {
 /// History of the listed pair p from its last evaluation.
 ContactHistory<double> pair_history(const Strip& strip, int p);
 
-/// Energy of the pairs and walls that each strip lists. `radius`: the one to which the coefficients refer, m.
+/// Energy of the pairs and walls that each strip lists. `radius`: that of the coefficients, m.
 std::vector<Stored> stored_energy(const Grains& grains, const Strips& strips, LawKind law, const SolverCoefficients& c,
                                   double radius);
 

@@ -13,7 +13,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr double kPressSpeed = 1.0;     // m/s: the load grows for the bed's depth over this speed
+constexpr double kPressSpeed = 1.0;     // m/s: the load grows in the time depth of the bed / this speed
 constexpr double kMaxHold = 8.0;        // in units of that time
 constexpr double kLidAtRest = 1e-3;     // m/s: a slower lid counts as at rest
 constexpr double kSolidFraction = 0.5;  // of a loose bed, for the lid's mass
@@ -23,7 +23,7 @@ struct Lid {
   SurfaceState state;
 };
 
-/// A lid that fills the bin at height z, with its outside facing down.
+/// A lid that fills the bin at height z, its outside down.
 Lid lid_at(const Bin& bin, double z) {
   Lid lid;
   const double half = 0.5 * bin.width;

@@ -14,7 +14,6 @@ namespace furrow::terrain::dem {
 /// when a grain is lost. @pre compaction_pressure > 0, some grains
 std::vector<Quad> compacted_positions(GrainSolver& solver, const DemOptions& options, const ProgressCall& progress);
 
-/// Positions by grain id.
 std::vector<Quad> positions_by_id(const GrainSolver& solver);
 
 }  // namespace furrow::terrain::dem

@@ -1,11 +1,11 @@
 // Packing of a bed: `terrain.solid_fraction`.
 //
 // Grains of a given friction have a range of stable packings. Its dense end comes from grains that are smoother while
-// they fall. Its loose end comes from grains that come down slowly, one at a time [Agnolin & Roux 2007,
+// they fall, its loose end from grains that come down slowly, one at a time [Agnolin & Roux 2007,
 // doi:10.1103/PhysRevE.76.061302; Onoda & Liniger 1990, doi:10.1103/PhysRevLett.64.2727]. Both leave a bed in balance
 // with the friction of the run: more friction only supports it, and a drag vanishes with the motion. Other support
-// during settling (more friction, cohesion) has no use: when it ends, the bed collapses to the same loose end or to a
-// denser packing.
+// during settling (more friction, cohesion) is useless: when it ends, the bed collapses to the same loose end or
+// denser.
 #pragma once
 
 #include <functional>

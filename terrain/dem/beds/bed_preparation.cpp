@@ -81,7 +81,6 @@ DemOptions falling(DemOptions o) {
   return o;
 }
 
-/// Progress of a part of the work, with a name of its own.
 ProgressCall named(const char* part, const ProgressCall& progress) {
   if (!progress) return {};
   return [part, &progress](const std::string& what, double share) {
@@ -193,7 +192,6 @@ Archive made_bed(const DemOptions& options, const ProgressCall& progress, Settle
                                                    : settled_bed(options, progress, result);
 }
 
-/// Reads from the bed's archive how it settled.
 void read_settled(PreparedBed& prepared) {
   const auto& settled = prepared.bed.get<double>("bed/settled", 4);
   prepared.settled.settled = settled[0] != 0.0;

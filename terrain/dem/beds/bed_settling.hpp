@@ -1,8 +1,8 @@
 // Lets a new bed fall until it comes to rest.
 //
-// A bed of any number of grains is at rest if the net forces are small compared with the contact forces. This does not
-// depend on the number of contacts. The criteria follow [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302, §II.C],
-// who require net forces and kinetic energy that are small on the scales of the load:
+// A bed is at rest if net forces are small compared with contact forces, whatever the number of grains and contacts, as
+// in [Agnolin & Roux 2007, doi:10.1103/PhysRevE.76.061302, §II.C], who require small net forces and kinetic energy on
+// the scales of the load:
 //   Σ|net force| / Σ|contact force| < kSettledForceRatio,   |floor force − weight| / weight < kSettledFloorError,
 //   E_kin < ½ m kRestSpeed²,   E_kin < kRestEnergy m g r,   m: all grains.
 // The second bound on the kinetic energy is the stricter one for grains below 0.2 mm.

@@ -1,13 +1,13 @@
 // A large bed, assembled from copies of a settled piece (`terrain.tile`).
 //
-// The piece settles with periodic images at its ends, and also at its sides if several pieces are side by side. A piece
-// that fills the width of the bin has the bin's sides. Adjacent copies along y are one packing. Along x, the direction
-// of travel, columns of them follow one another. Plain repeated copies would need no seams, but means over a wheel's
-// path would then be those of one piece, repeated. So every other column is turned by half a turn about the vertical,
-// and every other pair of columns is mirrored. If the sides of a piece are periodic, each column is also moved across
-// by another share of its width (multiples of the golden ratio). Then a wheel meets other soil in each column, and left
-// and right wheels meet different soil. Between walls there is no space for such shifts: a wheel in the middle meets
-// its strip of the piece again, from ahead or from behind, mirrored or not.
+// The piece settles with periodic images at its ends, and at its sides too if several are side by side; a piece as wide
+// as the bin has the bin's sides. Adjacent copies along y are one packing. Along x, the direction of travel, columns of
+// them follow one another. Plain repeated copies would need no seams, but means over a wheel's path would be those of
+// one piece, repeated. So every other column is turned by half a turn about the vertical, and every other pair of
+// columns is mirrored. If the sides of a piece are periodic, each column is also moved across by another share of its
+// width (multiples of the golden ratio). Then a wheel meets other soil in each column, and left and right wheels meet
+// different soil. Between walls there is no space for this: a wheel in the middle meets its strip of the piece again,
+// from ahead or from behind, mirrored or not.
 //
 // The price is seams between columns, where two packings do not fit. There both extend kSeamBand radii into each other,
 // and most_compatible() decides which grains stay; these overlap no more than grains of the piece do. At walls that the
@@ -26,20 +26,17 @@ namespace furrow::terrain::dem {
 inline constexpr double kSeamBand = 10.0;    // largest radii by which packings overlap on either side
 inline constexpr double kLeastPiece = 40.0;  // least side of a piece in largest radii
 
-/// Pieces along the bin and across it.
 struct Tiling {
   int along = 1, across = 1;
   double length = 0.0, width = 0.0;  // of a piece, m
 };
 
-/// Pieces as nearly `tile` long and wide as the bin's sides allow; a single piece, the bin, if no bed is generated or
-/// `tile` is 0.
+/// Pieces as nearly `tile` long and wide as the bin allows; one piece, the bin, if no bed is generated or `tile` is 0.
 Tiling tiling_of(const DemOptions& options);
 
 /// Whether the bed is assembled from more than one piece.
 bool is_tiled(const DemOptions& options);
 
-/// The options of the bed that is one piece.
 DemOptions piece_of(const DemOptions& options);
 
 /// Positions of a bed from the positions of a settled piece, both with radii; column by column.

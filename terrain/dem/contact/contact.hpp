@@ -86,8 +86,7 @@ inline T power_of(const ContactForce<T>& f, const ContactMotion<T>& at) {
 /// Smaller squares count as zero; a float can still represent it.
 inline constexpr double kTiny = 1e-35;
 
-/// Turns a vector in the contact plane with the contact (spin about n, projection on the new plane, same length) and
-/// scales it.
+/// Turns a vector in the contact plane with the contact (spin about n, projection, same length) and scales it.
 template <class T>
 inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T spin_angle, T scale) {
   const Triple<T> spun = old + spin_angle * cross(n, old);
@@ -128,8 +127,7 @@ inline double stiffest_mode(double normal, double shear, double mass) {
   return 2.0 * kContacts / 3.0 / mass * larger(normal + 2.0 * shear, 5.0 * shear);
 }
 
-/// v ← v − dt (γ v + ω² x), x ← x + dt v is stable for ω² dt² + 2 γ dt < room; room is 4 if nothing else takes a part
-/// of it.
+/// v ← v − dt (γ v + ω² x), x ← x + dt v is stable for ω² dt² + 2 γ dt < room, 4 if nothing else takes a part of it.
 inline StableStep stable_oscillation(double omega2, double gamma, double room) {
   return {(std::sqrt(gamma * gamma + room * omega2) - gamma) / omega2,
           gamma * gamma > omega2 ? "damping" : "stiffness"};

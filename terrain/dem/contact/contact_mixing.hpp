@@ -16,7 +16,6 @@ struct GrainProperties {
 };
 GrainProperties grain_properties(double radius, double density);
 
-/// The grains' own material, from the options.
 ContactMaterial grain_material(const DemOptions& options);
 
 enum class Partner { grain, surface };  // surface: wall or tire, flat; of infinite mass, or of its area density

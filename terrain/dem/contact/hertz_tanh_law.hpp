@@ -95,7 +95,7 @@ struct HertzTanhLaw {
     return {.cohesion = -(c.cohesion_force * overlap), .tangential = 0.0};
   }
 
-  /// k_n = 3/2 k_n √δ, c_n = g_n √δ. While friction is a dashpot, c_t = F_t/|v_t|; without its limit it has no
+  /// k_n = 3/2 k_n √δ, c_n = g_n √δ; while tanh is nearly linear, friction is a dashpot c_t = F_t/|v_t| without
   /// stiffness.
   static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
                                          const ContactForce<double>& f, double share) {

@@ -93,7 +93,7 @@ class ContactCoefficients {
   double numbers_[12] = {};
 };
 
-/// Coefficients for two grains with radii r_i, r_j. @param radius to which the coefficients refer, m
+/// Coefficients for two grains with radii r_i, r_j. @param radius of the coefficients, m
 template <class Law>
 inline auto sized_pair(const typename Law::template Coefficients<double>& c, double radius, double r_i, double r_j) {
   if constexpr (Law::kSizes)

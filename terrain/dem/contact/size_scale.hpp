@@ -8,7 +8,7 @@
 
 namespace furrow::terrain::dem {
 
-/// a³. For a radius in reference radii: volume and mass relative to those of the reference grain.
+/// a³: for a radius in reference radii, volume and mass relative to the reference grain.
 template <class T>
 inline T cube(T a) {
   return a * a * a;

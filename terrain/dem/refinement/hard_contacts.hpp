@@ -24,8 +24,7 @@ struct HardContacts {
 };
 
 /// Overlap over the grain's diameter beyond which no contact law is valid and no smaller step helps. Hertz's law
-/// requires overlaps that are small compared with the radius; 0.3 is six times the overlap for which scenarios are
-/// checked.
+/// requires overlaps that are small against the radius; 0.3 is six times the overlap at which scenarios are checked.
 inline constexpr double kDeepestShare = 0.3;
 
 /// Contacts that now overlap by more than `above`, with surfaces at their last positions. @pre above > 0, ahead ≥ 0

@@ -19,8 +19,7 @@ constexpr char kSaved[] = "refinement";
 constexpr int kHalvings = 60;        // of the interval in which the limit is searched
 constexpr double kSoundShare = 0.1;  // overlap over the diameter that the advice aims at
 
-/// The overlap at which `step` is just stable; infinite if it is still stable at `deepest`. The stable step falls with
-/// it.
+/// The overlap at which `step` is just stable, infinite if it is stable at `deepest`; the stable step falls with it.
 double limit_of(const DemOptions& options, double step, double deepest) {
   const auto stable = [&](double overlap) { return stable_at(options, overlap).step >= step; };
   if (stable(deepest)) return kInfinite;

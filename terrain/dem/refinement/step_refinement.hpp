@@ -6,8 +6,7 @@
 // evaluated. So no force is ever used with a step above the stable one, and no step has to be repeated. When a part is
 // too long, the new one is chosen by the overlap that the contact would reach within a whole step at its approach
 // speed. The parts grow again, one level at a time, after the overlap has stayed below kRelaxShare of the limit of the
-// larger part for kRelaxSteps steps. So a contact whose overlap oscillates about the limit does not make the step
-// flicker.
+// larger part for kRelaxSteps steps. So an overlap that oscillates about the limit does not make the step flicker.
 //
 // Consistency when the step changes. Semi-implicit Euler is the leapfrog whose velocities are those at the middle
 // between two positions. If a part of dt follows one of dt′, forces act for ½ (dt + dt′) (StepPart::kick). Otherwise
@@ -72,7 +71,6 @@ class StepRefinement {
   /// Saves nothing as long as no step has been taken in parts.
   void save(Archive& archive) const;
   void restore(const Archive& archive);
-  /// Reports the refinement of the steps.
   void report(TerrainState& state) const;
 
   /// The overlap at which 2^level parts of the step are just stable, m; infinite if it is beyond kDeepestShare.

@@ -1,5 +1,5 @@
-// Contacts of grains with the moving surfaces of tires: finds the touched points, applies the grains' contact law
-// there, and collects the forces on the surfaces.
+// Contacts of grains with the moving surfaces of tires: finds touched points, applies the grains' law there, and
+// collects the forces on the surfaces.
 //
 // History is stored per (grain, surface). Each touched point takes over the history of that earlier point of the same
 // grain and surface whose normal is nearest (within 60°). So no history is lost from triangle to triangle, or where a
@@ -46,7 +46,7 @@ struct SurfaceStrip {
 
 class SurfaceContacts {
  public:
-  /// grain: the one to which the coefficients refer; largest: radius of the largest grain, m.
+  /// grain: that of the coefficients; largest: radius of the largest grain, m.
   SurfaceContacts(const GrainProperties& grain, double largest, LawKind law, bool rolling)
       : grain_(grain), largest_(largest), law_(law), rolling_(rolling) {}
 
@@ -79,9 +79,9 @@ class SurfaceContacts {
   /// Searches for contacts only inside `grains`.
   void restrict_to(const SurfaceBox& grains);
 
-  /// Bound on the speed of the vertices of surfaces near the strip in this interval, m/s; 0 if no surface is near.
+  /// Bound on the speed of surfaces near the strip in this interval, m/s; 0 if none is near.
   double speed_near(const Strip& strip) const;
-  /// Calls f(grain, surface, hit) for all points where grains of the strip touch surfaces at their present positions.
+  /// Calls f(grain, surface, hit) for all points where grains of the strip touch surfaces now.
   template <class F>
   void each_hit(const Grains& grains, const Strip& strip, F&& f) const {
     std::array<SurfaceHit, kMaxSurfaceHits> hits;
@@ -123,14 +123,12 @@ class SurfaceContacts {
   /// Adds the energy stored in contacts that ended to `sums`, if losses are wanted.
   void end(const Grains& grains, int s, double dt, bool losses, ContactTotals& sums);
 
-  /// Adds this substep's forces to the vertices, in the order of strips and grains. Returns the impulse on the grains,
-  /// N s.
+  /// Adds this substep's forces to the vertices, in the order of strips and grains. Returns the impulse on grains, N s.
   /// @param kick time for which the forces act, s  @param dt time by which the substep advances, s
   Vec3 add_substep_forces(double kick, double dt);
   /// Means over the interval. @pre one entry of forces and sums for each surface; duration > 0
   void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
-  /// Box around surface k now.
   SurfaceBox bounds(int k) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
     return surfaces_[k].collider.bounds();
@@ -141,7 +139,7 @@ class SurfaceContacts {
   }
 
   void save(Archive& archive) const;
-  /// Restores surfaces that were attached before, or those in the archive. @pre `strips` are restored.
+  /// Restores surfaces that are attached, or those in the archive. @pre `strips` are restored.
   void restore(const Archive& archive, const Strips& strips);
 
  private:

@@ -1,6 +1,5 @@
-// LIGGGHTS' errors become exceptions. Its own end the process, on a communicator of some of the ranks without the
-// others. The functions are not virtual; these definitions come before its own where the
-// library's symbols are looked up.
+// Turns LIGGGHTS' errors into exceptions. Its own functions end the process, on a communicator of only some of the
+// ranks. These functions are not virtual; the definitions here come first when the library's symbols are looked up.
 #include <string>
 
 #include <error.h>

@@ -62,7 +62,7 @@ OwnGrains FixFurrow::own() {
   return g;
 }
 
-/// The numbers of grains change: each grain takes along what it remembers. Of a pair of own grains either may leave.
+/// The indices of grains change, so each grain takes its histories along, as either grain of an own pair may leave.
 void FixFurrow::pre_exchange() {
   work_->numbers_change(this->own());
   PairLists& lists = pair_->lists();
@@ -112,7 +112,7 @@ void FixFurrow::look_again() {
   way_ = kForever;
 }
 
-/// What is not a number has moved too far.
+/// A position that is not a number counts as moved too far.
 bool FixFurrow::lists_due() {
   const double limit2 = 0.25 * setup_.skin * setup_.skin;
   const int own = atom->nlocal, all = own + atom->nghost;
@@ -129,7 +129,7 @@ bool FixFurrow::lists_due() {
   return false;
 }
 
-/// (1) and (2).
+/// Conditions (1) and (2).
 bool FixFurrow::strayed() const {
   const double skin = setup_.skin, moves = 2.0 * fastest_ * times_.dt;
   const double outside = 0.5 * skin - moves, near = 2.0 * setup_.largest + 1.5 * skin + moves;

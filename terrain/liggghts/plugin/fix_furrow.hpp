@@ -1,19 +1,19 @@
-// What happens to grains in a step beside their contacts with each other: lists are made where they are due, Furrow
-// adds the forces of walls and tires, then the grains move. Keeps what each grain carries, also from rank to rank.
+// Handles a step of the grains besides their contacts with each other: lists are made when they are due, Furrow adds
+// the forces of walls and tires, then the grains move. Keeps the data that each grain carries, also from rank to rank.
 //
-// When lists are due. All ranks make their lists when a grain of any has moved by half the skin s since they were made:
-// then the ghosts of a continued run stand where they stood, as their owners know. How far grains moved is looked at
-// only when the fastest of each step could have come that far.
+// When lists are due. All ranks make their lists when a grain of any rank has moved by half the skin s since they were
+// made: then the ghosts of a continued run are where their owners have them. How far grains have moved is checked only
+// when the fastest of each step could have come that far.
 //
-// When grains change ranks. LIGGGHTS' exchange, which also renews the ghosts, is due on all ranks alike and seldom. Its
-// reach for ghosts is wider by kGhostRoom skins than that of the lists, so that grains may stray: in x from the rank's
-// part, in y from a periodic bin. With its part [lo, hi], the largest radius r, and m what the fastest grain moves in
-// two steps, a rank asks for it when, as it makes its lists, a grain of its own
-//   stands outside of [lo − s/2 + m, hi + s/2 − m],                                                           (1)
+// When grains change ranks. LIGGGHTS' exchange, which also renews the ghosts, is due on all ranks together, and rarely.
+// Its reach for ghosts is kGhostRoom skins wider than that of the lists, so that grains may stray: in x from the rank's
+// part, in y from a periodic bin. Let [lo, hi] be the rank's part, r the largest radius, and m the distance that the
+// fastest grain moves in two steps. A rank asks for an exchange if, when it makes its lists, one of its own grains
+//   is outside of [lo − s/2 + m, hi + s/2 − m],                                                               (1)
 //   or was not sent as a ghost over a border and has come as near to it as 2r + 3s/2 + m.                     (2)
-// Until the lists after these, and in the step that the exchange comes late, a grain moves by s/2 and what is in m at
-// most. So a grain is no farther than s beyond the border, and what is not among its ghosts no nearer to it than 2r +
-// s: they cannot touch. Ranks agree on it by one number, which travels while the pairs are evaluated.
+// Until the lists after these, and in the step by which the exchange is late, a grain moves by at most s/2 and the
+// motion in m. So a grain is at most s beyond the border, and a grain that is not among its ghosts is at least 2r + s
+// from the border: they cannot touch. Ranks agree on this by one number, sent while the pairs are evaluated.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@
 
 namespace furrow::terrain::liggghts {
 
-/// Of LIGGGHTS' ghosts beyond the reach of the lists, skins.
+/// Reach of LIGGGHTS' ghosts beyond that of the lists, skins.
 inline constexpr double kGhostRoom = 1.0;
 
 class FixFurrow final : public LAMMPS_NS::Fix {
@@ -41,17 +41,16 @@ class FixFurrow final : public LAMMPS_NS::Fix {
   void set_work(StepWork& work) { work_ = &work; }
   void set_times(const StepTimes& times) { times_ = times; }
   OwnGrains own();
-  /// Where grain i stood when the lists were made, and when it last could change its rank, m.
+  /// Position of grain i when the lists were made, and when it could last change its rank, m.
   const std::array<double, 3>& list_position(int i) const { return listed_.at(i); }
   const std::array<double, 3>& exchange_position(int i) const { return exchanged_.at(i); }
-  /// What own grain i remembers of its pairs, until the next lists are made.
+  /// Histories of own grain i's pairs, until the next lists are made.
   std::vector<PairOf>& pairs_of(int i) { return pairs_.at(i); }
 
-  /// Makes this rank's lists where the grains stand now.
   void make_lists();
-  /// Grains were moved, or given velocities, by somebody else.
+  /// Call it after other code has moved grains or set their velocities.
   void look_again();
-  /// In the coming step grains change ranks. Alike on all ranks.
+  /// Whether grains change ranks in the coming step; the same on all ranks.
   bool exchange_due() const;
   void set_exchange_due();
 
@@ -80,12 +79,12 @@ class FixFurrow final : public LAMMPS_NS::Fix {
   StepWork* work_ = nullptr;
   StepTimes times_;
   StepWish wish_;         // of this step
-  MotionSums sums_;       // of this step, where wanted
-  double way_ = 0.0;      // that no own grain has exceeded since the lists were made, m
-  double fastest_ = 0.0;  // own grain, m/s
+  MotionSums sums_;       // of this step, if wanted
+  double way_ = 0.0;      // bound on the displacement of own grains since the lists were made, m
+  double fastest_ = 0.0;  // speed of the fastest own grain, m/s
   MPI_Request asking_ = MPI_REQUEST_NULL;
   int asks_ = 0, any_asks_ = 0;                  // for an exchange: this rank, any rank
-  std::pmr::unsynchronized_pool_resource pool_;  // keeps what is carried together: few grains carry anything
+  std::pmr::unsynchronized_pool_resource pool_;  // keeps carried data together, as few grains carry any
   std::pmr::vector<CarriedList> carried_{&pool_};
   std::vector<std::vector<PairOf>> pairs_;                 // while there are no lists
   std::vector<std::array<double, 3>> listed_, exchanged_;  // m

@@ -1,5 +1,5 @@
-// How a rank's grains move in one step (engine.hpp), and the sums over them where they are wanted. Grains of one size
-// go four at a time: their vectors lie behind each other, twelve numbers in three registers.
+// Motion of a rank's grains in one step (engine.hpp), and the sums over them if they are wanted. Grains of one size are
+// moved four at a time: their vectors are contiguous, twelve numbers in three registers.
 #pragma once
 
 #include <array>
@@ -12,7 +12,6 @@
 
 namespace furrow::terrain::liggghts {
 
-/// Of the grains of a rank.
 struct MovingGrains {
   double (*position)[3] = nullptr;      // m
   double (*velocity)[3] = nullptr;      // m/s
@@ -41,7 +40,7 @@ class GrainMotion {
     int g = 0;
     if constexpr (!kSizes) {
       const Four four{times_.kick, times_.dt, 1.0 / mass_, 1.0 / inertia_, falls_};
-      Lanes lanes = lanes_;  // a copy: what grains are written to might be these
+      Lanes lanes = lanes_;  // a copy, because stores to the grains might alias it
       for (; g + kLanes <= count; g += kLanes) four.move<kSums>(grains, g, lanes);
       lanes_ = lanes;
       if constexpr (kSums) sums_.volume += g;
@@ -49,7 +48,7 @@ class GrainMotion {
     for (; g < count; ++g) move_one<kSums, kSizes>(grains, g);
   }
 
-  /// Of all that were moved, m/s; infinite where one is not a number.
+  /// Fastest of all grains that were moved, m/s; infinite if one is not a number.
   double fastest() const {
     double most2 = fastest2_;
     for (int k = 0; k < kLanes; ++k)
@@ -141,8 +140,8 @@ class GrainMotion {
   double mass_, inertia_, radius_;   // of the reference radius, kg, kg m², m
   Twelve falls_{};                   // gravity, m/s²
   Lanes lanes_;
-  double fastest2_ = 0.0;  // of grains that went alone, m²/s²
-  MotionSums sums_;        // of grains that went alone; of all in `volume`
+  double fastest2_ = 0.0;  // of grains moved singly, m²/s²
+  MotionSums sums_;        // of grains moved singly; `volume` of all
 };
 
 }  // namespace furrow::terrain::liggghts

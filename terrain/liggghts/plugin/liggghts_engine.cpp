@@ -29,7 +29,7 @@
 
 namespace {
 
-/// Modify::fix_map is private. An explicit instantiation may name it [C++ standard, 13.9.3, access checking].
+/// Names Modify::fix_map, which is private, in an explicit instantiation [C++ standard, 13.9.3, access checking].
 template <auto kMember>
 struct Opened {
   friend auto fix_map_of() { return kMember; }
@@ -44,7 +44,7 @@ namespace {
 
 using LAMMPS_NS::LAMMPS;
 
-constexpr double kMargin = 10.0;  // of the box around the bin, largest radii: nothing is deleted before it is reported
+constexpr double kMargin = 10.0;  // margin around the bin, largest radii: nothing is deleted before it is reported
 
 std::string number(double v) {
   char text[40];
@@ -70,9 +70,9 @@ class LiggghtsEngine final : public Engine {
     };
     const dem::Bin& bin = setup.bin;
     const double room = kMargin * setup.largest, across = bin.periodic_y ? 0.0 : room;
-    // LIGGGHTS makes no lists of its own, and exchanges grains only when the fix says so.
+    // LIGGGHTS makes no lists of its own, and exchanges grains only when the fix asks for it.
     const double reach = (1.0 + kGhostRoom) * setup.skin;
-    // Each `run` begins and ends with a line of LIGGGHTS' own sums: of these none is wanted, nor a count of grains.
+    // Each `run` begins and ends with a line of LIGGGHTS' own sums; none of these is wanted, nor a count of grains.
     for (const std::string& line :
          {std::string("atom_style sphere"), std::string("atom_modify sort 0 0"),
           std::string(bin.periodic_y ? "boundary f p fs" : "boundary f f fs"), std::string("newton off"),
@@ -132,7 +132,7 @@ class LiggghtsEngine final : public Engine {
         if (const auto it = moved_.find(atom.tag[i]); it != moved_.end())
           std::copy_n((it->second.*to).data(), 3, atom.x[i]);
     };
-    give_records();  // now: the first set-up of a run clears the arrays of a fix
+    give_records();  // now, because the first set-up of a run clears the arrays of a fix
     move(&Moved::list_position);
     lmp_->comm->forward_comm();  // ghosts follow
     fix_->make_lists();
@@ -145,7 +145,7 @@ class LiggghtsEngine final : public Engine {
   void set_coefficients(const dem::ContactCoefficients& pair) override { pair_->set_coefficients(pair); }
 
   void run(int steps, const StepTimes& times) override {
-    // As the command `run` does it, without its lines of output and its barriers before and after.
+    // Like the command `run`, without its lines of output and its barriers before and after.
     LAMMPS_NS::Update& update = *lmp_->update;
     update.dt = times.dt;
     pair_->set_since(times.since);
@@ -197,14 +197,14 @@ class LiggghtsEngine final : public Engine {
   }
 
  private:
-  /// Exchanges grains. In the step after that LIGGGHTS would exchange them once more, for a restart file that nobody
-  /// asked for: there is no such step.
+  /// Exchanges grains. LIGGGHTS would exchange them again in the step after this, for a restart file that nobody
+  /// requested; the step number is raised so that this step does not occur.
   void make_ready() {
     command("run 0 pre yes post no");
     ++lmp_->update->ntimestep;
   }
 
-  /// Grains that came from several ranks stand in the order in which messages arrived: now by cells and numbers.
+  /// Sorts grains by cells and numbers, as those from several ranks are in the order in which messages arrived.
   void put_in_order() {
     LAMMPS_NS::Atom& atom = *lmp_->atom;
     const auto place = [&](int i) { return place_in_order(atom.x[i], atom.tag[i], setup_.largest); };
@@ -223,11 +223,11 @@ class LiggghtsEngine final : public Engine {
     }
   }
 
-  /// What touching grains remember becomes that of this rank's own grains.
+  /// Gives the saved histories of touching grains to this rank's own grains.
   void give_records() {
     std::unordered_map<int, int> own;  // by tag
     for (int i = 0; i < lmp_->atom->nlocal; ++i) own.emplace(lmp_->atom->tag[i], i);
-    // Across a periodic side both grains have listed a pair: it is saved twice.
+    // Across a periodic side both grains have listed a pair, so it is saved twice.
     const auto give = [&](int tag, int partner, const PairHistory& history) {
       const auto found = own.find(tag);
       if (found == own.end()) return;
@@ -263,7 +263,7 @@ class LiggghtsEngine final : public Engine {
   struct Moved {
     std::array<double, 3> list_position{}, position{};
   };
-  std::unordered_map<int, Moved> moved_;  // by tag: since grains could change their rank; until begin()
+  std::unordered_map<int, Moved> moved_;  // by tag: earlier positions; until begin()
 };
 
 }  // namespace

@@ -16,11 +16,9 @@ using dem::ContactForce;
 using dem::ContactHistory;
 using dem::ContactMotion;
 
-constexpr int kAhead =
-    8;  // pairs for whose grains memory is asked before they are looked at: waiting for it was a quarter
+constexpr int kAhead = 8;  // pairs ahead whose grains are prefetched; waiting for memory took a quarter
 
-constexpr int kTogether =
-    512;  // rows, with what their grains and pairs have in about a quarter of a core's second cache
+constexpr int kTogether = 512;  // rows whose grains and pairs take about a quarter of a core's second cache
 
 Triple<double> triple(const double* v) { return {v[0], v[1], v[2]}; }
 Triple<double> triple(const dem::Quad& q) { return {q.x, q.y, q.z}; }
@@ -50,14 +48,14 @@ std::vector<PairRecord> PairFurrow::records() {
 }
 
 void PairFurrow::compute_force(int, int, int) {
-  if (!shearupdate()) return;  // the set-up of a run: no step
+  if (!shearupdate()) return;  // set-up of a run, not a step
   sums_ = {};
   dem::with_law(law_, rolling_, sizes_,
                 [&](auto law, auto rolling, auto sizes) { evaluate<decltype(law), rolling, sizes>(); });
 }
 
-/// Seen from the other grain every vector turns its sign and nothing else changes: on either side of a border the pair
-/// has the same force to the last bit.
+/// Seen from the other grain, every vector changes its sign and nothing else changes. So on either side of a border the
+/// pair has the same force to the last bit.
 template <class Law, bool kRoll, bool kSizes>
 void PairFurrow::evaluate() {
   const double* const radius = atom->radius;
@@ -75,7 +73,7 @@ void PairFurrow::evaluate() {
   dem::Quad* const rolling = lists_.rolling();
   const auto reference = coefficients_.of<Law>();
   dem::SampleLanes<Law, kRoll> samples(reference, dt, sums_.sample);
-  int asked = 0;  // rows for whose grains the work is done
+  int asked = 0;  // rows whose grains were passed to work_
   const int rows = lists_.rows(), last = rows > 0 ? lists_.end(rows - 1) : 0;
   for (int row = 0; row < rows; ++row) {
     const int i = lists_.grain(row), end = lists_.end(row);

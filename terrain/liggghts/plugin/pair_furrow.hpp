@@ -1,6 +1,6 @@
-// The contact laws of terrain/dem between grains, as a pair style of LIGGGHTS. It has lists of its own: LIGGGHTS' lists
-// are those of all of a rank's grains, made again together with its exchange of grains once one grain has moved. Its
-// history of contacts is not used either: what pairs remember stands in the lists, and is carried along by FixFurrow.
+// The contact laws of terrain/dem between grains, as a pair style of LIGGGHTS with lists of its own. LIGGGHTS' lists
+// are not used: they cover all of a rank's grains and are made again with its exchange of grains once one grain has
+// moved. Its history of contacts is not used either: pair histories are in the lists, and FixFurrow carries them along.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,16 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
 
   void set_up(const EngineSetup& setup);
   void set_coefficients(const dem::ContactCoefficients& c) { coefficients_ = c; }
-  /// The coming evaluations: histories grow for `since`, s.
+  /// For the coming evaluations: histories grow for `since`, s.
   void set_since(double since) { since_ = since; }
-  /// The coming step. @param grains  of this rank
+  /// Begins a step. @param grains  of this rank
   void begin_step(StepWork& work, const OwnGrains& grains, bool losses) {
     work_ = &work, grains_ = grains, losses_ = losses;
   }
   PairLists& lists() { return lists_; }
-  /// The histories that this rank's lists hold, of its grains; a pair across a border by the rank of the lower number.
+  /// The histories in this rank's lists; the rank of the grain with the lower number has a pair across a border.
   std::vector<PairRecord> records();
-  /// Of the last evaluation.
+  /// Sums of the last evaluation.
   const PairSums& sums() const { return sums_; }
 
   void settings(int, char**) override {}
@@ -44,10 +44,10 @@ class PairFurrow final : public LAMMPS_NS::PairGran {
 
   dem::LawKind law_{};
   bool rolling_ = false, sizes_ = false, losses_ = false;
-  double radius_ = 0.0;  // for which the coefficients are, m
+  double radius_ = 0.0;  // radius of the coefficients, m
   double since_ = 0.0;   // s
   dem::ContactCoefficients coefficients_;
-  StepWork* work_ = nullptr;  // of this step, as are the grains
+  StepWork* work_ = nullptr;  // of this step, like the grains
   OwnGrains grains_;
   PairSums sums_;
   PairLists lists_;

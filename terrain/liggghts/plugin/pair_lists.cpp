@@ -12,7 +12,7 @@ constexpr int kLanes = 4;            // of near_four
 constexpr double kMostCells = 512;   // along z: higher grains share the top cell
 constexpr double kMostAcross = 1e5;  // along x and y
 
-/// Rounded down into [0, count). What is not a number stands in the first.
+/// Rounded down into [0, count). A position that is not a number gets the first cell.
 int cell_at(double place, int count) { return place > 0.0 ? static_cast<int>(std::min(place, count - 1.0)) : 0; }
 
 int count_of(double length, double per_cell, double most) {
@@ -39,7 +39,7 @@ void PairLists::make(const Grains& grains) {
   valid_ = true;
 }
 
-/// Cells are as wide as the reach of a pair. What stands outside of the grid belongs to its outer cells.
+/// Cells are as wide as the reach of a pair. Grains outside of the grid belong to its outer cells.
 void PairLists::lay_cells(const Grains& grains) {
   const double reach = 2.0 * setup_.largest + setup_.skin;
   double top = 0.0;
@@ -65,7 +65,7 @@ void PairLists::sort(const Grains& grains, int from, int to, Grid& grid) {
     ++grid.start[cell_[k] + 1];
   }
   for (std::size_t c = 1; c < grid.start.size(); ++c) grid.start[c] += grid.start[c - 1];
-  // Each cell's start moves to its end while the cell is filled, which is the start of the next.
+  // While a cell is filled, its start moves to its end, which is the start of the next cell.
   for (int k = 0; k < count; ++k) {
     const int to_place = grid.start[cell_[k]]++;
     const double* const x = grains.position[from + k];
@@ -89,7 +89,7 @@ void PairLists::list_rows(const Grains& grains) {
     const std::int32_t* const grain = grid.grain.data();
     for (int j = from; j < to; j += kLanes) {
       const unsigned hit = dem::near_four(grid.at.data() + j, to - j, at, setup_.skin, 0.0);
-      for (int m = 0; m < kLanes; ++m) {  // without a branch: who is near cannot be foreseen
+      for (int m = 0; m < kLanes; ++m) {  // without a branch, because the outcome cannot be predicted
         partner[found] = grain[std::min(j + m, to - 1)];
         found += hit >> m & 1;
       }

@@ -1,9 +1,9 @@
-// Who may touch whom among a rank's grains and the copies of others' (ghosts), and what touching pairs remember.
+// Pairs that may touch among a rank's grains and the copies of others' (ghosts), and the histories of touching pairs.
 //
-// A pair of own grains is listed once; a pair with a ghost by this rank, and again by the ghost's. The rows of the
-// list, one for each own grain, have the order of the grid's cells: neighbours in space are neighbours in memory. Lists
-// are made anew where grains stand, when one has moved too far; numbers of grains stay the same meanwhile, and
-// histories are carried from the old list to the new one. Where numbers change, they are taken out and put in by tags.
+// A pair of own grains is listed once; a pair with a ghost is listed by this rank and again by the ghost's. The rows of
+// the list, one for each own grain, have the order of the grid's cells: neighbours in space are neighbours in memory.
+// Lists are rebuilt when a grain has moved too far. Between rebuilds the indices of grains stay the same, and histories
+// are carried from the old list to the new one. When indices change, histories are taken out and put back by tags.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace furrow::terrain::liggghts {
 
-/// Of the spring on the first grain of a pair, as the first grain sees it. From the other side vectors turn their sign.
+/// With the spring on the first grain of a pair, as that grain sees it. Seen from the other grain, vectors change sign.
 struct PairHistory {
   dem::Quad tangential;  // N; w = √δ of the step before, √m
   dem::Quad rolling;     // N m
@@ -26,7 +26,7 @@ struct PairHistory {
   }
 };
 
-/// What a grain remembers of a pair while there are no lists, as it sees it.
+/// History of a pair that a grain keeps while there are no lists, as the grain sees it.
 struct PairOf {
   std::int32_t partner = 0;  // its tag
   PairHistory history;
@@ -35,7 +35,7 @@ struct PairOf {
 class PairLists {
  public:
   struct Setup {
-    double skin = 0.0;     // surfaces closer than that are listed, m
+    double skin = 0.0;     // pairs whose surfaces are closer are listed, m
     double largest = 0.0;  // radius, m
     double width = 0.0;    // of the bin, y from −width/2, m
     bool rolling = false;  // pairs keep rolling histories
@@ -50,16 +50,15 @@ class PairLists {
 
   void set_up(const Setup& setup) { setup_ = setup; }
 
-  /// Lists the pairs. What pairs of the list before remember is carried over, if it still holds.
+  /// Lists the pairs. Histories of the previous list are carried over if that list is still valid.
   void make(const Grains& grains);
-  /// The numbers of grains hold no longer.
+  /// Call it when the indices of grains are no longer valid.
   void drop() { valid_ = false; }
   bool valid() const { return valid_; }
   std::int64_t builds() const { return builds_; }
 
   int rows() const { return static_cast<int>(now_.grain.size()); }
   int grain(int row) const { return now_.grain[row]; }
-  /// Of all rows.
   std::span<const std::int32_t> grains() const { return now_.grain; }
   int begin(int row) const { return now_.first[row]; }
   int end(int row) const { return now_.first[row + 1]; }
@@ -69,9 +68,8 @@ class PairLists {
   dem::Quad* rolling() { return now_.rolling.data(); }  // null without rolling resistance
 
   PairHistory history(int entry) const;
-  /// The pair of this entry touches and remembers.
+  /// Marks the pair of this entry as touching and sets its history.
   void remember(int entry, const PairHistory& history);
-  /// Calls see(i, j, entry) for each pair that touches.
   template <class See>
   void for_touching(const See& see) const {
     for (int row = 0; row < rows(); ++row)
@@ -80,7 +78,7 @@ class PairLists {
   }
 
  private:
-  /// Grains in the order of cells.
+  /// The grains in the order of cells.
   struct Grid {
     std::vector<std::int32_t> start;  // of each cell (z fastest, then y, then x), and the end
     std::vector<std::int32_t> grain;

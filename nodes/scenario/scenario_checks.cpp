@@ -337,7 +337,7 @@ class Checks {
       warn("terrain." + terrain_.uneven_key,
            "bends by {} mm within the {} mm of a tire's contact at x = {} m: a handling tire takes the mean height and "
            "slope there, and follows only longer waves; rings and shells follow the shape",
-           digits(1e3 * worst_bend), digits(1e3 * worst_length), number_text(short_decimal(worst_at)));
+           digits(1e3 * worst_bend), digits(1e3 * worst_length), digits(worst_at));
   }
 
   /// What is wrong with the start of a wheel that stands in a wall of the bin.

@@ -119,7 +119,7 @@ TEST(TerrainKeys, ground_that_bends_within_the_contact_of_a_handling_tire_is_war
   EXPECT_FALSE(holds(told(R"({"engine": "rigid", "profile": [[0, 0], [40, 4]]})"), "bends by"));
   EXPECT_FALSE(holds(told(R"({"engine": "rigid", "road_class": "A", "road_from": 1})"), "bends by"));
   const std::string curb = told(R"({"engine": "rigid", "profile": [[2, 0], [2, 0.1]]})");
-  EXPECT_TRUE(holds(curb, "key 'terrain.profile': bends by 50 mm within the ")) << curb;
+  EXPECT_TRUE(holds(curb, "key 'terrain.profile': bends by 50.0 mm within the ")) << curb;
   EXPECT_TRUE(holds(curb, "takes the mean height and slope there")) << curb;
 }
 

@@ -6,6 +6,8 @@ usage: curb_scan.py [--finished]
 
 --finished runs nothing and writes what has run so far.
 """
+import json
+
 import driver
 import provenance
 from curb import Passage
@@ -25,7 +27,7 @@ def main():
         tire = read_json(ROOT / "tire" / "data" / "aligator_planar.json")
         tire["tire"]["viscosity"] = viscosity
         file = folder / f"viscosity_{viscosity}.json"
-        file.write_text(provenance.json.dumps(tire), encoding="utf-8")
+        file.write_text(json.dumps(tire), encoding="utf-8")
         for speed in SPEEDS:
             end = round(PLACE / speed + 0.15, 2)
             for name, masses in ARRANGEMENTS.items():

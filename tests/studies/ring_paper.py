@@ -11,10 +11,13 @@ its sidewall no tangential spring; what little of it the program needs is 1 N/m.
 their exact places that spring holds them, and has the 250 kN/m of the shipped ring. The share of air is that of a tire
 whose rim has the radius of the file's.
 """
+import json
+
 import numpy as np
 
 import driver
 import provenance
+import ring_targets
 from driver import RESULTS, ROOT, read_json
 from ring_protocol import stiffening
 
@@ -65,7 +68,7 @@ def fit(name, files, made):
     share = 1.0 - (start["rim_radius"] / start["radius"]) ** 2
     start |= {"kinematics": kinematics, "air_share": share, "tangential": tangential, "sidewall": [8.84e5, 0.0, 0.0]}
     file = folder.parent / f"{folder.name}_{tangential:g}.json"
-    file.write_text(provenance.json.dumps(start, indent=2), encoding="utf-8")
+    file.write_text(json.dumps(start, indent=2), encoding="utf-8")
     fitted, held = ("plate", "cleat 51"), ("cleat 25", "cleat 38", "cleat 76", "cleat 100")
     study = {"format_version": 1, "calibrate": "ring", "start": str(file), "starts": 2, "seed": 1,
              "parameters": {key: dict(zip(("lower", "upper", "start"), of)) for key, of in parameters.items()},
@@ -98,8 +101,7 @@ def pressed(folder, result, load):
 
 def centre_line(folder):
     """Of the shell: mean over the middle quarter of the footprint's width."""
-    from ring_targets import centre_line as line
-    rows = list(line(folder, 2 * np.pi * 0.47 / 90 / 3))
+    rows = list(ring_targets.centre_line(folder, 2 * np.pi * 0.47 / 90 / 3))
     return np.array([row["x_m"] for row in rows]), np.array([row["pressure_Pa"] for row in rows])
 
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -19,6 +18,7 @@
 #include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/rigid/roads/crg_settings.hpp"
+#include "terrain/rigid/roads/road_text.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -29,22 +29,6 @@ constexpr std::size_t kRecord = 80, kSingleField = 10, kDoubleField = 20;  // ch
 constexpr double kSameCut = 1e-6, kSamePlace = 1e-4;                       // m
 constexpr double kLeastIncrement = 1e-6, kFarthest = 1e6;                  // m; the latter as of terrain.profile
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-std::string upper(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return out;
-}
-
-std::optional<double> number_of(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 enum class Channel { cut, slope, banking, heading, left_out };
 

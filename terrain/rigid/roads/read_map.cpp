@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -17,6 +16,7 @@
 #include "protocol/files/text_file.hpp"
 #include "terrain/rigid/ground_map.hpp"
 #include "terrain/rigid/roads/open_crg.hpp"
+#include "terrain/rigid/roads/road_text.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -109,25 +109,15 @@ class AsciiGrid {
     return word;
   }
 
-  static std::optional<double> number_of(std::string_view word) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(number)) return std::nullopt;
-    return number;
-  }
-
   /// NAME number, until a word is a number itself.
   void read_header() {
     while (true) {
       const std::string_view before = rest_;
-      std::string name(next_word());
+      const std::string name = upper(next_word());
       if (name.empty() || number_of(name)) {
         rest_ = before;
         return;
       }
-      std::transform(name.begin(), name.end(), name.begin(),
-                     [](char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; });
       constexpr std::array kNames{"NCOLS",     "NROWS",     "XLLCORNER", "XLLCENTER",
                                   "YLLCORNER", "YLLCENTER", "CELLSIZE",  "NODATA_VALUE"};
       const std::string_view word = next_word();
@@ -181,8 +171,7 @@ class AsciiGrid {
 }  // namespace
 
 bool has_ending(const std::filesystem::path& file, std::string_view ending) {
-  const std::string end = file.extension().string();
-  return std::ranges::equal(end, ending, {}, [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return upper(file.extension().string()) == upper(ending);
 }
 
 std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, const RoadPlace& place) {

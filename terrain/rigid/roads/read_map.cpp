@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,12 +24,6 @@ namespace {
 
 constexpr double kFarthest = 1e6;  // m, as entries of terrain.profile
 constexpr std::uintmax_t kMostBytes = 1u << 30;
-
-/// Whether CSV has a column y_m.
-bool has_rows_across(const std::filesystem::path& file) {
-  const CsvFile csv(file, "heights in CSV with the columns x_m, z_m and, of a grid, y_m", {"x_m", "z_m", "y_m"});
-  return csv.has("y_m");
-}
 
 HeightMap map_of(const OpenCrg& road, const std::filesystem::path& file) {
   HeightMap map;
@@ -52,9 +47,10 @@ HeightMap map_of(const OpenCrg& road, const std::filesystem::path& file) {
   return map;
 }
 
-/// Rows of a CSV file as the nodes of a grid.
-HeightMap read_csv_map(const std::filesystem::path& file) {
-  const CsvFile csv(file, "heights in CSV with the columns x_m, y_m and z_m", {"x_m", "z_m", "y_m"});
+/// Rows of a CSV file as the nodes of a grid; none if it is a profile.
+std::optional<HeightMap> read_csv_map(const std::filesystem::path& file) {
+  const CsvFile csv(file, "heights in CSV with the columns x_m, z_m and, of a grid, y_m", {"x_m", "z_m", "y_m"});
+  if (!csv.has("y_m")) return std::nullopt;
   std::map<double, std::size_t> x, y;  // number of each, in order
   for (std::size_t row = 0; row < csv.row_count(); ++row) x[csv.number(row, "x_m")], y[csv.number(row, "y_m")];
   HeightMap map;
@@ -182,8 +178,8 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
     map = map_of(road, file);
   } else if (has_ending(file, ".asc")) {
     map = AsciiGrid(file).read();
-  } else if (has_rows_across(file)) {
-    map = read_csv_map(file);
+  } else if (auto grid = read_csv_map(file)) {
+    map = std::move(*grid);
   } else {
     return nullptr;
   }

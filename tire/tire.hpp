@@ -51,6 +51,9 @@ class Tire {
   /// Vertices on the given rim, for a tire that follows its rim (TireDescription::follows_rim).
   virtual void surface_on(const RimState& rim, SurfaceState& out) const;
 
+  /// Largest principal strain of the contact surface at each vertex; empty for a model without.
+  virtual std::vector<float> strain() const { return {}; }
+
   /// Computes the contact forces of a tire with a contact law of its own (TireDescription::own_contact). The interval
   /// begins with this rim and has the same `duration` as the one before.
   /// @returns failure when the tire left the model's range

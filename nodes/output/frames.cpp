@@ -56,7 +56,8 @@ std::vector<std::string> frame_forms() {
 }
 
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
-                      const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces) {
+                      const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces,
+                      const std::vector<float>& strain) {
   FURROW_ASSERT(tire >= 0, tire);
   FURROW_ASSERT(surface.velocity.size() == surface.position.size(), surface.velocity.size(), surface.position.size());
   FURROW_ASSERT(forces.force.size() == forces.vertex.size(), forces.force.size(), forces.vertex.size());
@@ -79,6 +80,7 @@ void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t i
   fault_point("frame");
   put(file, "velocity", flatten(surface.velocity), {"node", "xyz"}, "m/s");
   put(file, "force", flatten(dense), {"node", "xyz"}, "N");
+  if (!strain.empty()) put(file, "strain", strain, {"node"}, "1");
   file.put("triangle", triangles, {mesh.triangles.size(), 3});
   file.lay_along("triangle", {"face", "corner"});
   file.finish();

@@ -1,5 +1,6 @@
 // Frames: tire and terrain at one instant, one HDF5 file each under <run>/frames/.
-//   tire<k>_<index>.h5     /position (n, 3) m, /velocity (n, 3) m/s, /force (n, 3) N, /triangle (m, 3)
+//   tire<k>_<index>.h5     /position (n, 3) m, /velocity (n, 3) m/s, /force (n, 3) N, /triangle (m, 3); of a
+//                          tire that has it also /strain (n), the largest principal strain of the surface
 //   terrain_<index>.h5     /position (n, 3) m, /speed (n) m/s, /radius (n) m
 // The file has the attribute `time_s`, the datasets `units`; their axes are node, face, grain, xyz and corner.
 #pragma once
@@ -21,7 +22,8 @@ std::vector<std::string> frame_forms();
 
 /// @pre the run's folder exists, here and below @throws Error(io)
 void write_tire_frame(const std::filesystem::path& run, int tire, std::int64_t index, double time,
-                      const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces);
+                      const SurfaceMesh& mesh, const SurfaceState& surface, const NodalForces& forces,
+                      const std::vector<float>& strain = {});
 
 /// Writes nothing for a terrain without grains. @throws Error(io)
 void write_terrain_frame(const std::filesystem::path& run, std::int64_t index, double time,

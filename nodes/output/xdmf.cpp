@@ -23,6 +23,7 @@ struct Frame {
   std::string file;  // relative to the run directory
   double time = 0.0;
   hsize_t points = 0, triangles = 0;
+  bool strain = false;
 };
 
 /// Number of rows of a dataset; 0 if there is none.
@@ -40,6 +41,7 @@ std::optional<Frame> read_frame(const std::filesystem::path& run, const FrameNam
     frame.time = file.number("time_s");
     frame.points = rows(file, "position");
     if (file.has("triangle")) frame.triangles = rows(file, "triangle");
+    frame.strain = file.has("strain");
     return frame.points > 0 ? std::optional(frame) : std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
@@ -106,6 +108,7 @@ std::string grid(const Frame& f, const std::string& name) {
   text += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n", data_item(f, "position", f.points, 3, "Float"));
   text += f.triangles > 0 ? attribute(f, "velocity", 3) + attribute(f, "force", 3)
                           : attribute(f, "speed", 1) + attribute(f, "radius", 1);
+  if (f.strain) text += attribute(f, "strain", 1);
   return text + "</Grid>\n";
 }
 

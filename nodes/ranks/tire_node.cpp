@@ -229,7 +229,7 @@ class TireNode : public Node {
     if (!frames_.due(header.step)) return;
     if (held_) held_->check();
     output::write_tire_frame(directory_, index_, frames_.index(header.step), header.time, tire_->mesh(),
-                             motion_.surface, forces_);
+                             motion_.surface, forces_, tire_->strain());
   }
 
   scenario::Scenario scenario_;

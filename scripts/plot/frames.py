@@ -49,6 +49,7 @@ class TireFrame(Frame):
     position = _dataset("position", 3, "Nodes, shape (n, 3), m.")
     velocity = _dataset("velocity", 3, "Of the nodes, shape (n, 3), m/s.")
     force = _dataset("force", 3, "On the nodes by the terrain, shape (n, 3), N.")
+    strain = _dataset("strain", 0, "Largest principal strain of the surface at the nodes, shape (n,); of shells.")
     triangle = _dataset("triangle", 3, "Indices of the nodes of each triangle, shape (m, 3).")
 
 

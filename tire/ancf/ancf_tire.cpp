@@ -6,6 +6,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "tire/surface_strain.hpp"
 
 namespace furrow::tire {
 namespace {
@@ -94,6 +95,16 @@ void AncfTire::surface(SurfaceState& out) const {
     out.position[ring_.nodes() + side] = rim_.position + arm;
     out.velocity[ring_.nodes() + side] = rim_.velocity + rim_.angular_velocity.cross(arm);
   }
+}
+
+std::vector<float> AncfTire::strain() const {
+  SurfaceState now;
+  surface(now);
+  std::vector<Vec3> undeformed(now.position.size());
+  for (int i = 0; i < ring_.columns; ++i)
+    for (int j = 0; j < ring_.rows; ++j) undeformed[ring_.node(i, j)] = ring_.node_position(i, j);
+  for (int side = 0; side < 2; ++side) undeformed[ring_.nodes() + side] = ring_.disc_centre(side);
+  return surface_strain(shape_.mesh, undeformed, now.position);
 }
 
 Outcome AncfTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {

@@ -21,6 +21,7 @@ class AncfTire final : public Tire {
 
   void set_pressure(double pressure) override;
   void surface(SurfaceState& out) const override;
+  std::vector<float> strain() const override;
   void acted(NodalForces& forces) const override;
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override;

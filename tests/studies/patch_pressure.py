@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Figs 6, 10, 11 and 17 of the 2016 report at its size: strain of the tire, pressure in the patch at touch-down and in
+steady motion, and the criterion of Wong for a rigid or flexible tire.
+
+usage: patch_pressure.py [--law mindlin|report] [--seed 1]
+
+Runs drawbar_pull.json (with the report's law drawbar_pull_tr.json) with frames. Writes patch_pressure_LAW.csv, the
+pressure in wheel axes, patch_pressure.csv, a row for each law, and patch_pressure.png.
+
+Pressure of a node: the force on it along the surface's inward normal over a third of the area of its triangles. Angles
+count from the downward vertical, forward positive. The row across is the node's column of the mesh. Touch-down is the
+frame with the largest deflection before `run.average_from`; the steady pressure is the mean over the frames after it.
+
+A tire is rigid where p_i + p_c >= p_gcr [Wong 2010, Theory of Ground Vehicles, 2.5],
+  p_gcr = (k_c/b + k_phi)^(1/(2n+1)) (3 W / ((3 - n) b sqrt(D)))^(2n/(2n+1)),
+p_i the inflation pressure, p_c the carcass's: mean pressure of the patch on a plate at that load less p_i.
+"""
+import math
+import types
+
+import h5py
+import numpy as np
+
+import driver
+import provenance
+
+RIGS = {"mindlin": "drawbar_pull.json", "report": "drawbar_pull_tr.json"}
+STEP_OF_ANGLE = math.radians(4.0)  # one column of the mesh
+WIDTH, DIAMETER = 0.254, 2 * 0.4673  # m, of the tire
+
+
+def read_frame(path):
+    with h5py.File(path, "r") as file:
+        return types.SimpleNamespace(time=float(file.attrs["time_s"]), **{name: file[name][()] for name in (
+            "position", "force", "triangle", "strain")})
+
+
+def nodal_pressure(frame):
+    """(pressure, area) of the nodes, Pa and m²."""
+    corner = frame.position[frame.triangle]
+    across = 0.5 * np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])  # outward, m²
+    normal = np.zeros_like(frame.position)
+    for k in range(3):
+        np.add.at(normal, frame.triangle[:, k], across / 3.0)
+    area = np.linalg.norm(normal, axis=1)
+    return -np.einsum("ij,ij->i", frame.force, normal) / area**2, area
+
+
+def in_wheel_axes(frame, rows):
+    """{(angle bin, row): (force, area)} of the nodes; the two last vertices are the middles of the discs."""
+    pressure, area = nodal_pressure(frame)
+    centre = 0.5 * (frame.position[-1] + frame.position[-2])
+    arm = (frame.position - centre)[:-2]
+    angle = np.arctan2(arm[:, 0], -arm[:, 2])
+    bins = np.rint(angle / STEP_OF_ANGLE).astype(int)
+    found = {}
+    for node, (bin_, row) in enumerate(zip(bins, np.arange(len(arm)) % rows)):
+        force, of = found.get((bin_, row), (0.0, 0.0))
+        found[bin_, row] = (force + pressure[node] * area[node], of + area[node])
+    return found
+
+
+def mean_map(frames, rows):
+    total = {}
+    for frame in frames:
+        for place, (force, area) in in_wheel_axes(frame, rows).items():
+            f, a = total.get(place, (0.0, 0.0))
+            total[place] = (f + force, a + area)
+    return {place: force / area for place, (force, area) in total.items()}
+
+
+def critical_pressure(soil, load):
+    """p_gcr, Pa; k_c and k_phi in N."""
+    n = soil["n"]
+    return ((soil["k_c"] / WIDTH + soil["k_phi"]) ** (1 / (2 * n + 1))
+            * (3 * load / ((3 - n) * WIDTH * math.sqrt(DIAMETER))) ** (2 * n / (2 * n + 1)))
+
+
+def draw(maps, law, strain):
+    figure, axes = driver.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
+    for axis, (title, values) in zip(axes, maps.items()):
+        angles = sorted({a for a, _ in values if abs(a) <= 12})
+        rows = sorted({r for _, r in values})
+        image = np.array([[values.get((a, r), 0.0) / 1e3 for r in rows] for a in angles])
+        shown = axis.pcolormesh(rows, np.degrees(np.array(angles) * STEP_OF_ANGLE), image, cmap="viridis")
+        figure.colorbar(shown, ax=axis, label="pressure, kPa")
+        driver.label(axis, "node across", "angle from the vertical, °", title)
+    place, values = strain
+    shown = axes[2].scatter(place[:, 0], place[:, 2], c=100 * values, s=6, lw=0)
+    figure.colorbar(shown, ax=axes[2], label="largest principal strain, %")
+    driver.label(axes[2], "x, m", "z, m", "strain of the surface, right half", aspect="equal")
+    driver.save(figure, "patch_pressure" + ("" if law == "mindlin" else "_report"))
+
+
+def main():
+    parser = driver.options(__doc__, law={"choices": list(RIGS), "default": "mindlin"}, seed={"type": int, "default": 1})
+    arguments = parser.parse_args()
+    made = provenance.made_here()
+    out = driver.finished_case(f"patch_pressure_{arguments.law}", [
+        str(driver.ROOT / "rigs" / RIGS[arguments.law]), *driver.settings({"run.seed": arguments.seed})],
+        driver.RESULTS / f"patch_pressure_{arguments.law}_{arguments.seed}")
+    frames = [read_frame(path) for path in sorted((out / "frames").glob("tire0_*.h5"))]
+    series, summary = driver.series(out), driver.summary(out)
+    scenario = driver.read_json(out / "scenario.json")
+    begin = scenario["run"]["average_from"]
+    rows = scenario["tire"]["elements_width"] + 1
+    early = series["time_s"] < begin
+    deflection = np.max(series["loaded_radius_m"]) - series["loaded_radius_m"]
+    at = series["time_s"][early][np.argmax(deflection[early])]
+    steady = [frame for frame in frames if frame.time >= begin]
+    touch = min(frames, key=lambda frame: abs(frame.time - at))
+    maps = {f"touch-down, {touch.time:.2f} s": mean_map([touch], rows), "steady": mean_map(steady, rows)}
+    driver.write(f"patch_pressure_{arguments.law}.csv",
+                 [{"when": when, "angle_deg": round(math.degrees(angle * STEP_OF_ANGLE)), "row": row,
+                   "pressure_kPa": pressure / 1e3}
+                  for when, values in maps.items() for (angle, row), pressure in sorted(values.items())
+                  if abs(pressure) > 1e3], made)
+    last = frames[-1]
+    right = last.position[:-2, 1] >= np.mean(last.position[:-2, 1])
+    draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]))
+    load = driver.mean_of(summary["vertical_load_N"])
+    print({"load_N": load, "frames": len(steady), "steady": summary["drawbar_pull_N"]["steady"],
+           **{f"{when}: largest, kPa": max(values.values()) / 1e3 for when, values in maps.items()},
+           "strain at most": float(last.strain.max()), "pull": summary["drawbar_pull_N"]})
+
+
+if __name__ == "__main__":
+    main()

@@ -224,6 +224,7 @@ Resorted Strips::rebuild_all(Grains& grains, int threads) {
   }
   Resorted range = rebuild(grains, 0, count(), threads);
   for (Strip& strip : strips_) strip.travel = 0.0;
+  old_ = {}, scratch_ = {};  // as large as all lists; what later rebuilds need is less
   return range;
 }
 

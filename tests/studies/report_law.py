@@ -46,7 +46,10 @@ def shear():
                 words = driver.settings(changed, {"run.step": step, "terrain.cohesion": cohesion})
                 found = driver.read_json(driver.kept(out, "soil", RIG, "--only", "shear", "--speed", speed, *words)
                                          / "soil.json")
-                middle = [test for test in found["shear"]["tests"] if 3e4 < test["normal_stress_Pa"] < 8e4]
+                of_seed = {}
+                for test in found["shear"]["tests"]:
+                    of_seed.setdefault(test["seed"], []).append(test)
+                middle = [min(tests, key=lambda test: abs(test["normal_stress_Pa"] - 5e4)) for tests in of_seed.values()]
                 ratios = [test["final_shear_stress_Pa"] / test["normal_stress_Pa"] for test in middle]
                 mean, half = driver.over_beds(ratios)
                 rows.append(case | {"beds": len(middle), "final_shear_over_normal_stress": mean, "half": half,

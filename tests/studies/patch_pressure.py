@@ -93,7 +93,8 @@ def draw(maps, law, strain):
 
 
 def main():
-    parser = driver.options(__doc__, law={"choices": list(RIGS), "default": "mindlin"}, seed={"type": int, "default": 1})
+    parser = driver.options(__doc__, law={"choices": list(RIGS), "default": "mindlin"},
+                            seed={"type": int, "default": 1})
     arguments = parser.parse_args()
     made = provenance.made_here()
     out = driver.finished_case(f"patch_pressure_{arguments.law}", [

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Figs 6, 10, 11 and 17 of the 2016 report at its size: strain of the tire, pressure in the patch at touch-down and in
-steady motion, and the criterion of Wong for a rigid or flexible tire.
+"""Figs 6, 10, 11 and 17 of the 2016 report at its size: strain of the tire, pressure in the patch at the largest
+deflection and in steady motion, and the criterion of Wong for a rigid or flexible tire.
 
 usage: patch_pressure.py [--law mindlin|report] [--seed 1]
 
@@ -8,12 +8,13 @@ Runs drawbar_pull.json (with the report's law drawbar_pull_tr.json) with frames.
 pressure in wheel axes, patch_pressure.csv, a row for each law, and patch_pressure.png.
 
 Pressure of a node: the force on it along the surface's inward normal over a third of the area of its triangles. Angles
-count from the downward vertical, forward positive. The row across is the node's column of the mesh. Touch-down is the
-frame with the largest deflection before `run.average_from`; the steady pressure is the mean over the frames after it.
+count from the downward vertical, forward positive. The row across is the node's place in the meridian. The largest
+deflection is sought before `run.average_from`; the steady pressure is the mean over the frames after it.
 
 A tire is rigid where p_i + p_c >= p_gcr [Wong 2010, Theory of Ground Vehicles, 2.5],
   p_gcr = (k_c/b + k_phi)^(1/(2n+1)) (3 W / ((3 - n) b sqrt(D)))^(2n/(2n+1)),
-p_i the inflation pressure, p_c the carcass's: mean pressure of the patch on a plate at that load less p_i.
+p_i the inflation pressure, p_c the carcass's: mean pressure of the patch on a plate at that load less p_i, of
+footprints.csv. k_c, k_phi and n are those of the same grains of 10 mm at 0.1 m/s, of soil_speed.csv.
 """
 import math
 import types
@@ -25,7 +26,8 @@ import driver
 import provenance
 
 RIGS = {"mindlin": "drawbar_pull.json", "report": "drawbar_pull_tr.json"}
-STEP_OF_ANGLE = math.radians(4.0)  # one column of the mesh
+COLUMNS = 90  # of the mesh, around
+STEP_OF_ANGLE = 2 * math.pi / COLUMNS
 WIDTH, DIAMETER = 0.254, 2 * 0.4673  # m, of the tire
 
 
@@ -69,11 +71,18 @@ def mean_map(frames, rows):
     return {place: force / area for place, (force, area) in total.items()}
 
 
-def critical_pressure(soil, load):
-    """p_gcr, Pa; k_c and k_phi in N."""
-    n = soil["n"]
-    return ((soil["k_c"] / WIDTH + soil["k_phi"]) ** (1 / (2 * n + 1))
+def critical_pressure(load):
+    """p_gcr, Pa."""
+    soil = next(row for row in provenance.read_table(driver.HERE / "soil_speed.csv") if row["speed_m_s"] == "0.1")
+    n, k_c, k_phi = float(soil["n"]), 1e3 * float(soil["k_c_kN_per_m_n1"]), 1e3 * float(soil["k_phi_kN_per_m_n2"])
+    return ((k_c / WIDTH + k_phi) ** (1 / (2 * n + 1))
             * (3 * load / ((3 - n) * WIDTH * math.sqrt(DIAMETER))) ** (2 * n / (2 * n + 1)))
+
+
+def pressure_on_plate():
+    """p_i + p_c of the layered tire at about 4.6 kN, Pa."""
+    return float(next(row for row in provenance.read_table(driver.HERE / "footprints.csv")
+                      if row["case"] == "layered_90x24_plate")["footprint_mean_pressure_Pa"])
 
 
 def draw(maps, law, strain):
@@ -104,13 +113,13 @@ def main():
     series, summary = driver.series(out), driver.summary(out)
     scenario = driver.read_json(out / "scenario.json")
     begin = scenario["run"]["average_from"]
-    rows = scenario["tire"]["elements_width"] + 1
+    rows = (len(frames[0].position) - 2) // COLUMNS
     early = series["time_s"] < begin
     deflection = np.max(series["loaded_radius_m"]) - series["loaded_radius_m"]
     at = series["time_s"][early][np.argmax(deflection[early])]
     steady = [frame for frame in frames if frame.time >= begin]
     touch = min(frames, key=lambda frame: abs(frame.time - at))
-    maps = {f"touch-down, {touch.time:.2f} s": mean_map([touch], rows), "steady": mean_map(steady, rows)}
+    maps = {f"largest deflection, {touch.time:.2f} s": mean_map([touch], rows), "steady": mean_map(steady, rows)}
     driver.write(f"patch_pressure_{arguments.law}.csv",
                  [{"when": when, "angle_deg": round(math.degrees(angle * STEP_OF_ANGLE)), "row": row,
                    "pressure_kPa": pressure / 1e3}
@@ -120,9 +129,17 @@ def main():
     right = last.position[:-2, 1] >= np.mean(last.position[:-2, 1])
     draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]))
     load = driver.mean_of(summary["vertical_load_N"])
-    print({"load_N": load, "frames": len(steady), "steady": summary["drawbar_pull_N"]["steady"],
-           **{f"{when}: largest, kPa": max(values.values()) / 1e3 for when, values in maps.items()},
-           "strain at most": float(last.strain.max()), "pull": summary["drawbar_pull_N"]})
+    pull = summary["drawbar_pull_N"]
+    row = {"law": arguments.law, "seed": arguments.seed, "pull_N": pull["mean"], "sem_N": pull["sem"],
+           "steady": int(pull["steady"]), "sinkage_mm": 1e3 * summary["sinkage_m"], "load_N": load,
+           "frames": len(steady), "largest_kPa": max(maps["steady"].values()) / 1e3,
+           "largest_at_deflection_kPa": max(next(iter(maps.values())).values()) / 1e3,
+           "strain_percent": 100 * float(last.strain.max()), "p_i_and_p_c_kPa": pressure_on_plate() / 1e3,
+           "p_gcr_kPa": critical_pressure(load) / 1e3}
+    table = driver.HERE / "patch_pressure.csv"
+    others = [of for of in (provenance.read_table(table) if table.exists() else ())
+              if (of["law"], of["seed"]) != (arguments.law, str(arguments.seed))]
+    driver.write("patch_pressure.csv", [*others, row], made, told=True)
 
 
 if __name__ == "__main__":

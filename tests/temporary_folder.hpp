@@ -3,30 +3,11 @@
 
 #include <stdlib.h>
 
-#include <filesystem>
-#include <stdexcept>
-#include <string>
+#include "protocol/temporary_folder.hpp"
 
 namespace furrow::testing {
 
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "furrow-test-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using furrow::TemporaryFolder;
 
 /// A temporary folder that is also the program's cache while it exists.
 class OwnCache : public TemporaryFolder {

@@ -12,7 +12,6 @@
 
 #include "nodes/commands/bench.hpp"
 #include "nodes/commands/command_table.hpp"
-#include "protocol/core/assert.hpp"
 #include "protocol/core/clock.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/hash.hpp"
@@ -96,13 +95,6 @@ nlohmann::ordered_json parts(const tire::Tire& tire, const tire::NamedValues& be
   }
   json["other"] = rest;
   return json;
-}
-
-/// Value below which the share `p` of the sorted values is.
-double quantile(const std::vector<double>& sorted, double p) {
-  FURROW_ASSERT(!sorted.empty() && std::is_sorted(sorted.begin(), sorted.end()), sorted.size());
-  FURROW_ASSERT(p >= 0.0 && p <= 1.0, p);
-  return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
 }
 
 /// The tire rolls freely on hard ground under a carriage. Times per step are those of the tire alone: wall time, and

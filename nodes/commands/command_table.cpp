@@ -10,7 +10,7 @@ std::vector<Command> all_commands() {
       bed_entry(),        soil_entry(),         press_entry(),      modes_entry(),   //
       kinematics_entry(),                                                            //
       sweep_entry(),      calibrate_entry(),    report_entry(),     events_entry(),  //
-      bench_entry(),      bench_grains_entry(), bench_tire_entry(),
+      bench_entry(),      bench_grains_entry(), bench_tire_entry(), bench_rig_entry(),
   };
 }
 

@@ -27,6 +27,7 @@ Command events_entry();
 Command bench_entry();
 Command bench_grains_entry();
 Command bench_tire_entry();
+Command bench_rig_entry();
 
 std::vector<Command> all_commands();
 

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "nodes/launch/run_directory.hpp"
+#include "nodes/launch/supervisor.hpp"
 #include "nodes/scenario/scenario.hpp"
 #include "protocol/core/error.hpp"
 
@@ -33,6 +35,10 @@ ExitCode run_command_line(int argc, char** argv);
 
 /// `furrow run` or `furrow resume` as one rank of MPI (rank.cpp).
 ExitCode run_as_rank(const RunArguments& arguments, int argc, char** argv);
+/// Starts the ranks of a run in its folder and watches them (run.cpp). @pre require_launch, launch::catch_stop_signals
+/// @throws Error
+launch::LaunchResult supervise_ranks(const scenario::Scenario& scenario, launch::RunDirectory& directory,
+                                     const RunArguments& arguments, launch::ProgressDisplay& display);
 /// Checks whether this machine can start the ranks of a run. @throws Error with the obstacle
 void require_launch(const scenario::Scenario& scenario);
 /// `furrow run --seeds N` (seeds.cpp). @throws Error

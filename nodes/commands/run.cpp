@@ -111,14 +111,8 @@ ExitCode supervise_run(const scenario::Scenario& scenario, launch::RunDirectory&
   const std::filesystem::path failed = directory.path() / "summary_failed.json";
   const auto failed_before = written(failed), done_before = written(directory.path() / kDone);
   try {
-    directory.add({"run.log", "summary_failed.json"});
-    directory.lock().share();
     launch::ProgressDisplay display;
-    result = launch::supervise({rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
-                                scenario.terrain_ranks > 1 ? static_cast<std::size_t>(scenario.terrain_ranks) : 0,
-                                directory.path() / "run.log", directory.lock().descriptor(), launch::start_patience(),
-                                scenario.run.peer_timeout},
-                               display);
+    result = supervise_ranks(scenario, directory, arguments, display);
   } catch (const Error&) {
     directory.discard();
     throw;
@@ -260,6 +254,17 @@ Action resume_options(CLI::App& command, Typed& typed) {
 }
 
 }  // namespace
+
+launch::LaunchResult supervise_ranks(const scenario::Scenario& scenario, launch::RunDirectory& directory,
+                                     const RunArguments& arguments, launch::ProgressDisplay& display) {
+  directory.add({"run.log", "summary_failed.json"});
+  directory.lock().share();
+  return launch::supervise(
+      {rank_arguments(arguments, directory.path()), scenario::rank_table(scenario),
+       scenario.terrain_ranks > 1 ? static_cast<std::size_t>(scenario.terrain_ranks) : 0, directory.path() / "run.log",
+       directory.lock().descriptor(), launch::start_patience(), scenario.run.peer_timeout},
+      display);
+}
 
 void require_launch(const scenario::Scenario& scenario) {
   scenario::require_runnable(scenario);

@@ -17,9 +17,11 @@ constexpr std::size_t kColumns = 4;  // step, begin, exchanged, advanced
 
 }  // namespace
 
+std::int64_t recorded_every(std::int64_t steps) { return (steps + kMaxSteps - 1) / kMaxSteps; }
+
 StepProfile::StepProfile(std::int64_t steps) {
   if (steps <= 0) return;
-  every_ = (steps + kMaxSteps - 1) / kMaxSteps;
+  every_ = recorded_every(steps);
   times_.reserve(kColumns * static_cast<std::size_t>(steps / every_ + 1));
 }
 

@@ -12,7 +12,10 @@
 
 namespace furrow::output {
 
-/// One rank's record of its steps, evenly thinned to at most about 4000.
+/// Of a run of that many steps every n-th one is recorded: at most about 4000.
+std::int64_t recorded_every(std::int64_t steps);
+
+/// One rank's record of its steps.
 class StepProfile {
  public:
   /// @param steps of the run; 0: record nothing

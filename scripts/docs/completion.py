@@ -19,7 +19,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # What an argument or the value of an option is, beyond the words that its description lists.
 KINDS = {"SCENARIO": "list:scenarios", "validate SCENARIO": "list:scenarios vehicles calibrations",
          "STUDY": "list:studies", "calibrate STUDY": "list:calibrations", "VEHICLE": "list:vehicles",
-         "--tire": "list:tires", "--soil": "list:soils", "--vehicle": "list:vehicles", "DIR": "folder",
+         "--scenario": "list:scenarios", "--tire": "list:tires", "--soil": "list:soils", "--vehicle": "list:vehicles",
+         "DIR": "folder",
          "OTHERS": "folder", "--out": "folder", "--vtk": "folder", "KEY": "key", "--set": "setting",
          "--profile": "file", "--bed": "file", "--save-bed": "file"}
 

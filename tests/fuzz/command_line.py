@@ -36,9 +36,9 @@ FRESH_CACHE = 50  # cases
 
 COMMANDS = ["run", "resume", "validate", "ranks", "explain", "bed", "soil",
             "press", "modes", "kc", "sweep", "calibrate", "report", "events", "list", "new", "bench",
-            "bench grains", "bench tire", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
+            "bench grains", "bench tire", "bench rig", "help", "rnu", "", "--", "-", "RUN", "validate validate"]
 # Those that compute get rarely what they need to begin.
-WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 2, 3, 3, 4, 2, 1, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
+WEIGHTS = [4, 4, 10, 4, 6, 1, 1, 1, 2, 2, 3, 3, 4, 2, 1, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
 FLAGS = ["--set", "--threads", "--out", "--overwrite", "--orders", "--count", "--elements-circumference", "--profile",
          "--no-plots", "--json", "--until", "--seeds", "--speed", "--only", "--quick", "--on", "--deflection",
          "--points", "--load", "--cleat-height", "--cleat-width", "--jobs", "--travel", "--csv", "--soil", "--bed",

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""`furrow bench tire` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
+"""`furrow bench` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
 import json
 
-from program import ROOT, SystemTest, furrow, main, read_json, write_json
+from program import ROOT, SystemTest, furrow, main, read_json, write_json, write_scenario
 
 SCENARIO = {
     "format_version": 1,
@@ -55,6 +55,60 @@ class Bench(SystemTest):
         self.assertIn("touching down", bench.stderr.readline())
         bench.terminate()
         self.ended(bench, 75, says="signal")
+
+
+class BenchRig(SystemTest):
+    def setUp(self):
+        super().setUp()
+        self.temporary = self.folder / "temporary"
+        self.temporary.mkdir()
+        self.env = {"XDG_CACHE_HOME": str(self.folder / "cache"), "TMPDIR": str(self.temporary)}
+        self.words = ("bench", "rig", "--scenario", write_scenario(self.folder))
+
+    def bench(self, *more, warm="0.02"):
+        done = self.furrow(*self.words, "--warm", warm, "--steps", "200", *more, env=self.env)
+        self.assertEqual(list(self.temporary.iterdir()), [])
+        self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["cache", "small.json", "temporary"])
+        return json.loads(done.stdout)
+
+    def test_times_agree_with_each_other(self):
+        found = self.bench()
+        self.assertAlmostEqual(found["s_per_simulated_s"], 1e-3 * found["ms_per_step"] / found["step_s"], places=9)
+        self.assertTrue(0 < found["median_ms"] <= found["p99_ms"], found)
+        both = found["tire_ms"], found["terrain_ms"]
+        self.assertTrue(max(both) - 1e-9 <= found["slower_of_both_ms"] <= sum(both), found)
+        self.assertLess(found["slower_of_both_ms"], found["ms_per_step"])
+        self.assertEqual(list(found["waiting_share"]), ["rig", "terrain", "tire 0"])
+        for share in (*found["waiting_share"].values(), found["awake_share"]):
+            self.assertTrue(0 < share <= 1, found)
+        self.assertEqual((found["steps"], found["steps_recorded"], found["tires"], found["refined_share"]),
+                         (200, 200, 1, 0))
+        bed = json.loads(self.furrow("bed", "small.json", env=self.env).stdout)
+        self.assertEqual(found["grains"], bed["grains"])
+
+    def test_the_state_is_that_of_a_run_for_any_threads(self):
+        one, two = self.bench("--threads", "1"), self.bench("--threads", "2")
+        self.assertEqual((one["threads"], two["threads"]), (1, 2))
+        self.assertEqual(one["state_hash"], two["state_hash"])
+        self.furrow("run", "small.json", "--set", "run.end=0.04", "--out", "out", "--no-plots", env=self.env)
+        self.assertEqual(self.summary()["state_hash"], one["state_hash"])
+
+    def test_a_long_run_before_is_thinned(self):
+        self.assertEqual(self.bench("--set", "rig.angular_speed=0.5", warm="0.5")["steps_recorded"], 100)
+
+    def test_bad_input(self):
+        for more, word in ((("--steps", "0"), "key '--steps'"), (("--warm", "-1"), "key '--warm'"),
+                           (("--steps", "30", "--warm", "0.5"), "key '--steps': is 30, expected 40 or more"),
+                           (("--set", "rig.slip=7"), "rig.slip"), (("--set", "run.end"), "--set")):
+            self.furrow(*self.words, *more, code=2, says=word)
+        self.furrow("bench", "rig", "--scenario", "none.json", code=2, says="none.json")
+
+    def test_a_signal_stops_it_and_leaves_nothing(self):
+        bench = self.start(*self.words, "--steps", "1000000", "--set", "rig.angular_speed=0", env=self.env)
+        self.assertTrue(any(" of 100" in line for line in bench.stderr))
+        bench.terminate()
+        self.ended(bench, 75, says="signal")
+        self.assertEqual(list(self.temporary.iterdir()), [])
 
 
 class Press(SystemTest):

@@ -35,7 +35,7 @@ class Commands(SystemTest):
         commands = re.findall(r"^  (\w+)  ", self.output("--help"), re.MULTILINE)
         self.assertIn("calibrate", commands)
         shipped = [name for kind in json.loads(self.output("list", "--json")).values() for name in kind["files"]]
-        for command in [*[name for name in commands if name != "bench"], "bench grains", "bench tire"]:
+        for command in [*[name for name in commands if name != "bench"], "bench grains", "bench tire", "bench rig"]:
             help_text = self.output(*command.split(), "--help")
             options, examples = help_text.split("Examples:\n")
             lines = re.findall(r"^  (furrow .*?)  +\S", examples, re.MULTILINE)
@@ -50,7 +50,7 @@ class Commands(SystemTest):
 
     def test_texts_for_people_are_as_wide_as_the_terminal_and_no_wider_than_120_columns(self):
         for command in (*re.findall(r"^  ([a-z]+) {3,}", self.output("--help"), re.MULTILINE),
-                        "bench grains", "bench tire", ""):
+                        "bench grains", "bench tire", "bench rig", ""):
             for line in self.output(*command.split(), "--help").splitlines():
                 self.assertLessEqual(len(line), 120, command)
         for arguments in (["press", "--help"], ["explain"], ["explain", "terrain.bed"],

@@ -47,7 +47,8 @@ class Completion(SystemTest):
 
     def test_values_that_the_help_lists(self):
         self.assertEqual(self.completed("soil", "--only", ""), ["plate", "shear", "cone", "repose", "interface"])
-        self.assertEqual(self.completed("bench", ""), ["grains", "tire"])
+        self.assertEqual(self.completed("bench", ""), ["grains", "tire", "rig"])
+        self.assertEqual(self.completed("bench", "rig", "--scenario", "first_l"), ["first_look.json"])
         self.assertEqual(self.completed("bench", "grains", "--pr"), ["--precision"])
         self.assertEqual(self.completed("bench", "grains", "--precision", "m"), ["mixed"])
         self.assertIn("hmmwv.json", self.completed("validate", "hmm"))

@@ -36,7 +36,7 @@ class Quiet(SystemTest):
         return loud.stdout, quiet.stdout
 
     def test_every_command_that_tells_more_than_its_result_has_it(self):
-        for command in (*WITH_QUIET, "bench grains", "bench tire"):
+        for command in (*WITH_QUIET, "bench grains", "bench tire", "bench rig"):
             done = furrow(*command.split(), "--help", cwd=self.folder)
             self.assertIn("Print errors only on standard error", " ".join(done.stdout.split()), command)
 

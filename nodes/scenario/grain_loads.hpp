@@ -14,8 +14,9 @@
 //   run                                          n    x_δ    refined here, in the run   x_30   in the run
 //   hmmwv_straight, E 24.9, step 1e-4          220    1.8    1.00, 0.92 until it failed  7.4    failed after 1.6 s
 //   hmmwv_straight, E 100, step 5e-5           220    5.5    0.41, 0.76                 19.5    largest seen 0.09 d
-//   rover_small                                 53    3.6    0.59, 0.21                 13.3    largest seen 0.13 d
-//   hmmwv_small                                 95    4.7    0.42, 0.28                  9.0    largest seen 0.22 d
+//   rover_small                                 53    3.6    0.59, 0.19                 13.3    largest seen 0.13 d
+//   hmmwv_small                                 95    4.7    0.42, 0.24                  9.0    largest seen 0.22 d
+//   small rig on LETE sand, E 100               82    4.5    0.44, 0.94
 //   small rig on the report's soil, r 15 mm     33   10.1    0, 0                        9.3
 //   small rig on the report's soil              74   none    0, 0                        9.3    largest seen 0.21 d
 //   small rig on the report's soil, E 6.2       74   none    0, 0                        2.0    failed after 0.2 s

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <utility>
 #include <vector>
 
 #include "nodes/scenario/estimate.hpp"
@@ -22,13 +21,13 @@ namespace furrow::scenario {
 namespace {
 
 // Factors from measured runs over the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
-constexpr double kLargeBed = 1.8;      // a grain-step of a bed that is settled or rolled on
+constexpr double kLargeBed = 2.1;      // a grain-step of a bed that is settled or rolled on
 constexpr double kPackings = 2.5;      // number of beds until one has the wanted solid fraction, and their sample
 constexpr double kOnSoil = 1.2;        // a step of a tire
 constexpr double kDouble = 1.5;        // a grain-step in double precision over one in mixed
 constexpr double kSettling = 0.6;      // simulated time in which a new bed settles, s
 constexpr double kJoints = 0.15;       // settling of joints between tiles, as if all grains were awake
-constexpr double kAwake = 1.6;         // tire radii before and behind an axle within which grains are awake
+constexpr double kAwake = 2.0;         // tire radii around an axle within which grains are awake
 constexpr double kMeshExponent = 1.1;  // of a tire's step time over its unknowns
 constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
 constexpr double kMessages = 8e-5;     // for each tire, in its rank and the rig's: send, receive and write, s
@@ -44,27 +43,27 @@ constexpr double kByte = 2.5e-9;       // of either, s
 constexpr double kVertex = 8e-8;       // of a tire, in the terrain: finding its contacts, messages, s
 constexpr double kLatency = 5e-5;      // until a message is noticed, s
 constexpr int kPlaces = 9;             // along the axles' paths for the mean of the awake share
+constexpr int kCells = 100;            // of the ground either way for it
 
-/// Mean share of a bin's length that is near an axle.
-double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires, double length) {
+/// Mean share of the ground that is within reach of an axle. The sides of a narrow bin hold its grains.
+double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& tires,
+                   const terrain::dem::DemOptions& o) {
   const rigs::RigDescription rig = describe_rig(s, tires);
   FURROW_ASSERT(rig.wheels.size() == tires.size(), rig.wheels.size(), tires.size());
-  double sum = 0.0;
-  for (int place = 0; place < kPlaces; ++place) {
-    std::vector<std::pair<double, double>> near;
-    for (std::size_t k = 0; k < tires.size(); ++k) {
-      const double x = rig.wheels[k].from + (rig.wheels[k].to - rig.wheels[k].from) * place / (kPlaces - 1.0);
-      const double reach = kAwake * tires[k].radius;
-      near.emplace_back(std::max(0.0, x - reach), std::min(length, x + reach));
+  int near = 0;
+  for (int place = 0; place < kPlaces; ++place)
+    for (int i = 0; i < kCells * kCells; ++i) {
+      const double x = o.length * (i / kCells + 0.5) / kCells, y = o.width * ((i % kCells + 0.5) / kCells - 0.5);
+      for (std::size_t k = 0; k < tires.size(); ++k) {
+        const rigs::WheelDescription& wheel = rig.wheels[k];
+        const double axle = wheel.from + (wheel.to - wheel.from) * place / (kPlaces - 1.0);
+        const double reach = std::min(kAwake * tires[k].radius, o.width);
+        if (std::hypot(x - axle, y - wheel.lateral) > reach) continue;
+        ++near;
+        break;
+      }
     }
-    std::sort(near.begin(), near.end());
-    double until = 0.0;
-    for (const auto& [from, to] : near) {
-      sum += std::max(0.0, to - std::max(from, until));
-      until = std::max(until, to);
-    }
-  }
-  return std::clamp(sum / (kPlaces * length), 0.0, 1.0);
+  return static_cast<double>(near) / (kPlaces * kCells * kCells);
 }
 
 /// Grain-steps for settling the bed; 0 if it is in the cache.
@@ -132,7 +131,7 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
     const double settled = settling(o);
     t.bed_is_kept = settled == 0.0;
     t.bed = settled * grain / std::clamp(o.settle_threads, 1, t.cores);
-    if (o.activity && !s.terrain->describe().core_per_rank) t.awake = awake_share(s, tires, o.length);
+    if (o.activity && !s.terrain->describe().core_per_rank) t.awake = awake_share(s, tires, o);
     const GrainLoads loads = grain_loads(s);
     t.refined = loads.refined;
     const double steps = s.terrain_substeps * loads.parts;

@@ -3,9 +3,9 @@
 // A step takes as long as its slowest node, and at least the processor time of the step divided by the cores:
 //   T = max(max tires, terrain/threads, (Σ tires + terrain + messages)/cores) + latency.
 // Writing is added: each frame and checkpoint takes as long as its files, which the ranks write at the same time. The
-// terrain's time counts the grains awake: those within kAwake tire radii of an axle if strips may sleep. A terrain with
-// a core for each rank takes the time of one of them (terrain/liggghts/rank_cost.hpp). If contacts are expected to be
-// too hard for its step, the step is divided into parts (grain_loads.hpp).
+// terrain's time counts the grains awake: those near an axle if parcels may sleep. A terrain with a core for each rank
+// takes the time of one of them (terrain/liggghts/rank_cost.hpp). If contacts are expected to be too hard for its step,
+// the step is divided into parts (grain_loads.hpp).
 #pragma once
 
 #include "nodes/scenario/machine_speed.hpp"

@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kMegabyte = 1e6;
 
+const char* sinkage_by(const WheelScales::OnGrains& g) { return g.by_cone_index ? "cone index" : "bearing capacity"; }
+
 nlohmann::ordered_json scales_json(const WheelScales& w, const std::string& name) {
   nlohmann::ordered_json json;
   if (!name.empty()) json["name"] = name;
@@ -30,6 +32,7 @@ nlohmann::ordered_json scales_json(const WheelScales& w, const std::string& name
   json["width_in_grains"] = g.grains_wide;
   json["contact_length_in_grains"] = g.grains_long;
   json["expected_sinkage_m"] = g.sinkage;
+  json["sinkage_by"] = sinkage_by(g);
   json["bed_height_over_sinkage"] = json_number(g.depth_ratio);
   json["beside_m"] = g.beside ? nlohmann::ordered_json(*g.beside) : nlohmann::ordered_json(nullptr);
   json["ahead_at_end_m"] = g.ahead;
@@ -47,8 +50,8 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
     lines.emplace_back(
         "contact", fmt::format("about {} mm long at {} kPa, {} grains long, {} wide", digits(1e3 * g.contact_length),
                                digits(1e-3 * g.pressure), digits(g.grains_long), digits(g.grains_wide)));
-    lines.emplace_back("sinkage", fmt::format("about {} mm by bearing capacity; the bed is {} times as deep",
-                                              digits(1e3 * g.sinkage), digits(g.depth_ratio)));
+    lines.emplace_back("sinkage", fmt::format("about {} mm by {}; the bed is {} times as deep", digits(1e3 * g.sinkage),
+                                              sinkage_by(g), digits(g.depth_ratio)));
     lines.emplace_back("walls", fmt::format("{}, {} m ahead of the wheel at the {}",
                                             g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside",
                                             digits(g.ahead), travels ? "end" : "start"));

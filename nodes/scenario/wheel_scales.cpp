@@ -27,6 +27,7 @@ constexpr double kRough = 0.5;  // friction beyond which the angle does not grow
 constexpr double kFallen = 0.585, kFallenOfRolling = 0.075, kSmooth = 0.65;
 constexpr double kAngleOfPacking = 110.0 * std::numbers::pi / 180.0;  // per solid fraction
 constexpr double kShearBand = 10.0;                                   // grain diameters
+constexpr double kConeDepth = 0.15;     // over which a cone index is the mean, m: a narrow wheel feels less of the soil
 constexpr double kTimesToSettle = 4.0;  // z/v: F grows with depth while the damper lowers the wheel
 // μ(I) = μ_s + (μ_2 − μ_s)/(1 + I_0/I) [Jop, Forterre & Pouliquen 2006, doi:10.1038/nature04801].
 constexpr double kStatic = 0.38, kFast = 0.64, kInertial0 = 0.279;
@@ -85,6 +86,19 @@ double sinkage_of(const Strength& s, double load, double radius, double width) {
   return high;
 }
 
+double slip_of(const rigs::WheelDescription& wheel) {
+  const double tread = std::abs(wheel.tread_speed);
+  return tread > 0.0 ? std::max(0.0, 1.0 - std::abs(wheel.speed) / tread) : 0.0;
+}
+
+/// √(z/d) = 1/B_n + s/(2 √B_n); at most one radius.
+double sinkage_by_cone(double cone_index, double load, double radius, double width, double slip) {
+  FURROW_ASSERT(cone_index > 0.0, cone_index);
+  const double d = 2.0 * radius, number = cone_index * width * d / load / (1.0 + 3.0 * width / d),
+               slope = 1.0 / number + 0.5 * slip / std::sqrt(number);
+  return std::clamp(d * slope * slope, 1e-9 * radius, radius);
+}
+
 /// Distance to which a footing of this length moves the soil in front of it: Prandtl's mechanism.
 double reach_of_failure(double angle, double length) {
   return length * std::tan(0.25 * std::numbers::pi + 0.5 * angle) * std::exp(0.5 * std::numbers::pi * std::tan(angle));
@@ -95,7 +109,9 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
   const Strength soil = strength_of(o);
   const double diameter = 2.0 * o.radius, width = tire.tread_width;
   WheelScales::OnGrains g;
-  g.sinkage = sinkage_of(soil, load, tire.radius, width);
+  g.by_cone_index = o.cone_index > 0.0 && !s.terrain->describe().cohesive && tire.width >= kConeDepth;
+  g.sinkage = g.by_cone_index ? sinkage_by_cone(o.cone_index, load, tire.radius, tire.width, slip_of(wheel))
+                              : sinkage_of(soil, load, tire.radius, width);
   g.contact_length = contact_length(tire.radius, g.sinkage);
   g.pressure = load / (width * g.contact_length);
   g.grains_wide = width / diameter;

@@ -2,8 +2,18 @@
 // model is made. These figures separate a result from an artefact of the bin. They are estimates, only for `furrow
 // validate`.
 //
-// Sinkage z of a rigid wheel (R, b, W) from a strip footing's bearing capacity [Terzaghi 1943; N_γ of Vesić 1973]:
-//   W = b ℓ (c N_c + γ z N_q + ½ γ min(b, ℓ) N_γ),   ℓ = √(2 R z), the contact in front of the axle
+// Sinkage z of a rigid wheel (R, b, W, d = 2 R) that slips by s.
+//
+// On sand of known cone index CI, the mean over the upper 0.15 m, under a wheel at least as wide, it follows from the
+// motion resistance of rigid wheels [Brixius 1987]. A uniform pressure on the contact in front of the axle, of length
+// ℓ = √(2 R z), has a resultant of slope z/ℓ = √(z/d), so
+//   √(z/d) = 1/B_n + s/(2 √B_n),   B_n = CI b d/W / (1 + 3 b/d)
+// The regression is for loam. On LETE sand (340 kPa, 4.6 kN) it gives 8, 11, 19, 28 and 38 mm at a slip of 0, 0.1, 0.3,
+// 0.5 and 0.7, where runs sank by 0, 4, 14, 28 and 48 (tests/studies/lete_sand_slip.csv). There bearing capacity gives
+// 51 mm: it counts neither the dilation of a dense bed nor the size of its grains.
+//
+// Otherwise it follows from a strip footing's bearing capacity [Terzaghi 1943; N_γ of Vesić 1973]:
+//   W = b ℓ (c N_c + γ z N_q + ½ γ min(b, ℓ) N_γ)
 // with the strength that soil tests of this program found for its grains: φ = 26° (26.5 ± 1.0° at friction 0.9, 26.8 ±
 // 0.7° at 0.5 with rolling friction 0.2, 34 ± 2° with 0.5), c = 0.08 × the contact cohesion (6.8 ± 1.4 kPa at 80 kPa).
 // A denser bed is stronger: 30.2 ± 1.6° at a solid fraction of 0.6 with friction 0.5 and rolling friction 0.1; such
@@ -11,7 +21,8 @@
 // Compared with runs of the reference wheel, 4.6 kN: 15 mm at 80 kPa (runs: 15 to 20 mm, 30 mm on a bed twice as deep),
 // 42 mm at 40 kPa (35), 80 mm at 20 kPa (77 on a deep bed).
 //
-// [Terzaghi 1943] Theoretical Soil Mechanics, ch. 8. [Vesić 1973] J. Soil Mech. Found. Div. ASCE 99(1), 45–73.
+// [Brixius 1987] ASAE Paper 87-1622. [Terzaghi 1943] Theoretical Soil Mechanics, ch. 8. [Vesić 1973] J. Soil Mech.
+// Found. Div. ASCE 99(1), 45–73.
 #pragma once
 
 #include <limits>
@@ -30,6 +41,7 @@ struct WheelScales {
 
   struct OnGrains {
     double sinkage = 0.0;          // z, m
+    bool by_cone_index = false;    // it follows from the soil's cone index
     double contact_length = 0.0;   // ℓ, m
     double pressure = 0.0;         // W/(b ℓ), Pa
     double grains_wide = 0.0;      // tread width in grain diameters

@@ -185,9 +185,9 @@ TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {
 
 TEST(Scales, sinkage_by_bearing_capacity_is_near_that_of_the_runs) {
   const auto sinkage = [](const char* cohesion, const char* carrier) {
-    const scenario::Scenario s =
-        scenario::load_scenario(data_folder() / "rigs" / "drawbar_pull_small_report_soil.json",
-                                {{"terrain.cohesion", cohesion}, {"rig.carrier_mass", carrier}});
+    const scenario::Scenario s = scenario::load_scenario(
+        data_folder() / "rigs" / "drawbar_pull_small_report_soil.json",
+        {{"terrain.cohesion", cohesion}, {"rig.carrier_mass", carrier}, {"terrain.cone_index", "null"}});
     return scenario::wheel_scales(s).front().grains->sinkage;
   };
   // At slip 0.3: 20, 35 and, on a deep bed, 77 mm (tests/studies/slip_passes.md); 33 mm with twice the load (f06f6f2).
@@ -197,13 +197,35 @@ TEST(Scales, sinkage_by_bearing_capacity_is_near_that_of_the_runs) {
   EXPECT_NEAR(sinkage("80e3", "900") / 0.033, 1.0, 0.6);
 }
 
+/// Runs at slip 0.1, 0.3, 0.5 and 0.7 sank by 4, 14, 28 and 48 mm (tests/studies/lete_sand_slip.csv).
+/// By hand, with d = 0.9346 m and the tire's width: √(z/d) = 1/B_n + s/(2 √B_n).
+TEST(Scales, sinkage_by_cone_index_is_that_of_brixius_and_near_that_of_the_runs) {
+  const auto sinkage = [](const char* slip, const char* index = "340e3", const char* cohesion = "7444") {
+    const scenario::Scenario s =
+        scenario::load_scenario(data_folder() / "rigs" / "drawbar_pull_small.json",
+                                {{"rig.slip", slip}, {"terrain.cone_index", index}, {"terrain.cohesion", cohesion}});
+    const scenario::WheelScales w = scenario::wheel_scales(s).front();
+    const double d = 0.9346, b = s.tires[0]->describe().width, soft = std::sqrt(w.grains->sinkage / d),
+                 number = std::stod(index) * b * d / w.load / (1.0 + 3.0 * b / d);
+    if (w.grains->by_cone_index) {
+      EXPECT_NEAR(soft, 1.0 / number + 0.5 * std::stod(slip) / std::sqrt(number), 1e-6);
+    }
+    return w.grains->sinkage;
+  };
+  EXPECT_NEAR(sinkage("0.3") / 0.0147, 1.0, 0.3);
+  EXPECT_NEAR(sinkage("0.5") / 0.028, 1.0, 0.3);
+  EXPECT_NEAR(sinkage("0.7") / 0.048, 1.0, 0.4);
+  EXPECT_NEAR(sinkage("0.3", "170e3") / sinkage("0.3"), 3.0, 0.3);
+  EXPECT_EQ(sinkage("0.3", "340e3", "80e3"), sinkage("0.3", "170e3", "80e3"));  // of cohesive soil it is not used
+}
+
 TEST(Scales, a_report_for_programs_holds_them_for_each_wheel) {
   const auto report =
       scenario::validation_report(scenario::load_scenario(data_folder() / "rigs" / "four_wheels.json", {}));
   ASSERT_EQ(report["wheels"].size(), 4U);
   for (const char* key :
        {"load_N", "contact_pressure_Pa", "width_in_grains", "contact_length_in_grains", "expected_sinkage_m",
-        "bed_height_over_sinkage", "beside_m", "ahead_at_end_m", "froude_number", "inertial_number"})
+        "sinkage_by", "bed_height_over_sinkage", "beside_m", "ahead_at_end_m", "froude_number", "inertial_number"})
     EXPECT_TRUE(report["wheels"][3].contains(key)) << key;
   EXPECT_NEAR(report["wheels"][3]["load_N"].get<double>() - report["wheels"][0]["load_N"].get<double>(), 500.0 * 9.81,
               1e-9);

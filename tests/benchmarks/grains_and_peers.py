@@ -123,6 +123,21 @@ def run_furrow(law, cohesion, precision, bed, threads, steps, *more):
     return bench_grains(bed, law, threads, steps, WARM, "--cohesion", cohesion, "--precision", precision, *more)
 
 
+def settle(bed, threads, folder):
+    """Leaves in `folder` what measure() needs: the positions of a bed for the peers, and settled by furrow's laws."""
+    with open(bed) as file:
+        write_data([tuple(float(row[f"{axis}_m"]) for axis in "xyz") for row in csv.DictReader(file)],
+                   folder / "bed.data")
+    for law, cohesion, precision in list(FURROW.values())[:2]:
+        run_furrow(law, cohesion, precision, bed, threads, 1, "--settle", "0.3", "--save-bed", folder / f"{law}.csv")
+
+
+def measure(case, threads, steps, folder):
+    if case in PEERS:
+        return run_peer(*PEERS[case], threads, steps, folder)
+    return run_furrow(*FURROW[case], folder / f"{FURROW[case][0]}.csv", threads, steps)
+
+
 def options(doc, **more):
     """The beds and tables of this script and of grains_scaling.py."""
     parser = driver.options(doc, **more)
@@ -135,18 +150,12 @@ def main():
     arguments = options(__doc__, threads={"type": int, "default": 2}, steps={"type": int, "default": 1000},
                         rounds={"type": int, "default": 3})
     n, steps, results = arguments.threads, arguments.steps, {case: [] for case in CASES}
-    with open(arguments.bed) as file:
-        positions = [(float(r["x_m"]), float(r["y_m"]), float(r["z_m"])) for r in csv.DictReader(file)]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        write_data(positions, folder / "bed.data")
-        for law, cohesion, precision in list(FURROW.values())[:2]:
-            run_furrow(law, cohesion, precision, arguments.bed, n, 1, "--settle", "0.3", "--save-bed",
-                       folder / f"{law}.csv")
+        settle(arguments.bed, n, folder)
         for k in range(arguments.rounds):
             for case in CASES:
-                results[case].append(run_peer(*PEERS[case], n, steps, folder) if case in PEERS else
-                                     run_furrow(*FURROW[case], folder / f"{FURROW[case][0]}.csv", n, steps))
+                results[case].append(measure(case, n, steps, folder))
                 print(f"round {k + 1}: {case}: {results[case][-1]['grain_steps_per_s']:.3g} grain-steps/s", flush=True)
     median = {case: statistics.median(r["grain_steps_per_s"] for r in runs) for case, runs in results.items()}
     rows = []

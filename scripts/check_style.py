@@ -17,7 +17,7 @@ from check_includes import sources, width_problems
 
 LETTERS = 72
 SOURCE = re.compile(r"(\.(cpp|hpp|py|sh|cmake|mjs|js|css)|CMakeLists\.txt|\.ci/run)$")
-MADE = ("scripts/report/bundle/",)  # by scripts/report/build.sh
+MADE = ("scripts/python/furrow/page/bundle/",)  # by scripts/report/build.sh
 SUBJECT = re.compile(r"[\w./*-]+(, [\w./*-]+)*: \S|Revert \"")
 SELF = "scripts/check_style.py"
 

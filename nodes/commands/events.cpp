@@ -1,4 +1,4 @@
-// `furrow events`: the events of a vehicle's run, listed by scripts/events.py.
+// `furrow events`: the events of a vehicle's run, listed by scripts/python/furrow/events.py.
 #include <sys/wait.h>
 
 #include <iostream>
@@ -24,7 +24,7 @@ struct EventsArguments {
 ExitCode list_events(const EventsArguments& arguments) {
   launch::require_run_directory(arguments.directory);
   launch::require_plain_files(arguments.directory);
-  PythonScript script{.name = "events.py", .folders = {arguments.directory}, .what = "the table of events"};
+  PythonScript script{.name = "events", .folders = {arguments.directory}, .what = "the table of events"};
   if (arguments.from) script.arguments.push_back(fmt::format("--from={}", *arguments.from));
   if (arguments.to) script.arguments.push_back(fmt::format("--to={}", *arguments.to));
   if (arguments.json) script.arguments.emplace_back("--json");

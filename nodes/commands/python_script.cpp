@@ -99,19 +99,19 @@ Finished run_program(std::vector<std::string> command, const PythonScript& scrip
 }  // namespace
 
 Finished run_python(const PythonScript& script) {
-  const std::filesystem::path path = data_folder() / "scripts" / script.name;
+  const std::filesystem::path path = data_folder() / "scripts/python/furrow/__main__.py";
   if (access(kPython, X_OK) != 0)
     throw io_error(kPython, "is missing, expected Debian's python3 with python3-matplotlib and python3-h5py");
   if (access(path.c_str(), R_OK) != 0)
     throw io_error(
         path.string(),
-        fmt::format("is missing, expected the script that makes {} (FURROW_HOME names the folder that holds scripts/)",
+        fmt::format("is missing, expected the program that makes {} (FURROW_HOME names the folder that holds scripts/)",
                     script.what));
   if (const MemoryLimit limit = address_space_limit(); limit.bytes < script.address_space)
     throw limit_error(fmt::format("{}: {} need {:.0f} MB of memory, limit {:.0f} MB ({})",
                                   script.folders.front().string(), script.what, script.address_space / 1e6,
                                   limit.bytes / 1e6, limit.name));
-  std::vector<std::string> command{kPython, "-I", path.string()};
+  std::vector<std::string> command{kPython, "-I", path.string(), script.name};
   command.insert(command.end(), script.arguments.begin(), script.arguments.end());
   if (script.progress && script.message) command.emplace_back("--progress");
   command.emplace_back("--");

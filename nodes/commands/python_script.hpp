@@ -1,5 +1,5 @@
-// Runs scripts of scripts/ with Debian's own Python, whatever python is first on PATH. It is isolated (-I) from Python
-// settings in the user's environment and folders.
+// Runs modules of scripts/python/furrow with Debian's own Python, whatever python is first on PATH. It is isolated (-I)
+// from Python settings in the user's environment and folders.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 namespace furrow::commands {
 
 struct PythonScript {
-  std::string name;                            // in scripts/
+  std::string name;                            // of the module: "report"
   std::vector<std::string> arguments = {};     // options; the folders follow them
   std::vector<std::filesystem::path> folders;  // to read; messages name the first
   std::string what;                            // its product, for errors: "plots"

@@ -1,4 +1,4 @@
-// Makes the plots of a run and its page, or a page that compares several runs, with scripts/report.py.
+// Makes the plots of a run and its page, or a page that compares several runs, with scripts/python/furrow/report.py.
 #include <sys/wait.h>
 
 #include <chrono>
@@ -59,7 +59,7 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
   const std::filesystem::path& run = report.runs.front();
   if (std::filesystem::exists(report.out) && !is_directory(report.out))
     throw input_error(report.out.string(), "", "is a file, expected a folder");
-  PythonScript script{.name = "report.py",
+  PythonScript script{.name = "report",
                       .folders = report.runs,
                       .what = "plots",
                       .quiet = report.unasked,
@@ -95,7 +95,7 @@ std::vector<std::filesystem::path> make_report(const ReportArguments& report) {
 /// @returns its exit code; the script has reported any error. @throws Error
 ExitCode write_vtk(const std::filesystem::path& run, const std::filesystem::path& folder) {
   PythonScript script{
-      .name = "frames_vtk.py", .arguments = {"--out", folder.string()}, .folders = {run}, .what = "VTP files"};
+      .name = "frames_vtk", .arguments = {"--out", folder.string()}, .folders = {run}, .what = "VTP files"};
   launch::ProgressDisplay display;
   show_progress(script, display, "writing the frames", false);
   const Finished finished = run_python(script);

@@ -27,15 +27,10 @@ foreach(_folder rigs tire/data terrain/data vehicle/data)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${_folder}/ DESTINATION share/furrow/${_folder} FILES_MATCHING PATTERN "*.json"
     PATTERN "*.csv")
 endforeach()
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/plot DESTINATION share/furrow/scripts FILES_MATCHING PATTERN "*.py"
-  PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/report/page ${CMAKE_SOURCE_DIR}/scripts/report/bundle
-  DESTINATION share/furrow/scripts/report PATTERN __pycache__ EXCLUDE)
-install(PROGRAMS ${CMAKE_SOURCE_DIR}/scripts/report.py ${CMAKE_SOURCE_DIR}/scripts/events.py
-  ${CMAKE_SOURCE_DIR}/scripts/frames_vtk.py DESTINATION share/furrow/scripts)
-# The Python package, and a link to it from where Debian's Python looks if the prefix is /usr.
+# The Python package, which also draws plots and pages, and a link to it from where Debian's Python looks if the prefix
+# is /usr.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scripts/python/furrow DESTINATION share/furrow/scripts/python
-  FILES_MATCHING PATTERN "*.py" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+  PATTERN "*.md" EXCLUDE PATTERN __pycache__ EXCLUDE)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
 file(CREATE_LINK ../../../share/furrow/scripts/python/furrow ${CMAKE_BINARY_DIR}/package/furrow SYMBOLIC)
 install(FILES ${CMAKE_BINARY_DIR}/package/furrow DESTINATION lib/python3/dist-packages)

@@ -27,5 +27,5 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/package/copyright DESTINATION share/doc/
 set(CPACK_SOURCE_GENERATOR TXZ)
 set(CPACK_SOURCE_PACKAGE_FILE_NAME furrow-${PROJECT_VERSION})
 set(CPACK_SOURCE_IGNORE_FILES "/\\.git/" "/build[^/]*/" "^${CMAKE_SOURCE_DIR}/results/" "__pycache__" "\\.tar\\.xz$"
-  "/node_modules/")
+  "/node_modules/" "\\.egg-info/")
 include(CPack)

@@ -23,10 +23,9 @@ import h5py
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
 
-import events  # noqa: E402
-import report  # noqa: E402
+from furrow import events, report  # noqa: E402
 
 ODD = [None, True, False, 0, -1, 3, 1e308, -1e-320, 10 ** 400, float("nan"), float("inf"), "", "x", "\x1b[31m",
        "ü" * 50, [], [1], [[]], {}, {"a": 1}, ["x"], [None], [{}]]

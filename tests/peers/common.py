@@ -13,7 +13,7 @@ import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests" / "studies")]
+sys.path[:0] = [str(ROOT / "scripts" / "python"), str(ROOT / "tests" / "studies")]
 import driver  # noqa: E402, F401
 import provenance  # noqa: E402
 

@@ -13,8 +13,8 @@ import pathlib
 import numpy
 
 from common import RADIUS, driver, origin, provenance, read_series
-from plot import style
-from plot.student import half_interval, student
+from furrow.plot import style
+from furrow.plot.student import half_interval, student
 
 ENGINES = ("furrow", "liggghts")
 COLUMNS = ["test", "quantity", "unit", "furrow", "furrow_ci95", "liggghts", "liggghts_ci95", "difference",

@@ -21,7 +21,7 @@ import driver
 import provenance
 import run_study
 from driver import over_beds, value_of
-from plot.student import student
+from furrow.plot.student import student
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
 COLUMNS = ("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.n_eff", "drawbar_pull_N.steady", "sinkage_m",

@@ -27,7 +27,7 @@ import json
 import numpy as np
 
 import driver
-import plot.style as style
+from furrow.plot import style
 import provenance
 from driver import ROOT, read_json
 

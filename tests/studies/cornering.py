@@ -22,7 +22,7 @@ import numpy as np
 import driver
 import provenance
 from driver import HERE, read_json, value_of
-from plot.student import student
+from furrow.plot.student import student
 
 RESULTS = driver.ROOT / "results"
 SWEEPS = {"study_slip_angle": "rig.toe_angle", "study_camber": "rig.camber_angle", "study_hard_slip": "rig.slip"}

@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 
 import driver
-import plot.style as style
+from furrow.plot import style
 import provenance
 from driver import ROOT, read_json
 

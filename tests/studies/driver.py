@@ -15,7 +15,7 @@ import time
 import provenance
 from provenance import HERE, RECORD, ROOT, read_json
 
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
 RESULTS = ROOT / "results" / "studies"
 
 
@@ -196,7 +196,7 @@ def over_beds(values):
     """(mean, half of its 95 % interval [Student's t])"""
     import statistics
 
-    from plot.student import half_interval
+    from furrow.plot.student import half_interval
     return statistics.mean(values), half_interval(values)
 
 
@@ -205,7 +205,7 @@ def subplots(*sizes, **more):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    import plot.style  # noqa: F401
+    from furrow.plot import style  # noqa: F401
     return plt.subplots(*sizes, **more)
 
 

@@ -22,11 +22,11 @@ run, of what lies below 20 Hz, from 1.5 s after the road begins.
 import numpy as np
 
 import driver
-import plot.style as style
+from furrow.plot import style
 import provenance
 from cleat_roll import stiffness_of
 from curb import TIRE_DAMPER
-from plot.ride_values import ride_values
+from furrow.plot.ride_values import ride_values
 
 RESULTS = driver.RESULTS / "ride_transfer"
 GRAVITY = 9.80665

@@ -13,7 +13,7 @@ import numpy as np
 import driver
 import provenance
 from driver import HERE, RESULTS, read_json
-from plot.style import BLUE, ORANGE
+from furrow.plot.style import BLUE, ORANGE
 from ring_targets import PLATE
 
 
@@ -68,8 +68,8 @@ def write_pressure(result, made):
 
 
 def draw(shell, ring):
-    from plot.calibrate import Calibration
-    from plot.soil import COLOURS
+    from furrow.plot.calibrate import Calibration
+    from furrow.plot.soil import COLOURS
     figure, (curves, pressure) = driver.subplots(1, 2, figsize=(11, 4.6))
     for k, target in enumerate(Calibration(RESULTS / "ring_protocol").targets()):
         look = {"color": COLOURS[k % len(COLOURS)]}

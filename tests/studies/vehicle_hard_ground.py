@@ -25,7 +25,7 @@ import numpy as np
 import driver
 import provenance
 from driver import ROOT, read_json, series
-from plot.gear_balance import Driveline
+from furrow.plot.gear_balance import Driveline
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
 RPM = math.pi / 30.0

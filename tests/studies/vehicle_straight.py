@@ -20,9 +20,9 @@ import numpy as np
 
 import driver
 import provenance
-from plot import axles, events, gear_balance
-from plot.run_data import Run
-from plot.vehicle_run import VehicleRun, running_mean
+from furrow.plot import axles, events, gear_balance
+from furrow.plot.run_data import Run
+from furrow.plot.vehicle_run import VehicleRun, running_mean
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
 INTERVAL = 0.02  # s, of the thinned series

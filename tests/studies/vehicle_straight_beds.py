@@ -15,9 +15,9 @@ import pathlib
 
 import driver
 import provenance
-from plot import axles, events
-from plot.run_data import Run
-from plot.vehicle_run import VehicleRun
+from furrow.plot import axles, events
+from furrow.plot.run_data import Run
+from furrow.plot.vehicle_run import VehicleRun
 
 STUDY = pathlib.Path(__file__).with_suffix(".json")
 AXLES, EVENTS_OF_FIRST = (driver.HERE / f"vehicle_straight_{name}.csv" for name in ("axles", "events"))

@@ -11,7 +11,7 @@ import numpy as np
 from program import PROGRAM, ROOT, SystemTest, changed, furrow, main, write_json, write_scenario
 
 ENOUGH = 2 << 30  # bytes of address space; a bomb asks for more
-REPORT = ROOT / "scripts" / "report.py"
+PACKAGE = ROOT / "scripts" / "python" / "furrow"
 
 
 def positions(file, name="position"):
@@ -71,7 +71,7 @@ class Beds(SystemTest):
 
 
 class Reports(SystemTest):
-    """What scripts/report.py says of results that are none; it is what `furrow report` runs."""
+    """What python3 -m furrow report says of results that are none; it is what `furrow report` runs."""
 
     def setUp(self):
         super().setUp()
@@ -88,7 +88,7 @@ class Reports(SystemTest):
         write_json(self.run / "summary.json", {**usual, **values})
 
     def report(self, *arguments, **expected):
-        done = subprocess.run(["/usr/bin/python3", str(REPORT), str(self.run), *arguments],
+        done = subprocess.run(["/usr/bin/python3", PACKAGE, "report", str(self.run), *arguments],
                               capture_output=True, text=True, timeout=120,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 * ENOUGH, 2 * ENOUGH)),
                               env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})

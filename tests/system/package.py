@@ -53,7 +53,7 @@ class Package(SystemTest):
                          "what links LIGGGHTS is under the GPL and a component of its own")
         for name in ("furrow/rigs/README.md", "furrow/nodes/output/README.md",
                      "furrow/GLOSSARY.md", "man/man1/furrow.1", "bash-completion/completions/furrow",
-                     "furrow/scripts/report/bundle/LICENSES.txt"):
+                     "furrow/scripts/python/furrow/page/bundle/LICENSES.txt"):
             self.assertTrue((usr / "share" / name).is_file(), name)
         write_scenario(self.folder)
         self.run_here(usr / "bin/furrow", "run", "small.json", "--out", "out", "--set", "terrain.engine=rigid", "--set",

@@ -58,8 +58,8 @@ class Quiet(SystemTest):
         shares = [int(share) for share in re.findall(r"furrow: plotting (\d+) %", text)]
         self.assertGreater(len(shares), 1, text)
         self.assertEqual(shares, sorted(shares))
-        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "frames_vtk.py", "--out", "more",
-                               "--progress", "out"], cwd=self.folder, text=True, capture_output=True)
+        done = subprocess.run(["/usr/bin/python3", "-B", ROOT / "scripts" / "python" / "furrow", "frames_vtk", "--out",
+                               "more", "--progress", "out"], cwd=self.folder, text=True, capture_output=True)
         shares = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("progress ")]
         self.assertEqual((len(shares), shares[0], shares), (6, 0.0, sorted(shares)), done)
         self.assertRegex(text, r"plotting \d+ %   \d+:\d\d left")

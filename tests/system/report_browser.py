@@ -20,7 +20,7 @@ import unittest
 
 import report_page
 from report_page import page
-from plot.run_data import Run
+from furrow.plot.run_data import Run
 from program import ROOT, SystemTest
 
 FLAGS = ("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",

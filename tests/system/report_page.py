@@ -15,14 +15,14 @@ import numpy as np
 
 from program import ROOT, SystemTest, main, read_json, write_json, write_scenario
 
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "report")]
-import page  # noqa: E402
-from page import frames  # noqa: E402
-from page.blobs import Arrays, thin  # noqa: E402
-from plot import own_files  # noqa: E402
-from plot.press import Press  # noqa: E402
-from plot.run_data import Run  # noqa: E402
-from plot.sweep import Sweep  # noqa: E402
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from furrow import page  # noqa: E402
+from furrow.page import frames  # noqa: E402
+from furrow.page.blobs import Arrays, thin  # noqa: E402
+from furrow.plot import own_files  # noqa: E402
+from furrow.plot.press import Press  # noqa: E402
+from furrow.plot.run_data import Run  # noqa: E402
+from furrow.plot.sweep import Sweep  # noqa: E402
 
 FRAMES, GRAINS, STEP = 5, 900, 0.05
 RADIUS = 0.02

@@ -5,8 +5,8 @@ import unittest
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-from plot import ride_values as ride  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "python"))
+from furrow.plot import ride_values as ride  # noqa: E402
 
 # ISO 2631-1:1997, table 3: third-octave centre (Hz) and W_k × 1000.
 TABLE = {0.5: 418, 0.63: 459, 0.8: 477, 1.0: 482, 1.25: 484, 1.6: 494, 2.0: 531, 2.5: 631, 3.15: 804, 4.0: 967,

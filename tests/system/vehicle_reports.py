@@ -12,9 +12,9 @@ import numpy as np
 from program import ROOT, SystemTest, furrow, main, read_json, write_json
 from report_page import document
 
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
 
-from plot.statistics import statistics  # noqa: E402
+from furrow.plot.statistics import statistics  # noqa: E402
 
 RADIUS, SURFACE, BASE, TRACK = 0.4673, 0.2, 3.3, 0.91  # m
 LOADS = [6250.0, 6250.0, 5870.0, 5870.0]

@@ -10,35 +10,36 @@ Old results are opened by furrow.open(folder). See scripts/python/README.md.
 """
 from __future__ import annotations
 
-import pathlib
-from types import ModuleType
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from . import _needs  # noqa: F401  first: it names the packages that are missing
-
-# The folder scripts/: furrow.plot is scripts/plot, whose readers and plots `furrow report` uses as well.
-__path__.append(str(pathlib.Path(__file__).resolve().parents[2]))
-
-from .commands import calibrate, kc, modes, press, resume, run, soil, sweep
-from .errors import (BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, ProgramFault, RankLost,
-                     Stopped)
-from .opening import Opened, open
-from .plot.frames import Frame, Frames, GrainFrame, TireFrame
-from .plot.run_data import Damaged, Missing
-from .runs import Run
-from .studies import Study
-from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
+if TYPE_CHECKING:
+    from . import plots
+    from .commands import calibrate, kc, modes, press, resume, run, soil, sweep
+    from .errors import (BadInput, FurrowError, InputOutputError, LimitReached, PhysicsFailed, ProgramFault, RankLost,
+                         Stopped)
+    from .opening import Opened, open
+    from .plot.frames import Frame, Frames, GrainFrame, TireFrame
+    from .plot.run_data import Damaged, Missing
+    from .runs import Run
+    from .studies import Study
+    from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
 __all__ = ["BadInput", "Calibration", "Damaged", "Frame", "Frames", "FurrowError", "GrainFrame", "InputOutputError",
            "Kinematics", "LimitReached", "Missing", "Modes", "Opened", "PhysicsFailed", "Press", "ProgramFault",
            "RankLost", "Run", "Soil", "Stopped", "Study", "TireFrame", "calibrate", "kc", "modes", "open", "plots",
            "press", "resume", "run", "soil", "sweep"]
 
-Missing.__module__ = Damaged.__module__ = __name__  # where a user finds them
 
-
-def __getattr__(name: str) -> ModuleType:
-    """furrow.plots, which needs matplotlib, is loaded when it is first used."""
+def __getattr__(name: str) -> Any:
+    """Names are loaded when they are first used: `furrow report` needs no pandas, and `furrow.run` no matplotlib."""
+    if name not in __all__:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    import_module("._needs", __name__)  # first: it names the packages that are missing
     if name == "plots":
-        import importlib
-        return importlib.import_module(f"{__name__}.plots")
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+        return import_module(".plots", __name__)
+    for home in ("commands", "errors", "opening", "plot.frames", "plot.run_data"):
+        if name in vars(module := import_module(f".{home}", __name__)):
+            globals()[name] = value = getattr(module, name)
+            return value
+    raise AssertionError(name)

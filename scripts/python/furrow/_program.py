@@ -15,10 +15,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import IO, Any, TypeAlias
 
+from ._home import AROUND
 from ._settings import as_json
 from .errors import FurrowError, error_of
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
 File: TypeAlias = str | os.PathLike[str]
 Content: TypeAlias = Mapping[str, Any]
 KEPT = 40  # last lines of the program, for a message when it gives none of its own
@@ -28,7 +28,7 @@ def program() -> str:
     """The program that is run: what FURROW names, else this checkout's scripts/furrow, which builds it if needed, else
     the installed tree's bin/furrow, else `furrow` on PATH. Raises FileNotFoundError."""
     named = os.environ.get("FURROW")
-    places = (ROOT / "scripts" / "furrow", ROOT.parent.parent / "bin" / "furrow")
+    places = (AROUND / "scripts" / "furrow", AROUND.parent.parent / "bin" / "furrow")
     found = named or next((str(place) for place in places if os.access(place, os.X_OK)), shutil.which("furrow"))
     if not found:
         raise FileNotFoundError("furrow is not found: set FURROW to the program")

@@ -6,7 +6,8 @@ import pathlib
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from ._program import Content, File, as_file, call, named_file, ROOT
+from ._home import home
+from ._program import Content, File, as_file, call, named_file
 from ._settings import arguments
 from .opening import open
 from .runs import Run
@@ -67,7 +68,7 @@ def _study(content: Content) -> Content:
     if not isinstance(named, str):
         return content
     path = named_file(named)
-    shipped = ROOT / "rigs" / path
+    shipped = home() / "rigs" / path
     return {**content, "scenario": str(path.absolute() if path.exists() or not shipped.exists() else shipped)}
 
 
@@ -82,8 +83,8 @@ def sweep(study: File | Content, *, out: File | None = None, jobs: int = 1, prog
     Raises a FurrowError if a run of it failed; the folder of the error can be opened.
     """
     with as_file(_study(study) if isinstance(study, Mapping) else study, "study") as path:
-        if path.parent == pathlib.Path(".") and not path.exists() and (ROOT / "rigs" / path).exists():
-            path = ROOT / "rigs" / path
+        if path.parent == pathlib.Path(".") and not path.exists() and (home() / "rigs" / path).exists():
+            path = home() / "rigs" / path
         return _call(Study, "sweep", path, _options(out, jobs=jobs), progress)
 
 

@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 from PIL import Image
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[2] / "scripts"))
-from plot import style  # noqa: E402
+sys.path.insert(0, str(HERE.parents[2] / "scripts" / "python"))
+from furrow.plot import style  # noqa: E402
 
 COLOURS = [style.SKY, style.ORANGE, style.BLUE]
 

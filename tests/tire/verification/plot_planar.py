@@ -15,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 sys.path.insert(0, str(HERE.parents[1] / "studies"))
 from plot_curves import save  # noqa: E402
-from plot import style  # noqa: E402
+from furrow.plot import style  # noqa: E402
 import provenance  # noqa: E402
 
 COLOURS = [style.SKY, style.ORANGE, style.BLUE]

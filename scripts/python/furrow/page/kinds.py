@@ -1,11 +1,11 @@
 """Which page each kind of folder gets."""
-from plot.calibrate import Calibration
-from plot.kinematics import Kinematics
-from plot.modes import Modes
-from plot.press import Press
-from plot.run_data import Run
-from plot.soil import Soil
-from plot.sweep import Sweep
+from ..plot.calibrate import Calibration
+from ..plot.kinematics import Kinematics
+from ..plot.modes import Modes
+from ..plot.press import Press
+from ..plot.run_data import Run
+from ..plot.soil import Soil
+from ..plot.sweep import Sweep
 
 from . import calibration_page, compare, run_page, study_page, test_pages
 

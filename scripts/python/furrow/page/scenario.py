@@ -2,11 +2,11 @@
 import json
 import pathlib
 
-from plot.run_data import read_object
+from ..plot.run_data import read_object
 
 from . import blocks
 
-SCHEMA = pathlib.Path(__file__).resolve().parents[3] / "rigs" / "scenario.schema.json"
+SCHEMA = pathlib.Path(__file__).resolve().parent / "scenario.schema.json"
 MOST_ROWS = 600
 LONGEST = 160  # characters of a value
 

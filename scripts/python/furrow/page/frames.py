@@ -10,7 +10,7 @@ import re
 import h5py
 import numpy as np
 
-from plot.run_data import Damaged, Missing, table
+from ..plot.run_data import Damaged, Missing, table
 
 from .blobs import Stream, shuffled
 

@@ -20,6 +20,8 @@ class Damaged(ValueError):
     """A file in the run directory does not hold what it should."""
 
 
+Missing.__module__ = Damaged.__module__ = "furrow"  # where a user finds them
+
 # What damaged files may lead to.
 PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError,
             csv.Error, Missing)

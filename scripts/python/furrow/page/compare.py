@@ -1,9 +1,9 @@
 """Several runs on one page: their answers with intervals beside each other, and their curves laid over each other."""
 import numpy as np
 
-from plot.digits import digits
-from plot.run_data import Missing
-from plot.units import is_number, naming
+from ..plot.digits import digits
+from ..plot.run_data import Missing
+from ..plot.units import is_number, naming
 
 from . import blocks, curves, run_page, scenario
 

@@ -1,9 +1,9 @@
 """The pages of soil tests, of a pressed tire, of its frequencies and of a vehicle's suspensions."""
 import numpy as np
 
-from plot.run_data import Missing
-from plot.soil import runs
-from plot.units import is_number, naming
+from ..plot.run_data import Missing
+from ..plot.soil import runs
+from ..plot.units import is_number, naming
 
 from . import blocks, scenario
 
@@ -95,7 +95,7 @@ def soil_curves(soil, arrays):
 
 
 def kept_scenario(directory):
-    from plot.run_data import read_object
+    from ..plot.run_data import read_object
     path = directory / "scenario.json"
     return scenario.section(read_object(path)) if path.is_file() else None
 

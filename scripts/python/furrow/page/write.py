@@ -3,8 +3,8 @@ import json
 import pathlib
 import sys
 
-from plot.own_files import write_whole
-from plot.run_data import PROBLEMS, Missing, Run, in_words, printable, why_no_folder
+from ..plot.own_files import write_whole
+from ..plot.run_data import PROBLEMS, Missing, Run, in_words, printable, why_no_folder
 
 from . import kinds, run_page
 from .blobs import Arrays
@@ -12,7 +12,7 @@ from .playback import playback
 
 NAME = "report.html"
 LARGEST = 14.6e6  # bytes of a page
-BUNDLE = pathlib.Path(__file__).resolve().parents[1] / "bundle"
+BUNDLE = pathlib.Path(__file__).resolve().parent / "bundle"
 
 HEAD = """<!DOCTYPE html>
 <html lang="en">

@@ -1,8 +1,8 @@
 """The blocks that a page is made of; source/main.js draws each kind."""
-from plot.digits import digits, with_error
-from plot.run_data import printable
-from plot.student import student
-from plot.units import is_number, naming
+from ..plot.digits import digits, with_error
+from ..plot.run_data import printable
+from ..plot.student import student
+from ..plot.units import is_number, naming
 
 
 

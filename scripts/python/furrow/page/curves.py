@@ -1,8 +1,8 @@
 """Plots over time of a run's tables."""
 import numpy as np
 
-from plot.run_data import Missing
-from plot.units import naming
+from ..plot.run_data import Missing
+from ..plot.units import naming
 
 from . import blocks
 from .blobs import thin

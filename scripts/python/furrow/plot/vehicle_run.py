@@ -1,14 +1,13 @@
 """A vehicle's run: the tables of vehicle and wheels on one clock, with the wheels' names and places."""
 import functools
-import pathlib
 
 import numpy as np
 
+from .._home import home
 from .digits import digits
 from .run_data import Damaged, Missing, read_object, read_surface
 from .units import is_number
 
-DATA = pathlib.Path(__file__).resolve().parents[2] / "vehicle" / "data"
 ROLES = {1: ["front"], 2: ["front", "rear"], 3: ["front", "middle", "rear"]}
 SMOOTHING = 0.05  # s, width of running means
 GRAVITY = 9.81  # m/s²
@@ -198,7 +197,7 @@ class VehicleRun:
     @functools.cached_property
     def data(self):
         """The vehicle's file where the run has it from, or one of those that are shipped; else an empty object."""
-        path = DATA / (self.run.rig.get("vehicle") or "")  # a file of the user's own has its full name
+        path = home() / "vehicle/data" / (self.run.rig.get("vehicle") or "")  # the user's own has its full name
         return read_object(path) if path.is_file() else {}
 
     @property

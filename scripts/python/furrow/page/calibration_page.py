@@ -1,8 +1,8 @@
 """The page of a model fitted to data."""
 import numpy as np
 
-from plot.calibrate import quantity
-from plot.units import is_number
+from ..plot.calibrate import quantity
+from ..plot.units import is_number
 
 from . import blocks
 

@@ -1,8 +1,7 @@
-#!/usr/bin/python3
 """What happened in a vehicle's run and when, its axles beside each other, and what a change of gear needs; from the
 series alone.
 
-usage: events.py DIR [--from T] [--to T] [--json]
+usage: python3 -m furrow events DIR [--from T] [--to T] [--json]
 
 Exit codes: 0 done, 2 the window holds no means, 5 a file could not be read.
 """
@@ -12,11 +11,9 @@ import math
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-
-from plot import axles, events, gear_balance  # noqa: E402
-from plot.run_data import PROBLEMS, Missing, Run, in_words, printable  # noqa: E402
-from plot.vehicle_run import VehicleRun  # noqa: E402
+from .plot import axles, events, gear_balance
+from .plot.run_data import PROBLEMS, Missing, Run, in_words, printable
+from .plot.vehicle_run import VehicleRun
 
 
 def number(value):
@@ -99,7 +96,3 @@ def main():
     except PROBLEMS as error:
         print(f"furrow: error: {printable(options.directory)}: {in_words(error)}", file=sys.stderr)
     return 5
-
-
-if __name__ == "__main__":
-    sys.exit(main())

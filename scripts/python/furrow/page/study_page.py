@@ -3,10 +3,10 @@ import math
 
 import numpy as np
 
-from plot import sweep as studies
-from plot.digits import with_error
-from plot.run_data import Missing
-from plot.units import naming
+from ..plot import sweep as studies
+from ..plot.digits import with_error
+from ..plot.run_data import Missing
+from ..plot.units import naming
 
 from . import blocks
 from .scenario import unit_of

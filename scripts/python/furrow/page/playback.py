@@ -1,7 +1,7 @@
 """The block of the 3-D playback, and the section that says what it shows and what was left out."""
 import numpy as np
 
-from plot.run_data import Missing
+from ..plot.run_data import Missing
 
 from . import blocks
 from .frames import pack

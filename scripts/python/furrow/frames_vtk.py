@@ -1,7 +1,6 @@
-#!/usr/bin/python3
 """The frames of a run as VTP files, for any VTK or ParaView; the names of the lists (PVD) on stdout.
 
-usage: frames_vtk.py --out FOLDER DIR
+usage: python3 -m furrow frames_vtk --out FOLDER DIR
 
 FOLDER, which must be new or empty, then holds tire<k>_<index>.vtp, terrain_<index>.vtp and <kind>.pvd, which lists the
 files of a kind by time. scripts/python/paraview_run.py shows such a folder in ParaView.
@@ -11,10 +10,8 @@ import argparse
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-
-from plot import frames, vtk  # noqa: E402
-from plot.run_data import Run  # noqa: E402
+from .plot import frames, vtk
+from .plot.run_data import Run
 
 
 def kinds_of(directory):
@@ -81,7 +78,3 @@ def main():
     for kind in kinds:
         print(out / f"{kind}.pvd")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

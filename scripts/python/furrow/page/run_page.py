@@ -1,11 +1,11 @@
 """The page of a run: the answer in words, its curves, rut, accounts, ranks, scenario and provenance."""
 import re
 
-from plot import events
-from plot.digits import digits
-from plot.run_data import Missing, printable
-from plot.vehicle_run import VehicleRun
-from plot.units import is_number, naming
+from ..plot import events
+from ..plot.digits import digits
+from ..plot.run_data import Missing, printable
+from ..plot.vehicle_run import VehicleRun
+from ..plot.units import is_number, naming
 
 from . import blocks, curves, ground, scenario
 

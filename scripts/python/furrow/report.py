@@ -1,10 +1,9 @@
-#!/usr/bin/python3
 """Plots of a run, of soil tests, of a pressed tire, of its natural frequencies, of a vehicle's suspensions, of a study
 or of a calibration: PNG files in the run directory, and report.html, a page with all of it; their names, without the
 folder, as a JSON list on stdout.
 
-usage: report.py DIR [--out FOLDER] [--only NAME]... [--quiet] [--progress]
-       report.py DIR DIR... --out FOLDER    one report.html that compares the runs
+usage: python3 -m furrow report DIR [--out FOLDER] [--only NAME]... [--quiet] [--progress]
+       python3 -m furrow report DIR DIR... --out FOLDER    one report.html that compares the runs
 
 Every plot is made from what the directory holds; a plot whose data are missing is left out, and a message on stderr
 says so. Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
@@ -22,14 +21,11 @@ import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parent / "report")]
-
-# noqa: E402
-from plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep,
+from .plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep,
                   vehicle_ground, vehicle_plots, vehicle_run, vehicle_scene, wheels)
-from plot.digits import with_error  # noqa: E402
-from plot.own_files import may_write, remove_own, write_whole  # noqa: E402
-from plot.run_data import PROBLEMS, Damaged, Missing, Run, in_words, printable, why_no_folder  # noqa: E402
+from .plot.digits import with_error  # noqa: E402
+from .plot.own_files import may_write, remove_own, write_whole  # noqa: E402
+from .plot.run_data import PROBLEMS, Damaged, Missing, Run, in_words, printable, why_no_folder  # noqa: E402
 
 
 quiet = False  # set by --quiet
@@ -152,7 +148,7 @@ def main():
     quiet = arguments.quiet
     directory, out = arguments.directory, arguments.out or arguments.directory
     if arguments.others:
-        import page
+        from . import page
         return page.compare([directory, *arguments.others], arguments.out or pathlib.Path("."), may_write)
     try:
         run = opened(directory)
@@ -179,7 +175,7 @@ def main():
     if (written or in_the_way or (directory / "summary_failed.json").is_file()) and not arguments.only:
         if arguments.progress:
             tell_share(names, len(names) - 1)
-        import page
+        from . import page
         written += page.write(out, [run], may_write)
     print(json.dumps(written))
     if written:
@@ -189,7 +185,3 @@ def main():
     before = directory / ".furrow-before"
     hint = f"; {before} holds earlier results, which 'furrow resume' brings back" if before.is_dir() else ""
     return fail(directory, f"holds nothing to plot{printable(hint)}")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

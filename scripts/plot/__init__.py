@@ -1,1 +1,0 @@
-"""Plots of a run directory, used by scripts/report.py."""

@@ -3,12 +3,16 @@ from __future__ import annotations
 
 import os
 import pathlib
+from typing import TypeAlias
 
+from .plot.run_data import kind_of
 from .runs import Run
 from .studies import Study
 from .virtual_tests import Calibration, Kinematics, Modes, Press, Soil
 
-Opened = Run | Study | Soil | Press | Modes | Kinematics | Calibration
+Opened: TypeAlias = Run | Study | Soil | Press | Modes | Kinematics | Calibration
+KINDS: dict[str, type[Opened]] = {"soil": Soil, "sweep": Study, "press": Press, "modes": Modes,
+                                  "kinematics": Kinematics, "calibration": Calibration}
 
 
 def open(directory: str | os.PathLike[str]) -> Opened:
@@ -22,12 +26,8 @@ def open(directory: str | os.PathLike[str]) -> Opened:
     folder = pathlib.Path(directory)
     if not folder.is_dir():
         raise FileNotFoundError(f"{folder}: is not a folder")
-    kinds: tuple[tuple[str, type[Opened]], ...] = (
-        ("soil.json", Soil), ("sweep.json", Study), ("press.csv", Press), ("modes.csv", Modes),
-        ("kinematics.csv", Kinematics), ("calibration.json", Calibration))
-    for name, kind in kinds:
-        if (folder / name).is_file():
-            return kind(folder)
+    if kind := KINDS.get(kind_of(folder)):
+        return kind(folder)
     if not any((folder / name).exists() for name in ("scenario.json", "summary.json", "summary_failed.json")):
         raise ValueError(f"{folder}: holds no results of furrow")
     return Run(folder)

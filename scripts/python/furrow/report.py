@@ -9,7 +9,6 @@ Every plot is made from what the directory holds; a plot whose data are missing 
 says so. Exit codes: 0 at least one plot was written, 5 a file could not be read or written.
 """
 import argparse
-import functools
 import io
 import json
 import os
@@ -21,61 +20,14 @@ import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 
-from .plot import (accounts, calibrate, charts, ground, kinematics, modes, press, ride, scene, soil, sweep,
-                  vehicle_ground, vehicle_plots, vehicle_run, vehicle_scene, wheels)
+from .plot import kinds  # noqa: E402
 from .plot.digits import with_error  # noqa: E402
 from .plot.own_files import may_write, remove_own, write_whole  # noqa: E402
 from .plot.run_data import PROBLEMS, Damaged, Missing, Run, in_words, printable, why_no_folder  # noqa: E402
 
 
 quiet = False  # set by --quiet
-
-
-@functools.lru_cache(maxsize=1)
-def vehicle_of(run):
-    return vehicle_run.VehicleRun(run)
-
-
-def of_vehicle(plot):
-    """A plot of a vehicle's run, for `Run`."""
-    return functools.wraps(plot)(lambda run: plot(vehicle_of(run)))
-
-
-def named(*plots):
-    return {plot.__name__: plot for plot in plots}
-
-
-# Plots of the folders of a command, by the names of their files.
-ACCOUNTS = (charts.ranks, accounts.energy, accounts.momentum)
-PLOTS = {**named(charts.pull_slip_sinkage, charts.forces, ground.rut, *ACCOUNTS), "scene": scene.scene}
-RIDE_PLOTS = {**PLOTS, "ride": ride.ride}
-VEHICLE_PLOTS = {**named(*map(of_vehicle, (vehicle_plots.vehicle, wheels.wheel_forces, wheels.wheel_motion,
-                                           wheels.front_and_rear, vehicle_plots.path, vehicle_plots.gear,
-                                           vehicle_ground.rut)), *ACCOUNTS),
-                 "scene": of_vehicle(vehicle_scene.vehicle_scene)}
-CURVE_PLOTS, BEDS_PLOTS = named(sweep.curve), named(sweep.beds)
-SWEEP_PLOTS = named(sweep.curve, sweep.passes, sweep.rut_along)
-OTHER_PLOTS = {calibrate.Calibration: named(calibrate.fit, calibrate.residual),
-               soil.Soil: named(soil.plate, soil.shear, soil.cone, soil.repose),
-               press.Press: named(press.load_deflection, press.footprint),
-               modes.Modes: named(modes.frequencies, modes.mode_shapes, modes.mode_sections),
-               kinematics.Kinematics: named(kinematics.parallel, kinematics.opposite, kinematics.steering)}
-# The file that tells a kind of folder; any other one is that of a run.
-KINDS = {"calibration.json": calibrate.Calibration, "soil.json": soil.Soil, "sweep.json": sweep.Sweep,
-         "press.csv": press.Press, "modes.csv": modes.Modes, "kinematics.csv": kinematics.Kinematics}
 WORK = {"scene": 20, "page": 10}  # of most plots: 1; the shares of the progress follow from it
-
-
-def opened(directory):
-    return next((kind for name, kind in KINDS.items() if (directory / name).is_file()), Run)(directory)
-
-
-def plots_of(run):
-    if isinstance(run, Run):
-        return VEHICLE_PLOTS if run.has_vehicle else RIDE_PLOTS if ride.COLUMN in run.series else PLOTS
-    if isinstance(run, sweep.Sweep):
-        return BEDS_PLOTS if run.values.get("beds") else SWEEP_PLOTS if run.values.get("passes") else CURVE_PLOTS
-    return OTHER_PLOTS[type(run)]
 
 
 def note(text):
@@ -138,8 +90,7 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("others", type=pathlib.Path, nargs="*", help="further runs: one page that compares all of them")
     parser.add_argument("--out", type=pathlib.Path, help="folder for the plots (default: the run directory)")
-    parser.add_argument("--only", action="append", help="this plot only; may be repeated", choices=sorted(
-        set().union(RIDE_PLOTS, VEHICLE_PLOTS, SWEEP_PLOTS, BEDS_PLOTS, *OTHER_PLOTS.values())))
+    parser.add_argument("--only", action="append", help="this plot only; may be repeated", choices=sorted(kinds.ALL))
     parser.add_argument("--quiet", action="store_true", help="print errors only")
     parser.add_argument("--progress", action="store_true",
                         help="print the share that is done, 'progress 0.25', before each plot")
@@ -151,12 +102,12 @@ def main():
         from . import page
         return page.compare([directory, *arguments.others], arguments.out or pathlib.Path("."), may_write)
     try:
-        run = opened(directory)
+        run = kinds.opened(directory)
     except PROBLEMS as error:
         return fail(directory, in_words(error))
     if why := why_no_folder(out):
         return fail(out, why)
-    plots, written, in_the_way = plots_of(run), [], False
+    plots, written, in_the_way = kinds.plots_of(run), [], False
     names = [*(arguments.only or plots), "page"]
     for k, name in enumerate(names[:-1]):
         if arguments.progress:

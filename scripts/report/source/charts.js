@@ -237,7 +237,7 @@ export function chart(description, arrays) {
   const frame = el(
     "figure",
     { class: description.wide ? "chart wide" : "chart" },
-    el("figcaption", {}, title),
+    el("figcaption", {}, title, description.note ? el("span", {}, ` (${description.note})`) : null),
     place,
   );
   let plot = null;

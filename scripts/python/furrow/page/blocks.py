@@ -38,6 +38,13 @@ def chart(title, x_label, x_unit, y_unit, lines, window=None, levels=(), note=""
             "levels": list(levels), "note": note}
 
 
+def of(known, lines, window=None, levels=()):
+    """The plot of a chart of chart_table.py."""
+    words, *scale = naming(known.x)
+    return chart(known.title, known.x_words or words, (known.x_unit or scale)[0], known.scale[0], lines, window, levels,
+                 known.sign)
+
+
 def charts(items, note=""):
     return {"type": "charts", "charts": items, "note": note}
 

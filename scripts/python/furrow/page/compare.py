@@ -1,6 +1,5 @@
 """Several runs on one page: their answers with intervals beside each other, and their curves laid over each other."""
-import numpy as np
-
+from ..plot.chart_table import WHEEL
 from ..plot.digits import digits
 from ..plot.run_data import Missing
 from ..plot.units import is_number, naming
@@ -68,11 +67,10 @@ def overlay(runs, arrays):
         wheels = run_page.wheel_tables(run)
         if wheels:
             tables[name] = curves.Table(run, next(iter(wheels.values())), arrays)
-    columns = dict.fromkeys(name for _, group in curves.WHEEL for name in group)
+    columns = dict.fromkeys(name for chart in WHEEL.values() for name in chart.lines)
     items = []
-    for column in (*columns, "vertical_force_N"):
-        lines = [table.line(column, name) for name, table in tables.items()
-                 if column in table.columns and np.nanmax(np.abs(table.columns[column]), initial=0.0) > curves.NOISE]
+    for column in columns:
+        lines = [table.line(column, name) for name, table in tables.items() if not curves.empty(table, column)]
         if lines:
             words, unit, _ = naming(column)
             items.append(blocks.chart(words.capitalize(), "time", "s", unit, lines))

@@ -2,6 +2,7 @@
 import re
 
 from ..plot import events
+from ..plot.chart_table import ACCOUNTS, VEHICLE, WHEEL
 from ..plot.digits import digits
 from ..plot.run_data import Missing, printable
 from ..plot.vehicle_run import VehicleRun
@@ -24,12 +25,6 @@ OF_WHEELS = ("slip", "vertical_force_N", "tractive_effort_N", "terrain_resistanc
 PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version", "compiler", "cpu",
               "terrain_engine", "law", "simulated_s", "wall_s", "settle_wall_s", "wall_s_per_simulated_s", "grains",
               "contacts_mean", "active_share_mean", "substeps_added", "substeps_refined_share", "substeps_most_parts")
-ACCOUNTS = (("Energy that does not close", ("residual_J", "terrain_residual_J", "tire_residual_J", "rig_residual_J")),
-            ("Work", ("drive_work_J", "tow_work_J", "guide_work_J", "wall_work_J")),
-            ("Losses", ("sliding_loss_J", "normal_damping_loss_J", "tangential_damping_loss_J", "rolling_loss_J",
-                        "opening_loss_J", "tire_viscous_loss_J", "damper_loss_J")),
-            ("Momentum that does not close",
-             ("momentum_residual_x_Ns", "momentum_residual_y_Ns", "momentum_residual_z_Ns")))
 
 STATES = ("gear", "shifting")  # whose means are no gear
 CHANGING = 0.05  # m/s²: a mean acceleration beyond it is no steady drive
@@ -268,13 +263,13 @@ def series(run, arrays):
         if is_number(pull.get("mean")) and run.measured:
             half = blocks.half_95(pull.get("sem"), pull.get("n_eff"))
             levels["drawbar_pull_N"] = [{"y": pull["mean"], "half": half, "label": "mean and 95 % interval"}]
-        shown = [group for group in curves.WHEEL if run.told.get("grains") or group[1] != ("active_share",)]
-        made.append(blocks.charts(curves.plain(table, shown, window, levels), table.note))
+        shown = [chart for key, chart in WHEEL.items() if run.told.get("grains") or key != "awake"]
+        made.append(blocks.charts(curves.over_time(table, shown, window, levels), table.note))
     else:
         table = next(iter(tables.values()))
         more = f" The first {curves.MOST_WHEELS} of {len(names)} wheels are drawn." if len(names) > len(tables) else ""
-        made.append(blocks.charts(curves.over_wheels(tables, window, [name.replace("_", " ")
-                                                                      for name in run.wheel_names]), table.note + more))
+        who = [name.replace("_", " ") for name in run.wheel_names]
+        made.append(blocks.charts(curves.over_wheels(tables, window, who, hard_ground(run)), table.note + more))
     made.append(curves.explorer(table, window))
     shaded = "Shaded: the averaging window. " if window else ""
     made.insert(0, blocks.text(shaded + "Drag across a plot to zoom, double-click to see all. Click a name in the "
@@ -284,7 +279,7 @@ def series(run, arrays):
 
 def vehicle_series(run, arrays):
     table = curves.Table(run, "timeseries_vehicle.csv", arrays)
-    made = [blocks.charts(curves.plain(table, curves.VEHICLE, window_of(run)), table.note)]
+    made = [blocks.charts(curves.over_time(table, VEHICLE.values(), window_of(run)), table.note)]
     if "x_m" in table.columns and "y_m" in table.columns:
         x, y = (arrays.add(table.columns[name]) for name in ("x_m", "y_m"))
         made[0]["charts"].insert(0, blocks.chart("Path from above", "x",
@@ -308,7 +303,7 @@ def energy_rows(energy):
     for group in ("work", "stored", "lost"):
         for name, value in (energy.get(group) or {}).items():
             if is_number(value):
-                rows.append([group, name.replace("_", " "), digits(value)])
+                rows.append([group, ACCOUNTS[group].lines.get(f"{name}_J", name.replace("_", " ")), digits(value)])
     return rows
 
 
@@ -333,7 +328,7 @@ def accounts(run, arrays):
     except Missing:
         table = None
     if table:
-        made.append(blocks.charts(curves.plain(table, ACCOUNTS, window_of(run)), table.note))
+        made.append(blocks.charts(curves.over_time(table, ACCOUNTS.values(), window_of(run)), table.note))
         made.append(curves.explorer(table, window_of(run)))
     return {"id": "accounts", "title": "Accounts", "blocks": list(filter(None, made))}
 

@@ -1,34 +1,12 @@
 """The scenario of a run beside the defaults of the schema."""
 import json
-import pathlib
 
-from ..plot.run_data import read_object
+from ..plot.keys import resolved, schema_of_scenarios
 
 from . import blocks
 
-SCHEMA = pathlib.Path(__file__).resolve().parent / "scenario.schema.json"
 MOST_ROWS = 600
 LONGEST = 160  # characters of a value
-
-
-def resolved(schema, root):
-    """The schema that a `$ref` stands for."""
-    for _ in range(8):
-        name = schema.get("$ref", "") if isinstance(schema, dict) else ""
-        if not name.startswith("#/definitions/"):
-            break
-        schema = (root.get("definitions") or {}).get(name.rsplit("/", 1)[1], {})
-    return schema if isinstance(schema, dict) else {}
-
-
-def unit_of(key):
-    """The unit of a key such as `terrain.cohesion`; empty without one."""
-    root = read_object(SCHEMA) if SCHEMA.is_file() else {}
-    found = resolved(root, root)
-    for part in key.split("."):
-        found = resolved((found.get("items") or {}) if part.isdigit()
-                         else (found.get("properties") or {}).get(part, {}), root)
-    return str(found.get("unit", "")).replace("-", "")  # "-": of a number without one
 
 
 def flat(value, schema, root, path):
@@ -60,7 +38,7 @@ def is_default(value, schema):
 
 def section(scenario):
     """Every key with its unit and default; those that differ are marked."""
-    root = read_object(SCHEMA) if SCHEMA.is_file() else {}
+    root = schema_of_scenarios()
     rows, marked = [], []
     for key, value, schema in flat(scenario, root, root, ""):
         if key in ("$schema", "description", "format_version", "completed_by"):

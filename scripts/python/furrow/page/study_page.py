@@ -5,11 +5,10 @@ import numpy as np
 
 from ..plot import sweep as studies
 from ..plot.digits import with_error
+from ..plot.keys import named
 from ..plot.run_data import Missing
-from ..plot.units import naming
 
 from . import blocks
-from .scenario import unit_of
 
 PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"),
           ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
@@ -17,24 +16,6 @@ PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"),
 MOST_ROWS = 2000
 # sweep.csv has them; without them a study that was interrupted has the page of one that was not
 WALL_TIMES = {"wall_s"}
-
-
-# What the parts of a result with an error are.
-PARTS = {".mean": "", ".sem": " standard error", ".steady": " steady", ".n_eff": " independent values"}
-
-
-def named(key, keys=()):
-    """(words, unit, factor) of a column: of a key of the scenario such as `rig.slip`, or of a result such as
-    `drawbar_pull_N.mean`."""
-    if key in keys:
-        return key, unit_of(key), 1.0
-    part = next((part for part in PARTS if key.endswith(part)), "")
-    words, unit, factor = naming(key.removesuffix(part))
-    if part in (".steady", ".n_eff"):
-        unit, factor = "", 1.0
-    if words.endswith(" sem"):
-        words = words.removesuffix("sem") + "standard error"
-    return words + PARTS.get(part, ""), unit, factor
 
 
 def line(arrays, label, x, y, half, factor):
@@ -67,8 +48,7 @@ def curve(sweep, arrays):
         x, y, half, which = studies.points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
         unsteady += int(np.asarray(which, bool).sum())
         points += len(x)
-        value = f"{cell(label)} {unit_of(plot['lines'])}".rstrip() if label else ""
-        lines.append(line(arrays, f"{plot['lines']} = {value}" if label else words, x_factor * x, y, half, factor))
+        lines.append(line(arrays, studies.group_label(plot, label) if label else words, x_factor * x, y, half, factor))
     made = [blocks.charts([{**blocks.chart(words.capitalize(), x_words, x_unit, unit, lines), "wide": True}],
                           whiskers(plot))]
     if description := sweep.values.get("description"):
@@ -134,20 +114,13 @@ def rows_of(sweep):
         raise Missing("no run is done")
     columns = [name for name in rows[0] if name and name not in WALL_TIMES and any(row.get(name) for row in rows)]
     named_columns = [named(name, studies.keys_of(sweep)) for name in columns]
-    cells = [[cell(row.get(name), factor) for name, (_, _, factor) in zip(columns, named_columns)]
+    cells = [[studies.cell(row.get(name), factor) for name, (_, _, factor) in zip(columns, named_columns)]
              for row in rows[:MOST_ROWS]]
     failed = [k for k, row in enumerate(rows[:MOST_ROWS]) if row["state"] == "failed"]
     return {"id": "runs", "title": "Runs",
             "blocks": [blocks.table([", ".join(filter(None, (words, unit.replace(" ", "\u00a0"))))
                                      for words, unit, _ in named_columns], cells, marked=failed,
                                     note="Highlighted: failed." if failed else "")]}
-
-
-def cell(text, factor=1.0):
-    value = factor * studies.number(text)
-    if not math.isfinite(value) or (factor == 1.0 and "." not in text):
-        return str(text or "")
-    return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.6g}"
 
 
 def fill(page, arrays, sweep, sections):

@@ -1,6 +1,8 @@
 """The pages of soil tests, of a pressed tire, of its frequencies and of a vehicle's suspensions."""
 import numpy as np
 
+from ..plot.chart_table import CENTRE_LINE, MODES, MOTIONS, PRESS
+from ..plot.chart_table import SOIL as CHARTS
 from ..plot.run_data import Missing
 from ..plot.soil import runs
 from ..plot.units import is_number, naming
@@ -15,11 +17,6 @@ SOIL = (("k_c", "k_c", "kN/mⁿ⁺¹", 1e-3), ("k_phi", "k_φ", "kN/mⁿ⁺²", 
         ("final_friction_angle_deg", "friction angle at the end", "°", 1.0),
         ("cone_index_Pa", "cone index", "kPa", 1e-3), ("repose_angle_deg", "angle of repose", "°", 1.0),
         ("repose_angle_without_cohesion_deg", "angle of repose without cohesion", "°", 1.0))
-# Tables of soil tests: file, title, keys that distinguish its runs, x, y.
-TESTS = (("plate.csv", "Plate sinkage", ("width_m", "seed"), "sinkage_m", "pressure_Pa"),
-         ("shear.csv", "Direct shear", ("nominal_normal_stress_Pa", "seed"), "travel_m", "shear_stress_Pa"),
-         ("cone.csv", "Cone penetration", ("seed",), "depth_m", "pressure_Pa"),
-         ("repose.csv", "Angle of repose", ("cohesion_Pa", "seed"), "x_m", "height_after_m"))
 FOOTPRINT = ("force_N", "length_m", "width_m", "mean_pressure_Pa", "max_pressure_Pa")
 
 
@@ -76,19 +73,19 @@ def soil_cones(soil):
 
 def soil_curves(soil, arrays):
     items = []
-    for file, title, keys, x, y in TESTS:
+    for test, (chart, keys) in CHARTS.items():
         try:
-            table = soil.table(file)
+            table = soil.table(f"{test}.csv")
         except Missing:
             continue
-        (x_words, x_unit, x_factor), (words, unit, factor) = naming(x), naming(y)
+        (_, _, values), = chart.curves(table)
         keys += tuple(key for key in ("diameter_m", "bed_depth_m") if key in table)
         lines = []
         for mark, which in runs(table, *keys):
             label = ", ".join(f"{name.replace('nominal ', '')} {scale * value:g} {of}".strip()
                               for (name, of, scale), value in zip(map(naming, keys), mark))
-            lines.append(line(arrays, label, x_factor * table[x][which], factor * table[y][which]))
-        items.append({**blocks.chart(f"{title}: {words}", x_words, x_unit, unit, lines[:40]), "wide": True})
+            lines.append(line(arrays, label, chart.places(table)[which], values[which]))
+        items.append({**blocks.of(chart, lines[:40]), "wide": True})
     if not items:
         raise Missing("there is no table of a test")
     return {"id": "series", "title": "Curves", "blocks": [blocks.charts(items)]}
@@ -152,10 +149,10 @@ def press_curves(run, arrays):
     for name, which, dash in (("loading", ~back, None), ("unloading", back, [6, 6])):
         if which.any():
             rising = order[which[order]]
-            lines.append({**line(arrays, name, 1e3 * table["deflection_m"][rising],
-                                 1e-3 * table["force_N"][rising], "points"), "dash": dash})
-    return {"id": "series", "title": "Load and deflection",
-            "blocks": [blocks.charts([{**blocks.chart("Force", "deflection", "mm", "kN", lines), "wide": True}])]}
+            lines.append({**line(arrays, name, PRESS.places(table)[rising],
+                                 PRESS.values(table, "force_N")[rising], "points"), "dash": dash})
+    return {"id": "series", "title": PRESS.title,
+            "blocks": [blocks.charts([{**blocks.of(PRESS, lines), "wide": True}])]}
 
 
 def footprint(run, arrays):
@@ -164,9 +161,9 @@ def footprint(run, arrays):
         return {"id": "footprint", "title": "Footprint", "blocks": [{
             "type": "scatter", "x": arrays.add(1e3 * table["x_m"]), "y": arrays.add(1e3 * table["y_m"]),
             "values": arrays.add(1e-3 * table["pressure_Pa"]), "label": "contact pressure", "unit": "kPa"}]}
-    lines = [line(arrays, "pressure along the centre line", 1e3 * table["x_m"], 1e-3 * table["pressure_Pa"], "points")]
+    lines = [line(arrays, CENTRE_LINE.y, CENTRE_LINE.places(table), CENTRE_LINE.values(table, "pressure_Pa"), "points")]
     return {"id": "footprint", "title": "Footprint",
-            "blocks": [blocks.charts([{**blocks.chart("Pressure", "along", "mm", "kPa", lines), "wide": True}])]}
+            "blocks": [blocks.charts([{**blocks.of(CENTRE_LINE, lines), "wide": True}])]}
 
 
 def flat(values, **groups):
@@ -191,13 +188,12 @@ def mode_frequencies(run, arrays):
         orders = sorted(order for order, which in found if which == number)
         lines.append(line(arrays, f"frequency {number}", np.array(orders, dtype=float),
                           np.array([found[order, number] for order in orders]), "points"))
-    return {"id": "series", "title": "Natural frequencies",
-            "blocks": [blocks.charts([{**blocks.chart("Frequency", "circumferential order", "", "Hz", lines),
-                                       "wide": True}])]}
+    return {"id": "series", "title": MODES.title,
+            "blocks": [blocks.charts([{**blocks.of(MODES, lines), "wide": True}])]}
 
 
 def modes(page, arrays, run, sections):
-    page["title"] = f"{run.values.get('tire', '')} · natural frequencies on a rim at rest"
+    page["title"] = f"{run.values.get('tire', '')} · {MODES.title.lower()} {MODES.sign}"
     sections(page, [("frequencies", lambda: mode_frequencies(run, arrays)),
                     ("all values",
                      lambda: provenance({key: value for key, value in run.values.items() if key != "modes"}))])
@@ -207,26 +203,16 @@ def motion(run, arrays, name):
     """The plots of one motion of the suspensions."""
     if name not in run.motions:
         raise Missing(f"no axle of this vehicle has the motion '{name}'")
-    against = "steering" if name == "steering" else "travel_m"
-    x_words, x_unit, x_factor = naming(against)
-    places = dict(run.curves(name, against))
-    first = next(iter(next(iter(run.motions[name].values()))))
     items = []
-    for column in first:
-        if column in ("motion", "wheel", against) or not column:
-            continue
-        words, unit, factor = naming(column)
-        lines = [line(arrays, wheel, x_factor * places[wheel], factor * values) for wheel,
-                 values in run.curves(name, column) if np.isfinite(values).any()]
-        if lines and any(np.ptp(values[np.isfinite(values)]) > 0 for _,
-                         values in run.curves(name, column) if np.isfinite(values).any()):
-            items.append(blocks.chart(words.capitalize(), x_words, x_unit, unit, lines))
-    return {"id": name, "title": {"parallel": "Both wheels lifted alike",
-                                  "opposite": "One wheel lifted, the other lowered",
-                                  "steering": "Steered"}[name], "blocks": [blocks.charts(items)]}
+    for chart in run.charts(name):
+        column, = chart.lines
+        places = {wheel: chart.places({chart.x: values}) for wheel, values in run.curves(name, chart.x)}
+        items.append(blocks.of(chart, [line(arrays, wheel, places[wheel], chart.values({column: values}, column))
+                                       for wheel, values in run.curves(name, column) if np.isfinite(values).any()]))
+    return {"id": name, "title": MOTIONS[name][0], "blocks": [blocks.charts(items)]}
 
 
 def kinematics(page, arrays, run, sections):
     page["title"] = f"{run.values.get('vehicle', '')} · suspensions"
-    sections(page, [(name, lambda name=name: motion(run, arrays, name)) for name in ("parallel", "opposite", "steering")
-                    if name in run.motions] + [("all values", lambda: provenance(run.values))])
+    sections(page, [(name, lambda name=name: motion(run, arrays, name)) for name in MOTIONS if name in run.motions]
+             + [("all values", lambda: provenance(run.values))])

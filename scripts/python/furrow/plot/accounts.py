@@ -2,23 +2,11 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .chart_table import LOST, STORED, WORK
 from .digits import digits
 from .run_data import Missing
 from .style import BLUE, GREY, ORANGE, PURPLE, RED, heading, mark_window
 
-# Entries of accounts.energy, in J.
-WORK = {"drive_work": "drive of the wheels", "tow_work": "what moves the rig along", "guide_work": "rails and steering",
-        "wall_work": "walls"}
-STORED = {"terrain_kinetic": "grains: motion", "terrain_rotational": "grains: rotation",
-          "terrain_potential": "grains: height", "terrain_elastic_normal": "grains: normal springs",
-          "terrain_elastic_tangential": "grains: tangential springs", "terrain_cohesion": "grains: cohesion",
-          "tire_kinetic": "tires: motion", "tire_elastic": "tires: strain", "tire_pressure": "tires: air",
-          "tire_potential": "tires: height", "rig_kinetic_and_potential": "rig: motion and height"}
-LOST = {"sliding_loss": "sliding", "normal_damping_loss": "normal damping",
-        "tangential_damping_loss": "tangential damping", "rolling_loss": "rolling",
-        "opening_loss": "contacts that open", "sleep_loss": "sleep", "tire_viscous_loss": "tires: viscous",
-        "tire_numerical_loss": "tires: numerical", "tire_solver_loss": "tires: solver",
-        "damper_loss": "touch-down damper", "surface_lag_loss": "lag at the surface", "rim_lag_loss": "lag at the rim"}
 GROUPS = (("work", WORK, BLUE), ("stored", STORED, PURPLE), ("lost", LOST, ORANGE))
 LEAST_SHARE = 1e-3  # of what is turned over: smaller entries have no bar
 
@@ -93,6 +81,7 @@ def bars(axis, rows, unit):
 
 
 def energy(run):
+    """The account of energy, over time and by mechanism."""
     found = account(run, "energy")
     rows = entries(found)
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6))
@@ -105,6 +94,7 @@ def energy(run):
 
 
 def momentum(run):
+    """The account of momentum."""
     found = account(run, "momentum")
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.2))
     heading(figure, f"{run.title}\nMomentum: changes of what holds it (purple) = impulses on it (blue) − residual; "

@@ -2,9 +2,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .chart_table import WHEEL
 from .digits import digits, with_error
 from .run_data import Missing
-from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, mark_window, panels
+from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, mark_window, panels
 
 SMOOTHING = 0.05  # s, width of the running mean drawn over noisy forces
 
@@ -45,14 +46,28 @@ def noisy(axis, time, values, colour, label):
     axis.plot(time, mean, color=colour, label=label)
 
 
+def plain(axis, time, values, colour, label):
+    axis.plot(time, values, color=colour, label=label)
+
+
+def draw(axis, run, chart, colours, line=plain):
+    """The columns of a chart that the run has, over time. @returns their values"""
+    curves = chart.curves(run.series)
+    for name, called, values in curves:
+        line(axis, run.column("time_s"), values, dict(zip(chart.lines, colours))[name], called)
+    axis.set(ylabel=chart.label, title=chart.heading + (" (thick: mean over 50 ms)" if line is noisy else ""))
+    return [values for _, _, values in curves]
+
+
 def pull_slip_sinkage(run):
+    """Drawbar pull with its mean, slip and sinkage over time."""
     time, pull = run.column("time_s"), run.column("drawbar_pull_N")
     figure, (top, middle, bottom) = panels(run, 3, 9.0, gridspec_kw={"height_ratios": [2.2, 1, 1.3]})
 
     raw = run.series.get("drawbar_pull_raw_N")
     if raw is not None:
         top.plot(time, raw, color=GREY, lw=0.8, alpha=0.6, label="raw: force on the rail")
-    noisy(top, time, pull, BLUE, "corrected for the inertia of what the rig carries (running mean 50 ms)")
+    draw(top, run, WHEEL["pull"], (BLUE,), noisy)
     statistics = run.summary.get("drawbar_pull_N") or {}
     mark_window(top, run, "averaging window")
     if run.measured and run.window and statistics.get("mean") is not None:
@@ -73,59 +88,48 @@ def pull_slip_sinkage(run):
                     f"parameters: {with_error(theory, error) if error is not None else digits(theory)} N")
     top.axhline(0.0, color="black", lw=0.8)
     settled_limits(top, run, *([pull] if theory is None else [pull, np.full_like(pull, theory)]))
-    top.set(ylabel="drawbar pull, N", title="Drawbar pull: positive when the tire pulls the rig along")
     top.legend(loc="upper right", ncol=1)
 
-    middle.plot(time, run.column("slip"), color=GREEN)
+    run.column("slip")
+    draw(middle, run, WHEEL["slip"], (GREEN,))
     middle.set_ylim(min(-0.05, 1.1 * np.nanmin(run.series["slip"])), max(1.05, 1.05 * np.nanmax(run.series["slip"])))
     mark_window(middle, run)
-    middle.set(ylabel="slip, –", title="Slip: 1 − v/(ω R), R undeformed radius; positive when driven")
 
-    bottom.plot(time, 1e3 * run.column("sinkage_m"), color=BLUE, label="lowest point of the tire")
-    if "sinkage_kinematic_m" in run.series:
-        bottom.plot(time, 1e3 * run.series["sinkage_kinematic_m"], color=ORANGE,
-                    label="kinematic: from the axle's height and the undeformed radius")
+    run.column("sinkage_m")
+    draw(bottom, run, WHEEL["sinkage"], (BLUE, ORANGE, GREEN))
     bottom.axhline(0.0, color="black", lw=0.8)
     mark_window(bottom, run)
     bottom.invert_yaxis()
-    bottom.set(ylabel="sinkage, mm", title="Sinkage below the undisturbed surface: positive down")
     bottom.legend(loc="upper right")
     bottom.set(xlabel="time, s", xlim=(0.0, time[-1]))
     return figure
 
 
 def forces(run):
+    """Vertical force, forces along the travel and spindle torque over time."""
     time = run.column("time_s")
     figure, (top, middle, bottom) = panels(run, 3, 9.5)
     vertical = run.column("force_z_N")
-    noisy(top, time, vertical, BLUE, "vertical force of the ground")
+    draw(top, run, WHEEL["vertical"], (BLUE,), noisy)
     if run.number("vertical_load_N"):
         top.axhline(run.number("vertical_load_N"), color=RED, ls="--", lw=1.2,
                     label=f"load (weight carried) {digits(run.number('vertical_load_N'))} N")
-    top.set_ylabel("force, N")
     settled_limits(top, run, vertical)
-    top.set_title("Vertical force on the tire by the ground: positive up")
 
-    curves = [("tractive_effort_N", 1.0, GREEN, "tractive effort (friction)"),
-              ("terrain_resistance_N", -1.0, RED, "−terrain resistance (pressure)"),
-              ("drawbar_pull_N", 1.0, BLUE, "net: drawbar pull")]
-    shown = [(run.series[name] * sign, colour, label) for name, sign, colour, label in curves if name in run.series]
-    for values, colour, label in shown:
-        noisy(middle, time, values, colour, label)
+    shown = draw(middle, run, WHEEL["along"], (GREEN, RED, BLUE), noisy)
     middle.axhline(0.0, color="black", lw=0.8)
     if shown:
-        settled_limits(middle, run, *[values for values, _, _ in shown])
-    middle.set(ylabel="force, N", title="Forces on the tire along the direction of travel: positive forward")
+        settled_limits(middle, run, *shown)
 
-    noisy(bottom, time, run.column("spindle_torque_Nm"), PURPLE, "drive torque on the spindle")
+    run.column("spindle_torque_Nm")
+    draw(bottom, run, WHEEL["torque"], (PURPLE, SKY), noisy)
     radius = run.number("tire_radius_m")
     if radius and "tractive_effort_N" in run.series:
         mean = smooth(time, run.series["tractive_effort_N"] * radius)
         if mean is not None:
             bottom.plot(time, mean, color=GREEN, ls="--", lw=1.2, label="tractive effort × undeformed radius")
     settled_limits(bottom, run, run.series["spindle_torque_Nm"])
-    bottom.set(ylabel="torque, N m", title="Spindle torque: positive when it drives the wheel forward",
-               xlabel="time, s", xlim=(0.0, time[-1]))
+    bottom.set(xlabel="time, s", xlim=(0.0, time[-1]))
     for axis in (top, middle, bottom):
         mark_window(axis, run)
         axis.legend(loc="upper right")
@@ -146,6 +150,7 @@ def unknowns(run, node):
 
 
 def ranks(run):
+    """How long each rank computed, communicated and waited."""
     table = run.told.get("ranks")
     if not table:
         raise Missing(f"{run.told_in} has no table of ranks")

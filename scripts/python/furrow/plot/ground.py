@@ -19,6 +19,7 @@ def row_mean(values, axis):
 
 
 def rut(run):
+    """The surface from above, across and along the path."""
     before, after = run.heights()
     depth = 1e3 * (before.z - after.z)  # mm
     if not np.isfinite(depth).any():

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .chart_table import MODES
 from .run_data import Missing, read_object
 from .soil import COLOURS, Soil
 from .style import BLUE, GREY, RED, heading
@@ -43,9 +44,10 @@ class Modes(Soil):
 
 
 def frequencies(run):
+    """Natural frequencies against the circumferential order."""
     found = run.frequencies()
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    run.title(figure, "natural frequencies on a rim at rest")
+    run.title(figure, f"{MODES.title} {MODES.sign}")
     for k, number in enumerate(sorted({number for _, number in found})):
         orders = sorted(order for order, which in found if which == number)
         values = np.array([found[order, number] for order in orders])
@@ -56,7 +58,7 @@ def frequencies(run):
     if axis.get_legend_handles_labels()[0]:
         axis.legend()
     axis.xaxis.get_major_locator().set_params(integer=True)
-    axis.set(xlabel="circumferential order", ylabel="frequency, Hz")
+    axis.set(xlabel=MODES.x_label, ylabel=MODES.label)
     return figure
 
 

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .chart_table import CENTRE_LINE, PRESS
 from .run_data import read_object
 from .soil import Soil
 from .style import BLUE, GREY, ORANGE, heading
@@ -20,34 +21,37 @@ class Press(Soil):
 
 
 def load_deflection(run):
+    """Force against deflection of a pressed tire."""
     table = run.table("press.csv")
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    run.title(figure, "static load–deflection curve")
+    run.title(figure, PRESS.title)
     back = table["unloading"] > 0
-    axis.plot(1e3 * table["deflection_m"][~back], 1e-3 * table["force_N"][~back], "o-", color=BLUE, label="loading")
-    axis.plot(1e3 * table["deflection_m"][back], 1e-3 * table["force_N"][back], "x--", color=ORANGE, label="unloading")
+    places, ((_, _, forces),) = PRESS.places(table), PRESS.curves(table)
+    axis.plot(places[~back], forces[~back], "o-", color=BLUE, label="loading")
+    axis.plot(places[back], forces[back], "x--", color=ORANGE, label="unloading")
     if run.values.get("deflection_m"):
         axis.axhline(1e-3 * run.values["load_N"], color=GREY, lw=0.8)
         axis.set_title(f"{1e-3 * run.values['load_N']:.3g} kN at {1e3 * run.values['deflection_m']:.2f} mm: "
                        f"secant {1e-3 * run.values['secant_stiffness_N_per_m']:.0f} kN/m")
-    axis.set(xlabel="deflection, mm", ylabel="force, kN")
+    axis.set(xlabel=PRESS.x_label, ylabel=PRESS.label)
     axis.legend()
     return figure
 
 
 def centre_line(run, axis, table, values):
     """Of a tire without points across."""
-    axis.plot(1e3 * table["x_m"], 1e-3 * table["pressure_Pa"], ".-", color=BLUE)
+    axis.plot(CENTRE_LINE.places(table), CENTRE_LINE.values(table, "pressure_Pa"), ".-", color=BLUE)
     axis.set_ylim(bottom=0.0)
-    axis.set(xlabel="along, mm", ylabel="pressure along the centre line, kPa", title=f"{1e-3 * values['force_N']:.3g} "
+    axis.set(xlabel=CENTRE_LINE.x_label, ylabel=CENTRE_LINE.label, title=f"{1e-3 * values['force_N']:.3g} "
              f"kN: {1e3 * values['length_m']:.0f} mm long, mean {1e-3 * values['mean_pressure_Pa']:.0f} kPa")
 
 
 def footprint(run):
+    """Contact pressure of a pressed tire."""
     table = run.table("footprint.csv")
     values = run.values["footprint"]
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    run.title(figure, "contact pressure")
+    run.title(figure, CENTRE_LINE.title)
     if not np.any(table["y_m"]):
         centre_line(run, axis, table, values)
         return figure

@@ -25,6 +25,8 @@ Missing.__module__ = Damaged.__module__ = "furrow"  # where a user finds them
 # What damaged files may lead to.
 PROBLEMS = (ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError,
             csv.Error, Missing)
+KIND_FILES = {"calibration.json": "calibration", "soil.json": "soil", "sweep.json": "sweep", "press.csv": "press",
+              "modes.csv": "modes", "kinematics.csv": "kinematics"}
 RATIO = 64  # that datasets are compressed by, at most
 LARGEST = 64 << 20  # bytes of a JSON file
 
@@ -61,6 +63,11 @@ def why_no_folder(folder):
     except OSError as error:
         return f"cannot be made: {error.strerror}"
     return None
+
+
+def kind_of(directory):
+    """What a folder holds: `run` without any of the files that tell another kind."""
+    return next((kind for name, kind in KIND_FILES.items() if (directory / name).is_file()), "run")
 
 
 def read_object(path):

@@ -178,6 +178,7 @@ def annotate(axis, run, time, camera, centre, sign, ground, scale):
 
 
 def scene(run):
+    """The tire on the bed in the last frame."""
     tire_file, grain_file = last_frames(run)
     vertex, triangle, time = read_surface(tire_file)
     scale = scale_of(float(np.ptp(vertex[:, 2])))

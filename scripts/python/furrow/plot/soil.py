@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .chart_table import SOIL
 from .run_data import Missing, read_object, read_table
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, heading
 
@@ -29,14 +30,19 @@ class Soil:
             return "?"
         return f"{factor * value:{form}}" + (f" ± {factor * error:.2g}" if error is not None else "")
 
-    def figure(self, what, columns=1, height=4.6):
+    def figure(self, test, columns=1, height=4.6):
         figure, axes = plt.subplots(1, columns, figsize=(6.4 * columns if columns > 1 else 8.4, height), squeeze=False)
         grains = self.values.get("grains") or {}
         note = ", quick look: no result to quote" if self.values.get("quick") else ""
-        heading(figure, f"{self.values.get('scenario', self.directory.name)} · {what} · grains of "
+        heading(figure, f"{self.values.get('scenario', self.directory.name)} · {SOIL[test][0].title} · grains of "
                         f"{1e3 * grains.get('radius_m', np.nan):g} mm, cohesion "
                         f"{1e-3 * grains.get('cohesion_Pa', np.nan):g} kPa{note}", 11)
         return figure, axes[0]
+
+
+def labels_of(test):
+    chart, _ = SOIL[test]
+    return {"xlabel": chart.x_label, "ylabel": chart.label}
 
 
 def runs(table, *keys):
@@ -47,10 +53,11 @@ def runs(table, *keys):
 
 
 def plate(soil):
+    """Pressure against sinkage."""
     table = soil.table("plate.csv")
     if "diameter_m" in table:
         return plates_in_metres(soil, table)
-    figure, (axis,) = soil.figure("plate sinkage")
+    figure, (axis,) = soil.figure("plate")
     widths = list(dict.fromkeys(table["width_m"]))
     for (_, width), rows in runs(table, "seed", "width_m"):
         axis.plot(1e3 * table["sinkage_m"][rows], 1e-3 * table["pressure_Pa"][rows], lw=0.8, alpha=0.55,
@@ -61,7 +68,7 @@ def plate(soil):
         if n is not None:
             axis.plot(1e3 * z, 1e-3 * (k_c / width + k_phi) * z**n, color=COLOURS[i % len(COLOURS)], lw=2.2,
                       label=f"strip {1e3 * width:g} mm wide")
-    axis.set(xlim=0.0, ylim=0.0, xlabel="sinkage below the mean surface, mm", ylabel="pressure, kPa")
+    axis.set(xlim=0.0, ylim=0.0, **labels_of("plate"))
     axis.set_title(f"Thin: each bed. Thick: p = (k_c/b + k_φ) zⁿ, n {soil.text('n')}, k_c {soil.text('k_c', 1e-3)} "
                    f"kN/mⁿ⁺¹, k_φ {soil.text('k_phi', 1e-3)} kN/mⁿ⁺²", fontsize=9)
     axis.legend(loc="upper left")
@@ -70,7 +77,7 @@ def plate(soil):
 
 def plates_in_metres(soil, table):
     """Discs and strips, on beds of several depths: each bed's curve with the power law of its size."""
-    figure, (axis,) = soil.figure("plate sinkage")
+    figure, (axis,) = soil.figure("plate")
     plates = (soil.values.get("plate") or {}).get("plates") or []
     for i, plate in enumerate(plates):
         colour, depths = COLOURS[i % len(COLOURS)], [test["bed_depth_m"] for test in plate["tests"]]
@@ -85,15 +92,16 @@ def plates_in_metres(soil, table):
             axis.plot(1e3 * z, 1e-3 * plate["k"] * z**plate["n"], color=colour, lw=2.2,
                       label=f"{plate['shape']} {1e3 * plate['size_m']:g} mm, bed {1e3 * np.mean(depths):.0f} mm deep, "
                       f"n {plate['n']:.3g}")
-    axis.set(xlim=0.0, ylim=0.0, xlabel="sinkage below the mean surface, mm", ylabel="pressure, kPa",
+    axis.set(xlim=0.0, ylim=0.0, **labels_of("plate"),
              title="Thin: each bed. Thick: p = k zⁿ of each size and depth")
     axis.legend(loc="lower right")
     return figure
 
 
 def shear(soil):
+    """Shear stress against displacement, and the strength."""
     table = soil.table("shear.csv")
-    figure, (left, right) = soil.figure("direct shear", columns=2)
+    figure, (left, right) = soil.figure("shear", columns=2)
     loads = list(dict.fromkeys(table["nominal_normal_stress_Pa"]))
     for (_, load), rows in runs(table, "seed", "nominal_normal_stress_Pa"):
         left.plot(1e3 * table["travel_m"][rows], 1e-3 * table["shear_stress_Pa"][rows], lw=0.8, alpha=0.5,
@@ -107,7 +115,7 @@ def shear(soil):
         tau, travel = (np.mean([t[name] for t in near]) for name in ("tau_max_Pa", "janosi_K_m"))
         left.plot(1e3 * j, 1e-3 * tau * -np.expm1(-j / travel), color=COLOURS[i % len(COLOURS)], lw=2.2,
                   label=f"normal stress {1e-3 * load:g} kPa")
-    left.set(xlim=0.0, ylim=0.0, xlabel="travel of the upper plate, mm", ylabel="shear stress, kPa",
+    left.set(xlim=0.0, ylim=0.0, **labels_of("shear"),
              title=f"Thin: each bed. Thick: τ_max (1 − exp(−j/K)), K {soil.text('janosi_K_m', 1e3)} mm")
     left.legend(loc="upper left")
     sigma = 1e-3 * np.array([t["normal_stress_Pa"] for t in tests])
@@ -125,8 +133,9 @@ def shear(soil):
 
 
 def cone(soil):
+    """Cone resistance against depth."""
     table = soil.table("cones.csv" if (soil.directory / "cones.csv").exists() else "cone.csv")
-    figure, (axis,) = soil.figure("cone penetration")
+    figure, (axis,) = soil.figure("cone")
     about = soil.values.get("cone") or {}
     keys = ["base_diameter_m", "seed"] if "base_diameter_m" in table else ["seed"]  # earlier results have one cone
     sizes = list(dict.fromkeys(table[keys[0]])) if len(keys) > 1 else []
@@ -140,7 +149,7 @@ def cone(soil):
                      label="cone index: mean over this depth")
         axis.legend(loc="lower right")
     axis.invert_yaxis()
-    axis.set(xlim=0.0, xlabel="force over base area, kPa", ylabel="depth of the cone's base, mm",
+    axis.set(xlim=0.0, xlabel=SOIL["cone"][0].label, ylabel=SOIL["cone"][0].x_label,
              title=f"30° cone, base {1e3 * about.get('base_diameter_m', np.nan):g} mm "
              f"({about.get('base_diameter_grains', np.nan):g} grains): cone index {soil.text('cone_index_Pa', 1e-3)} "
              "kPa")
@@ -148,8 +157,9 @@ def cone(soil):
 
 
 def repose(soil):
+    """The slope that is left when a wall is taken away."""
     table = soil.table("repose.csv")
-    figure, (axis,) = soil.figure("angle of repose", height=3.9)
+    figure, (axis,) = soil.figure("repose", height=3.9)
     cohesions = list(dict.fromkeys(table["cohesion_Pa"]))
     names = ["repose_angle_deg", "repose_angle_without_cohesion_deg"]
     labelled = set()
@@ -161,7 +171,7 @@ def repose(soil):
         labelled.add(label)
     _, first = next(runs(table, "seed", "cohesion_Pa"))
     axis.plot(table["x_m"][first], table["height_before_m"][first], color=GREY, lw=1.0, ls="--", label="before")
-    axis.set(aspect="equal", xlim=0.0, ylim=0.0, xlabel="x, m", ylabel="height, m",
+    axis.set(aspect="equal", xlim=0.0, ylim=0.0, **labels_of("repose"),
              title="Surface after half of the bed was taken away")
     axis.legend(loc="upper right")
     return figure

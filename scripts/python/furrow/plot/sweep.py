@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .digits import with_error
+from .keys import named, unit_of
 from .run_data import Damaged, Missing, read_heights, read_object
 from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
@@ -95,15 +96,29 @@ def bars(error):
     return None if np.isnan(error).all() else np.nan_to_num(error)
 
 
+def cell(text, factor=1.0):
+    """A cell of sweep.csv as people are shown it."""
+    value = factor * number(text)
+    if not math.isfinite(value) or (factor == 1.0 and "." not in text):
+        return str(text or "")
+    return f"{value:.4g}" if abs(value) < 1e4 else f"{value:.6g}"
+
+
+def group_label(plot, value):
+    """Of the line that has this value of the key `lines`."""
+    return f"{plot['lines']} = {cell(value)} {unit_of(plot['lines'])}".rstrip()
+
+
 def bar_meaning(plot):
     if plot.get("mean_over"):
         return f" (mean over {plot['mean_over']}, bars: 95 %)"
     return " (bars: standard error)" if plot.get("error") else ""
 
 
-def mark_failed(axis, sweep):
+def mark_failed(axis, sweep, factors):
     """A cross for each run that failed: at the mean of what there is, at the foot of the figure where there is none."""
-    x, y = (np.array([number(row.get(sweep.plot[name])) for row in sweep.failed]) for name in ("x", "y"))
+    x, y = (factor * np.array([number(row.get(sweep.plot[name])) for row in sweep.failed])
+            for name, factor in zip("xy", factors))
     known = np.isfinite(x) & np.isfinite(y)
     if known.any():
         axis.plot(x[known], y[known], ls="none", marker="x", ms=9, mew=2, color=RED, label="failed: mean until then")
@@ -141,16 +156,18 @@ def curve(sweep):
     groups = {}
     for row in sweep.rows:
         groups.setdefault(row.get(plot.get("lines", ""), ""), []).append(row)
+    (x_words, x_unit, x_factor), (words, unit, factor) = (named(plot[name], keys_of(sweep)) for name in "xy")
     figure, axis = plt.subplots(figsize=(8.4, 5.0))
     for i, (label, rows) in enumerate(groups.items()):
         x, y, error, which = points(rows, plot["x"], plot["y"], plot.get("error", ""), plot.get("mean_over"))
-        axis.errorbar(x, y, yerr=bars(error), marker="o", capsize=3,
-                      color=COLOURS[i % len(COLOURS)], label=f"{plot['lines']} = {label}" if label else None)
-        open_points(axis, x, y, which, COLOURS[i % len(COLOURS)])
+        axis.errorbar(x_factor * x, factor * y, yerr=bars(factor * error), marker="o", capsize=3,
+                      color=COLOURS[i % len(COLOURS)], label=group_label(plot, label) if label else None)
+        open_points(axis, x_factor * x, factor * y, which, COLOURS[i % len(COLOURS)])
     axis.axhline(0.0, color=GREY, lw=0.8)
-    mark_failed(axis, sweep)
+    mark_failed(axis, sweep, (x_factor, factor))
     regression_lines(axis, sweep)
-    axis.set(xlabel=plot["x"], ylabel=plot["y"] + bar_meaning(plot))
+    axis.set(xlabel=", ".join(filter(None, (x_words, x_unit))),
+             ylabel=", ".join(filter(None, (words, unit))) + bar_meaning(plot))
     axis.set_title(sweep.title(), loc="left", fontweight="bold")
     if axis.get_legend_handles_labels()[1]:
         axis.legend()

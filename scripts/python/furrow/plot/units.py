@@ -10,7 +10,7 @@ ENDINGS = (("kg_m_per_s", "kg m/s", "kg m/s", 1.0), ("Nm_per_rad", "N m/rad", "N
            ("Nm", "N m", "N m", 1.0), ("Ns", "N s", "N s", 1.0), ("N", "N", "N", 1.0), ("J", "J", "J", 1.0),
            ("W", "W", "W", 1.0), ("m2", "m2", "m²", 1.0), ("deg", "deg", "°", 1.0),
            ("rad", "rad", "°", math.degrees(1.0)), ("Pa", "Pa", "kPa", 1e-3), ("kg", "kg", "kg", 1.0),
-           ("s", "s", "s", 1.0), ("m", "m", "mm", 1e3))
+           ("Hz", "Hz", "Hz", 1.0), ("s", "s", "s", 1.0), ("m", "m", "mm", 1e3))
 LONG = {"position_m", "distance_m", "path_distance_m", "x_m", "y_m", "z_m", "axle_height_m", "lateral_m",
         "cross_track_error_m", "tire_radius_m", "surface_height_m", "effective_rolling_radius_m", "loaded_radius_m",
         "tread_width_m", "axle_height", "travel_x_m"}  # in m, not in mm
@@ -20,7 +20,11 @@ WORDS = {"simulated_s": "simulated time", "wall_s": "wall time", "settle_wall_s"
          "compute_s": "computing", "communicate_s": "communicating", "wait_s": "waiting", "step_s": "step",
          "cpu": "processor", "z_m": "height", "contacts_tire": "contacts of the tire",
          "active_share": "share of grains awake", "active_share_mean": "share of grains awake, mean",
-         "sinkage_kinematic_m": "kinematic sinkage"}
+         "sinkage_kinematic_m": "kinematic sinkage", "toe_rad": "toe-in", "half_track_m": "half-track",
+         "roll_center_m": "roll centre above ground", "scrub_m": "scrub radius",
+         "spring_ratio": "motion ratio of the spring", "shock_ratio": "motion ratio of the shock",
+         "anti_dive": "anti-dive, anti-lift", "steer_rad": "steer angle to the left"}
+PERCENT = {"anti_dive", "ackermann"}  # numbers without a unit that are shown as shares
 
 
 def ending_of(name):
@@ -32,9 +36,15 @@ def naming(name):
     """(words, unit, factor by which values are multiplied), as people are shown them."""
     row = ending_of(name)
     if row is None:
-        return WORDS.get(name, name.replace("_", " ")), "", 1.0
+        return WORDS.get(name, name.replace("_", " ")), *(("%", 100.0) if name in PERCENT else ("", 1.0))
     unit, factor = ("m", 1.0) if name in LONG else row[2:]
     return WORDS.get(name, name[:-len(row[0]) - 1].replace("_", " ").replace(".", " ")), unit, factor
+
+
+def label_of(name, words="", scale=()):
+    """An axis' words with its unit; those of the column unless others are given."""
+    own, *usual = naming(name)
+    return ", ".join(filter(None, (words or own, (scale or usual)[0])))
 
 
 def is_number(value):

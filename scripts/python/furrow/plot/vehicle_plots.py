@@ -3,14 +3,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import gear_balance
+from .chart_table import VEHICLE
 from .run_data import Missing
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 from .vehicle_run import running_mean
 from .vehicle_style import AXLES, grid, limits, mark_events, mark_window
 
-HEATS = {"drive_work_J": "engine and motors give", "converter_heat_J": "converter", "clutch_heat_J": "clutch and locks",
-         "shift_heat_J": "changes of gear", "brake_heat_J": "brakes", "shock_heat_J": "shock absorbers",
-         "lowering_heat_J": "touch-down damper"}
+COLOURS = (PURPLE, ORANGE, GREEN, GREY, RED, BLUE, SKY)
 
 
 def lines(axis, v, ylabel, title, *curves):
@@ -21,6 +20,14 @@ def lines(axis, v, ylabel, title, *curves):
     return [values for values, _, _ in curves]
 
 
+def columns(axis, v, name, colours, how=lambda values: values, note=""):
+    """A chart of the vehicle's columns. @returns the values"""
+    chart = VEHICLE[name]
+    colour = dict(zip(chart.lines, colours))
+    return lines(axis, v, chart.label, chart.heading + note,
+                 *((how(values), colour[column], called) for column, called, values in chart.curves(v)))
+
+
 def place(axis, v):
     lines(axis, v, "distance, m", "Displacement of the vehicle's origin",
           *((v[f"{name}_m"] - v[f"{name}_m"][0], colour, f"{name} − {name} at the start")
@@ -28,8 +35,8 @@ def place(axis, v):
 
 
 def height(axis, v):
-    lines(axis, v, "height, mm", "Height",
-          (1e3 * (v["z_m"] - v.wheels[0].surface), BLUE, "origin above the undisturbed surface"))
+    columns(axis, v, "height", (BLUE,), lambda values: values - 1e3 * v.wheels[0].surface,
+            " above the undisturbed surface")
 
 
 def speeds(axis, v):
@@ -38,29 +45,21 @@ def speeds(axis, v):
         wheels = v.of_axle(axle)
         values = running_mean(v.time, sum(wheel["spin_rad_per_s"] * wheel.radius for wheel in wheels) / len(wheels))
         curves.append((values, AXLES[number % len(AXLES)], f"ω R, {v.axles[axle]} wheels"))
-    drawn = lines(axis, v, "speed, m/s", "Speed, and circumferential speed of the wheels (mean of 50 ms)", *curves,
-                  (v["speed_m_s"], "black", "vehicle"))
-    if "target_speed_m_per_s" in v and v["target_speed_m_per_s"].any():
-        axis.plot(v.time, v["target_speed_m_per_s"], color=GREEN, ls="--", lw=1.0, label="target")
-    limits(axis, v, drawn)
+    drawn = lines(axis, v, "", "", *curves)
+    limits(axis, v, drawn + columns(axis, v, "speeds", ("black", GREY),
+                                    note=", and circumferential speed of the wheels (mean of 50 ms)"))
 
 
 def angles(axis, v):
-    lines(axis, v, "angle, °", "Pitch and roll",
-          (np.degrees(v["pitch_rad"]), BLUE, "pitch, nose down positive"),
-          (np.degrees(v["roll_rad"]), ORANGE, "roll, right side down positive"))
+    columns(axis, v, "angles", (BLUE, ORANGE))
 
 
 def engine(axis, v):
     if not v["engine_speed_rpm"].any():
         axis.set_title("No engine: motors in the wheels or none")
         return
-    axis.plot(v.time, v["engine_speed_rpm"], color=PURPLE, label="engine")
-    if "turbine_speed_rpm" in v and v["turbine_speed_rpm"].any():
-        axis.plot(v.time, v["turbine_speed_rpm"], color=ORANGE, label="turbine")
-    axis.set_ylabel("speed, 1/min")
+    columns(axis, v, "engine", (PURPLE, ORANGE), note=", and gear (right)")
     axis.set_ylim(bottom=0.0)
-    axis.set_title("Speed of engine and converter's turbine, and gear (right)")
     gear = axis.twinx()
     gear.step(v.time, v["gear"], color=GREEN, where="post", lw=1.2, label="gear")
     gear.set_ylim(min(v["gear"].min(), 0.0) - 0.1, max(v["gear"].max(), 2.0) + 1.0)
@@ -70,25 +69,17 @@ def engine(axis, v):
 
 
 def inputs(axis, v):
-    lines(axis, v, "input, –", "The driver's inputs", (v["throttle"], GREEN, "throttle"), (v["brake"], RED, "brake"),
-          (v["steering"], BLUE, "steering, left positive"))
+    columns(axis, v, "inputs", (GREEN, RED, BLUE))
     axis.set_ylim(min(-0.05, 1.1 * v["steering"].min()), 1.1)
 
 
 def powers(axis, v):
-    limits(axis, v, lines(axis, v, "power, kW", "Power (mean of 50 ms)",
-                          *((1e-3 * running_mean(v.time, v[f"{name}power_W"]), colour, label)
-                            for name, colour, label in (("", PURPLE, "engine and motors give"),
-                                                        ("wheel_", BLUE, "arrives at the wheels"),
-                                                        ("soil_", ORANGE, "tires and ground take")))))
+    limits(axis, v, columns(axis, v, "powers", (PURPLE, BLUE, ORANGE), lambda values: running_mean(v.time, values),
+                            " (mean of 50 ms)"))
 
 
 def heats(axis, v):
-    largest = max(np.abs(v[name]).max() for name in HEATS if name in v)
-    lines(axis, v, "kJ since the start", "Work of the drive, and heat of the parts that dissipate it",
-          *((1e-3 * v[name], colour, label)
-            for (name, label), colour in zip(HEATS.items(), (PURPLE, ORANGE, GREEN, GREY, RED, BLUE, SKY))
-            if name in v and np.abs(v[name]).max() > 1e-3 * largest))
+    columns(axis, v, "heats", COLOURS)
 
 
 def vehicle(v):

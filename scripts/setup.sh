@@ -42,6 +42,7 @@ python3-xarray                            data sets of scripts/python
 python3-h5netcdf                          xarray's reader of HDF5
 python3-nbclient                          runs the notebooks, for a test
 python3-ipykernel                         likewise
+python3-pip                               installs the package, for a test
 mypy                                      checks the types of scripts/python, for a test
 LIST
 }

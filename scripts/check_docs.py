@@ -23,6 +23,7 @@ import fnmatch
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -224,6 +225,9 @@ def table_problems(root):
 
 
 def git(root, *arguments, **options):
+    """What git prints; nothing where it is not installed."""
+    if not shutil.which("git"):
+        return ""
     return subprocess.run(["git", "-C", str(root), *arguments], capture_output=True,
                           text=True, check=False, **options).stdout
 

@@ -10,6 +10,7 @@ Prints every mistake and exits with 1 if there is one.
 import argparse
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -23,6 +24,9 @@ SELF = "scripts/check_style.py"
 
 
 def git(root, *words):
+    """Lines that git prints; none without git or outside of a checkout."""
+    if not shutil.which("git"):
+        return []
     done = subprocess.run(["git", "-C", root, *words], capture_output=True, text=True)
     return done.stdout.split("\n")[:-1] if done.returncode == 0 else []
 

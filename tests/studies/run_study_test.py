@@ -36,7 +36,10 @@ else:
 """
 
 
-@unittest.skipUnless(shutil.which("git"), "needs git: a table names the commit of its program")
+CHECKOUT = shutil.which("git") and subprocess.run(["git", "-C", HERE, "rev-parse"], capture_output=True).returncode == 0
+
+
+@unittest.skipUnless(CHECKOUT, "needs a checkout of git: a table names the commit of its program")
 class RunStudy(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="furrow_study_")

@@ -2,6 +2,7 @@
 """scripts/check_includes.py, check_headers.py, check_docs.py, check_prose.py on small trees: what they must notice."""
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -143,6 +144,7 @@ class Docs(Check):
         self.assertEqual(self.told(**{results: '{"scenario": "a.json", "cases": {}}'}), "")
         self.assertIn("tests/x/a.csv:1: is named on no page", self.told(**{table: head + "x\n1\n"}))
 
+    @unittest.skipUnless(shutil.which("git"), "needs git")
     def test_commits_that_are_not_in_the_history(self):
         def history(root):
             for command in (["init", "-q"], ["-c", "user.name=A", "-c",

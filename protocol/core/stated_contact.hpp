@@ -2,6 +2,8 @@
 // the forces that the tire states, and counts them like its own.
 #pragma once
 
+#include <vector>
+
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
 
@@ -10,13 +12,15 @@ namespace furrow {
 struct StatedContact {
   bool given =
       false;  // the tire states its contact: the terrain adds no force of its own, also where `forces` is empty
-  NodalForces forces;           // on the tire, for the interval that begins; without tangents
-  Vec3 normal = Vec3::UnitZ();  // of the ground where they act: the rest of a force is friction
+  NodalForces forces;          // on the tire, for the interval that begins; without tangents
+  std::vector<Vec3> friction;  // the part of each force that is friction, N; the rest acts along the ground's normal
+  double energy = 0.0;         // elastic energy of the contact at the interval's end, J
 };
 void visit_fields(FieldsOf<StatedContact> auto& s, auto&& visit) {
   visit(s.given, Field{"given", ""});
   visit(s.forces, Field{"forces", ""});
-  visit(s.normal, Field{"normal", ""});
+  visit(s.friction, Field{"friction", "N"});
+  visit(s.energy, Field{"energy", "J"});
 }
 
 }  // namespace furrow

@@ -300,11 +300,11 @@ void RigidGround::state_contacts(std::span<const StatedContact> contacts) {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) surfaces_[k].stated = contacts[k];
 }
 
-/// The forces that a tire states, in place of the ground's own: what they do along the ground is lost by sliding, what
-/// they do along its normal is the damping of the pair.
+/// The forces that a tire states, in place of the ground's own: what friction does is lost by sliding, what the others
+/// do and the contact does not store is the damping of the pair.
 void RigidGround::give_stated(GroundSurface& surface, double dt) {
   const NodalForces& stated = surface.stated.forces;
-  const Vec3& normal = surface.stated.normal;
+  FURROW_ASSERT(surface.stated.friction.size() == stated.force.size(), surface.stated.friction.size());
   surface.contacts.clear();
   surface.floor_force = 0.0;
   for (std::size_t i = 0; i < stated.vertex.size(); ++i) {
@@ -315,8 +315,8 @@ void RigidGround::give_stated(GroundSurface& surface, double dt) {
     contact.triangle = triangle;
     contact.weight[corner] = 1.0;
     contact.point = surface.position[vertex];
-    contact.normal = stated.force[i].dot(normal) * normal;
-    contact.tangential = stated.force[i] - contact.normal;
+    contact.tangential = surface.stated.friction[i];
+    contact.normal = stated.force[i] - contact.tangential;
     surface.contacts.push_back(contact);
     surface.floor_force += contact.normal.z();
     losses_.sliding -= contact.tangential.dot(surface.velocity[vertex]) * dt;
@@ -329,7 +329,10 @@ void RigidGround::give_stated(GroundSurface& surface, double dt) {
 void RigidGround::measure(GroundSurface& surface) const {
   std::array<GroundPoint, kMaxGroundPoints> points;
   surface.pressed = surface.sheared = 0.0;
-  if (surface.stated.given) return;
+  if (surface.stated.given) {
+    surface.pressed = surface.stated.energy;
+    return;
+  }
   for (std::size_t v = 0; v < surface.shear.size(); ++v)
     surface.sheared += 0.5 * options_.ground_shear_stiffness * surface.area[v] * surface.shear[v].squaredNorm();
   if (!plane_) {
@@ -389,7 +392,9 @@ Outcome RigidGround::do_advance(std::span<const SurfaceState> targets, double du
     surface.sum.finish(duration, forces[k], contact[k]);
     surface_work_ += contact[k].work;
     surface.last.swap(end);
+    const double pressed = surface.pressed;
     measure(surface);
+    if (surface.stated.given) losses_.normal_damping -= surface.pressed - pressed;
   }
   return {};
 }
@@ -426,7 +431,7 @@ void RigidGround::save(Archive& archive) const {
     archive.put("area", surface.area);
     archive.put("floor_force", surface.floor_force);
     archive.put("contacts", surface.contact_count);
-    if (surface.stated.given) archive.put("stated", std::int64_t{1});
+    if (surface.stated.given) archive.put("stated", surface.stated.energy);
   }
 }
 
@@ -445,7 +450,8 @@ void RigidGround::do_restore(const Archive& archive) {
     add_surface(mesh, material, std::move(last));
     restore_value(archive, "shear", surfaces_.back().shear, mesh.vertex_count);
     surfaces_.back().area = archive.get<double>("area");
-    surfaces_.back().stated.given = archive.has("stated");
+    if (StatedContact& stated = surfaces_.back().stated; archive.has("stated"))
+      stated.given = true, stated.energy = archive.get_double("stated");
     measure(surfaces_.back());
     surfaces_.back().floor_force = archive.get_double("floor_force");
     surfaces_.back().contact_count = archive.get_int("contacts");

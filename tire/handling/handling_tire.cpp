@@ -45,6 +45,7 @@ void HandlingTire::do_place(const RimState& rim) {
   standing_ = true;
   dissipation_ = 0.0;
   stated_.forces.clear();
+  stated_.friction.clear();
 }
 
 bool HandlingTire::on_ground(const ContactMotion& motion) const {
@@ -97,6 +98,7 @@ Outcome HandlingTire::state_contact(const RimState& now, double duration) {
   standing_ = false;
   met_ = now;
   stated_.forces.clear();
+  stated_.friction.clear();
   const double pressed = motion_of(now).deflection,
                most = formula_.dimension.unloaded_radius - formula_.dimension.rim_radius;
   if (pressed >= most)
@@ -111,7 +113,6 @@ Outcome HandlingTire::state_contact(const RimState& now, double duration) {
   const WheelAxes& axes = motion.axes;
   const Wrench wanted{f.fx * axes.x + f.fy * axes.y + f.fz * axes.z, f.mx * axes.x + f.my * axes.y + f.mz * axes.z};
   move(rim, before_, &moving_);
-  stated_.normal = axes.z;
   distribute(wanted, axes);
   double power = -spring_force(formula_, motion.deflection) * motion.rate;
   for (std::size_t i = 0; i < stated_.forces.vertex.size(); ++i) {
@@ -151,8 +152,10 @@ void HandlingTire::distribute(const Wrench& wanted, const WheelAxes& axes) {
   for (int k = 0; k < vertices; ++k) {
     const double w = weight(before_[k]);
     if (!(w > 0.0)) continue;
+    const Vec3 force = w * (wanted.force / sum + turn.cross(before_[k] - mean));
     stated_.forces.vertex.push_back(k);
-    stated_.forces.force.push_back(w * (wanted.force / sum + turn.cross(before_[k] - mean)));
+    stated_.forces.force.push_back(force);
+    stated_.friction.push_back(force - force.dot(axes.z) * axes.z);
   }
 }
 

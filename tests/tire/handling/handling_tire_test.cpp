@@ -232,7 +232,12 @@ TEST(HandlingTire, a_slope_gives_the_forces_of_level_ground_turned_with_it) {
       ASSERT_LT((turn * a.force - b.force).norm(), 1e-8 * a.force.norm()) << n;
       ASSERT_LT((turn * a.moment - b.moment).norm(), 1e-8 * a.force.norm()) << n;
     }
-    EXPECT_LT((on_slope.stated_contact()->normal - normal).norm(), 1e-12);
+    const StatedContact& stated = *on_slope.stated_contact();
+    for (std::size_t i = 0; i < stated.friction.size(); ++i) {
+      const double force = stated.forces.force[i].norm();
+      EXPECT_NEAR(stated.friction[i].dot(normal), 0.0, 1e-12 * force);
+      EXPECT_LT((stated.forces.force[i] - stated.friction[i]).cross(normal).norm(), 1e-12 * force);
+    }
     EXPECT_NEAR(on_slope.diagnostics().elastic_energy, on_level.diagnostics().elastic_energy, 1e-6);
   }
 }

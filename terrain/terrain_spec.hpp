@@ -122,6 +122,8 @@ class TerrainSpec {
   virtual double stiffness_under(double /*radius*/, double /*width*/, double /*load*/) const { return 0.0; }
   /// Heights of ground that takes stated contacts; empty: it is the plane z = 0.
   virtual GroundHeights heights(const TerrainContext&) const { return {}; }
+  /// The same where they are alike across.
+  virtual GroundProfilePoints profile(const TerrainContext&) const { return {}; }
   /// Length of that wheel's contact in nodes of a grid; infinite where there is no grid.
   virtual double nodes_under(double /*radius*/, double /*width*/, double /*load*/) const {
     return std::numeric_limits<double>::infinity();

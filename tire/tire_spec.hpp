@@ -104,6 +104,7 @@ struct TireDescription {
   /// Why the tire computes its contact by a law of its own (Tire::stated_contact): "its forces are those of …". Empty
   /// if it does not.
   std::string own_contact;
+  bool own_contact_in_plane = false;  // it takes ground alone that is alike across
   /// Contact forces come one step late, which adds energy to a tire whose own damping is slower. Steps of at most
   /// `step_share` of `damping_time` are good; with a share of 0 any step is good.
   double damping_time = 0.0;  // s
@@ -127,7 +128,8 @@ struct TireContext {
   // For tires with a contact of their own.
   std::optional<double> ground_friction = {};  // where the scenario states it, -
   GroundHeights ground_heights = {};
-  std::function<void()> alive = {};  // called now and then while the tire is inflated; may throw to stop
+  GroundProfilePoints ground_profile = {};  // the same, where own_contact_in_plane
+  std::function<void()> alive = {};         // called now and then while the tire is inflated; may throw to stop
 };
 
 class TireSpec;

@@ -14,10 +14,12 @@
 #include <string>
 #include <vector>
 
+#include "protocol/core/ground_heights.hpp"
+
 namespace furrow::terrain {
 
 /// Height z (m) at x (m), one entry [x, z] for each corner.
-using ProfilePoints = std::vector<std::array<double, 2>>;
+using ProfilePoints = GroundProfilePoints;
 
 /// What is wrong with the last of some points, if anything.
 enum class ProfileFault { none, goes_back, repeated, third_at_one_x };

@@ -64,6 +64,10 @@ class GroundSpec final : public TerrainSpec {
   GroundHeights heights(const TerrainContext& context) const override {
     return GroundShape{profile(context), options_.map}.heights();
   }
+  ProfilePoints profile(const TerrainContext& context) const override {
+    if (options_.road_class.empty()) return options_.profile;
+    return iso_8608_road(options_.road_class.front(), options_.road_from, options_.road_length, context.seed);
+  }
   /// W = ∫ κ (δ − x²/2R) b dx over the contact of half length a = √(2 R δ) is ⅔ κ b a³/R; dW/dδ = 2 κ b a.
   double stiffness_under(double radius, double width, double load) const override {
     return 2.0 * options_.ground_stiffness * width *
@@ -75,11 +79,6 @@ class GroundSpec final : public TerrainSpec {
   }
 
  private:
-  ProfilePoints profile(const TerrainContext& context) const {
-    if (options_.road_class.empty()) return options_.profile;
-    return iso_8608_road(options_.road_class.front(), options_.road_from, options_.road_length, context.seed);
-  }
-
   GroundOptions options_;
 };
 

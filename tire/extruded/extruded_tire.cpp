@@ -35,6 +35,7 @@ class ExtrudedTire final : public Tire {
 
   void set_pressure(double pressure) override { model_->set_pressure(pressure); }
   void surface(SurfaceState& out) const override;
+  const StatedContact* stated_contact() const override { return model_->contact() ? &stated_ : nullptr; }
   TireDiagnostics diagnostics() const override;
   NamedValues figures() const override { return model_->figures(); }
   void add_state(Hash& hash) const override;
@@ -52,6 +53,7 @@ class ExtrudedTire final : public Tire {
   Vec3 angular_momentum(const WheelPlane& plane, const RimState& rim) const;
   Vec3 arm(const WheelPlane& plane, int vertex) const;
   void spread(const NodalForces& forces, const WheelPlane& plane);
+  void state(const WheelPlane& plane, const PlaneSums& sums, const RimTrajectory& rim);
   Outcome run(const RimTrajectory& rim, const WheelPlane& plane, int steps, PlaneSums& sums);
   void book(const RimTrajectory& rim, const WheelPlane& plane, const Vec3& by_turning, const PlaneSums& sums);
 
@@ -66,7 +68,8 @@ class ExtrudedTire final : public Tire {
 
   std::unique_ptr<PlaneModel> model_;
   PlanarField load_;               // of the running interval, N
-  std::vector<Vec3> arms_before_;  // of the vertices with a force at the interval's start, m
+  std::vector<Vec3> arms_before_;  // of the vertices at the interval's start, m
+  StatedContact stated_;
   double dissipation_ = 0.0, numerical_loss_ = 0.0, solver_loss_ = 0.0;  // J
   Vec3 solver_impulse_ = Vec3::Zero();                                   // N s
 };
@@ -134,34 +137,43 @@ void ExtrudedTire::spread(const NodalForces& forces, const WheelPlane& plane) {
 Outcome ExtrudedTire::run(const RimTrajectory& rim, const WheelPlane& plane, int steps, PlaneSums& sums) {
   const double h = rim.duration() / steps;
   const PlanarPoint gravity = plane.in(gravity_);
+  const Rigid with = rigid(rim.start());
   Vec3 from = rim.start().position;
   for (int k = 1; k <= steps; ++k) {
     const RimState at = k == steps ? rim.end() : rim.at(static_cast<double>(k) / steps).state;
     const WheelPlane now = WheelPlane::of(at.orientation);
     const PlaneRimStep way{plane.in((at.position - from) / h), now.angle(at.orientation)};
+    if (PlaneContact* contact = model_->contact()) contact->place({plane, from, with.lateral, with.tilt});
     if (const Outcome outcome = model_->step(h, way, load_, gravity, sums); !outcome.ok) return outcome;
     from = at.position;
   }
   return model_->check();
 }
 
-Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& forces, int substeps) {
+Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& given, int substeps) {
+  FURROW_ASSERT(!model_->contact() || given.vertex.empty(), given.vertex.size());
+  const NodalForces& forces = model_->contact() ? stated_.forces : given;  // that acted, after the steps
   const double duration = rim.duration();
   int parts = 1;
   if (const Outcome outcome = model_->parts(duration / substeps, parts); !outcome.ok) return outcome;
   const WheelPlane plane = WheelPlane::of(rim.at(0.5).state.orientation);
   const WheelPlane first = WheelPlane::of(rim.start().orientation), last = WheelPlane::of(rim.end().orientation);
-  spread(forces, plane);
+  spread(given, plane);
   spindle_ = {};
   // Forces follow from the balance of momentum in space, which equals the balance of the plane's steps if the plane
   // does not turn. Moments across the plane have the means of the lever arms at the interval's ends.
   const Vec3 before = momentum(first, rim.start()), turning = angular_momentum(first, rim.start());
   const PlanarPoint moment_before = model_->first_moment();
   std::vector<Vec3>& arms = arms_before_;
-  arms.clear();
-  for (const int v : forces.vertex) arms.push_back(arm(first, v));
+  arms.resize(shape_.mesh.vertex_count);
+  if (PlaneContact* contact = model_->contact()) {
+    contact->begin();
+    for (int v = 0; v < shape_.mesh.vertex_count; ++v) arms[v] = arm(first, v);
+  }
+  for (const int v : given.vertex) arms[v] = arm(first, v);
   PlaneSums sums;
   if (const Outcome outcome = run(rim, plane, substeps * parts, sums); !outcome.ok) return outcome;
+  if (model_->contact()) state(plane, sums, rim);
   const PlanarPoint moment_after = model_->first_moment();
   const double mass = shape_.mass.mass;
   const Vec3 acceleration = (rim.end().velocity - rim.start().velocity) / duration;
@@ -172,7 +184,7 @@ Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& fo
   Vec3 direct = Vec3::Zero();  // in the plane, on the middles of the sides; acts on the rim
   for (std::size_t k = 0; k < forces.vertex.size(); ++k) {
     force += forces.force[k];
-    moment += (0.5 * (arms[k] + arm(last, forces.vertex[k]))).cross(forces.force[k]);
+    moment += (0.5 * (arms[forces.vertex[k]] + arm(last, forces.vertex[k]))).cross(forces.force[k]);
     if (!on_tread(forces.vertex[k])) direct += plane.across(forces.force[k]);
   }
   spindle_.force = force;
@@ -181,6 +193,22 @@ Outcome ExtrudedTire::do_advance(const RimTrajectory& rim, const NodalForces& fo
   book(rim, plane, plane.across(force) - by_steps, sums);
   rim_ = rim.end();
   return {};
+}
+
+/// States what the contact did in the interval. Mean forces of the vertices do more or less work than the forces of the
+/// steps: that is a loss of the rule.
+void ExtrudedTire::state(const WheelPlane& plane, const PlaneSums& sums, const RimTrajectory& rim) {
+  const Rigid with = rigid(rim.end());
+  model_->contact()->place({plane, rim.end().position, with.lateral, with.tilt});
+  model_->contact()->state(model_->position(), rim.duration(), stated_);
+  const WheelPlane last = WheelPlane::of(rim.end().orientation);
+  const Vec3 way = rim.end().position - rim.start().position;
+  double work = 0.0;
+  for (std::size_t k = 0; k < stated_.forces.vertex.size(); ++k) {
+    const int v = stated_.forces.vertex[k];
+    work += plane.across(stated_.forces.force[k]).dot(way + arm(last, v) - arms_before_[v]);
+  }
+  numerical_loss_ += work - sums.contact_work;
 }
 
 /// Records the losses of the interval. They are the losses of the steps, the difference of the rim's work, and the loss

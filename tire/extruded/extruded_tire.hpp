@@ -6,7 +6,8 @@
 // plane act on the rim, by the balance of momentum, and do not deform the tire.
 //
 // The contact surface is the outer edge, extruded over the width. Each node has a vertex on both sides; each vertex
-// gets its own force, and their sum acts on the node. Forces are constant over an interval.
+// gets its own force, and their sum acts on the node. Forces are constant over an interval, except those of a model
+// with a contact of its own (plane_contact.hpp): the tire states their means over the interval.
 #pragma once
 
 #include <memory>

@@ -7,6 +7,7 @@
 
 #include "protocol/core/archive.hpp"
 #include "protocol/core/outcome.hpp"
+#include "tire/extruded/plane_contact.hpp"
 #include "tire/extruded/plane_vectors.hpp"
 #include "tire/named_values.hpp"
 
@@ -23,6 +24,7 @@ struct PlaneSums {
   double impulse_x = 0.0, impulse_z = 0.0;  // of the tire on the rim, N s
   double turn_impulse = 0.0;                // about +y, N m s
   double rim_work = 0.0;                    // of the rim on the tire, J
+  double contact_work = 0.0;                // of the ground on the tire in its plane, by a PlaneContact, J
   double dissipation = 0.0;                 // by viscosity, J
   double numerical_loss = 0.0;              // J
   double solver_loss = 0.0;                 // J
@@ -45,8 +47,10 @@ class PlaneModel {
   /// Sets `count` to the number of equal steps that a step of h is divided into. @returns failure when they are too
   /// many
   virtual Outcome parts(double h, int& count) = 0;
+  /// The contact of a tire that computes it in its steps; null: the tire is given its forces.
+  virtual PlaneContact* contact() { return nullptr; }
   /// One step of h. @param load on nodes, N. @param gravity in the wheel's plane, m/s²
-  /// @pre placed or restored; h > 0
+  /// @pre placed or restored; h > 0; contact() is placed where the rim is at the step's start
   virtual Outcome step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,
                        PlaneSums& sums) = 0;
   /// Checks that the tire is in the model's range.

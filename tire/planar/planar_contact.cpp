@@ -23,7 +23,7 @@ void PlanarContact::find_nodes(const PlanarField& x) {
   for (const int n : outer_) {
     if (x.z[n] >= ground_.top()) continue;
     const PlanarDepth depth = ground_.depth(x.x[n], x.z[n]);
-    if (depth.depth > 0.0) touches_.push_back({n, -1, 0.0, depth.depth, depth.out_x, depth.out_z, 0.0, 0.0});
+    if (depth.depth > 0.0) touches_.push_back({n, -1, 0.0, depth.depth, depth.out_x, depth.out_z});
   }
 }
 
@@ -31,6 +31,11 @@ void PlanarContact::find_corners(const PlanarField& x) {
   double left = x.x[outer_[0]], right = left, low = x.z[outer_[0]];
   for (const int n : outer_)
     left = std::min(left, x.x[n]), right = std::max(right, x.x[n]), low = std::min(low, x.z[n]);
+  double area = 0.0;  // twice that of the tire; negative: its nodes run clockwise here
+  for (std::size_t j = 0; j < outer_.size(); ++j) {
+    const int a = outer_[j], b = outer_[j + 1 < outer_.size() ? j + 1 : 0];
+    area += x.x[a] * x.z[b] - x.x[b] * x.z[a];
+  }
   const auto& corners = ground_.corners();
   auto corner =
       std::lower_bound(corners.begin(), corners.end(), left, [](const PlanarPoint& p, double at) { return p.x < at; });
@@ -48,8 +53,8 @@ void PlanarContact::find_corners(const PlanarField& x) {
       const double in_x = to_x - share * dx, in_z = to_z - share * dz, distance = std::hypot(in_x, in_z);
       if (!(distance < touch.depth)) continue;
       found = distance > 0.0;
-      inside = dx * to_z - dz * to_x > 0.0;  // on the left of a counter-clockwise edge
-      touch = {a, b, share, distance, in_x / distance, in_z / distance, 0.0, 0.0};
+      inside = (dx * to_z - dz * to_x) * area > 0.0;
+      touch = {a, b, share, distance, in_x / distance, in_z / distance};
     }
     if (found && inside) touches_.push_back(touch);
   }
@@ -70,7 +75,7 @@ double PlanarContact::energy() const {
 
 double PlanarContact::force_z() const {
   double sum = 0.0;
-  for (const PlanarTouch& t : touches_) sum += t.force * t.push_z - t.friction * t.push_x;
+  for (const PlanarTouch& t : touches_) sum += t.force_z();
   return sum;
 }
 

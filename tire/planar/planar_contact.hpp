@@ -20,6 +20,11 @@ struct PlanarTouch {
   double depth = 0.0;                  // m
   double push_x = 0.0, push_z = 0.0;   // unit vector of the force on the tire
   double force = 0.0, friction = 0.0;  // N; friction along (push_z, −push_x)
+  double across = 0.0;                 // friction along the normal of the plane, y, N
+
+  int other() const { return b < 0 ? a : b; }
+  double force_x() const { return force * push_x + friction * push_z; }  // on the tire, N
+  double force_z() const { return force * push_z - friction * push_x; }
 };
 
 struct PlanarContactLaw {

@@ -18,9 +18,8 @@ struct PlanarFile {
   static constexpr SchemaName kSchema{"planar",
                                       "A wheel seen from the side, in plane strain: a disc and around it the tire, "
                                       "meshed with constant-strain triangles. "
-                                      "It can be pressed on plates, cleats and profiles; in a run the rim replaces the "
-                                      "disc, and the section is extended "
-                                      "over the width. SI units."};
+                                      "It can be pressed on plates, cleats and profiles; in a run the section is "
+                                      "extended over the width. SI units."};
   std::string path;
   PlanarParams params;
   PlanarVolume volume = PlanarVolume::element;  // options.averaged of the parameters
@@ -51,15 +50,26 @@ void visit_fields(FieldsOf<PlanarFile> auto& s, auto&& visit) {
       key("volume", "", words("averaged element"),
           "Whether the volumetric stress is that of each triangle, which locks near incompressibility, or follows from "
           "volumes averaged around nodes."));
-  visit(p.integrator,
-        key("integrator", "", words("semi_implicit_euler runge_kutta_4"),
-            "Integrator of its motion; pressing does not need it, and runs take semi_implicit_euler alone."));
+  visit(
+      p.integrator,
+      key("integrator", "", words("semi_implicit_euler runge_kutta_4"),
+          "Integrator of its motion. runge_kutta_4 costs four times as much; forces of the terrain are constant in its "
+          "steps, those of contact_law penalty are not."));
+  visit(
+      p.contact,
+      key("contact_law", "", words("terrain penalty"),
+          "Contact in a run: that of the terrain, or contact_stiffness and friction of this tire in each of its steps, "
+          "as in the source, on the rigid terrain alone, level or alike across."));
+  visit(p.disc_in_run,
+        key("disc_in_run", "", words("rigid elastic"),
+            "Whether the rim replaces the disc in a run, or holds its middle alone: then the tire's mass contains the "
+            "disc, and the rim's must not."));
   visit(p.step_share, needed("step_share", "-", above(0).to(1),
                              "Step of its motion / largest stable one; in a run that of the mesh as it is pressed."));
   visit(p.contact_stiffness,
         needed("contact_stiffness", "N/m", above(0).usual(1e4, 1e11),
-               "c, force of a node on rigid ground / its depth, per metre of width, when it is pressed; in a run the "
-               "terrain has its own contact."));
+               "c, force of a node on rigid ground / its depth, per metre of width, when it is pressed, and in a run "
+               "with contact_law penalty."));
   visit(s.contact, keys::kContact);
 }
 

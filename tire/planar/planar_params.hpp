@@ -8,6 +8,8 @@
 namespace furrow::tire {
 
 enum class PlanarIntegrator { semi_implicit_euler, runge_kutta_4 };
+enum class PlanarContactOf { terrain, penalty };  // in a run
+enum class PlanarDisc { rigid, elastic };         // in a run
 
 struct PlanarParams {
   PlanarWheelSize size;
@@ -15,6 +17,8 @@ struct PlanarParams {
   PlanarOptions options;
   double contact_stiffness = 0.0;  // c of a node, N/m per metre of width
   double friction = 0.0;           // of tire on ground
+  PlanarContactOf contact = PlanarContactOf::terrain;
+  PlanarDisc disc_in_run = PlanarDisc::rigid;
   PlanarIntegrator integrator = PlanarIntegrator::semi_implicit_euler;
   double step_share = 0.5;  // of the largest stable step of the undeformed mesh
 };

@@ -45,9 +45,9 @@ class PlanarSpec final : public TireSpec {
 
   TireDescription describe() const override;
   std::unique_ptr<Tire> make(const TireContext& context) const override {
-    if (const std::string refused = not_in_motion(); !refused.empty())
-      throw input_error(file_.path, "integrator", refused);
-    return make_planar_tire(file_, shape(), context.gravity);
+    PlanarFile file = file_;
+    if (context.ground_friction) file.params.friction = std::min(file.params.friction, *context.ground_friction);
+    return make_planar_tire(file, shape(), context.gravity, context.ground_profile);
   }
   TireShape shape() const override {
     TireShape shape = cylinder(file_.params.size.around, file_.params.size.radius, file_.params.options.width);
@@ -61,16 +61,14 @@ class PlanarSpec final : public TireSpec {
     });
   }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override { return unusual_; }
-  std::unique_ptr<ModalTest> modal_test() const override { return std::make_unique<PlanarModes>(file_.params); }
+  /// On a rim that replaces the disc.
+  std::unique_ptr<ModalTest> modal_test() const override {
+    PlanarParams params = file_.params;
+    params.disc_in_run = PlanarDisc::rigid;
+    return std::make_unique<PlanarModes>(params);
+  }
 
  private:
-  /// Why this tire cannot be used in motion; empty if it can.
-  std::string not_in_motion() const {
-    if (file_.params.integrator == PlanarIntegrator::semi_implicit_euler) return {};
-    return "is 'runge_kutta_4', which runs do not take in this version: expected 'semi_implicit_euler', or tire.rigid "
-           "true";
-  }
-  /// Mass properties of the tire without its disc.
   MassProperties mass() const { return planar_mass(file_.params); }
 
   PlanarFile file_;
@@ -79,7 +77,7 @@ class PlanarSpec final : public TireSpec {
 
 TireDescription PlanarSpec::describe() const {
   const PlanarParams& p = file_.params;
-  const PlanarMesh mesh = planar_wheel(p.size);
+  const PlanarMesh mesh = planar_wheel(p.size);  // that is pressed
   const PlanarCarcass carcass(p);
   const double limit = carcass.step_limit();
   TireDescription d;
@@ -96,8 +94,9 @@ TireDescription PlanarSpec::describe() const {
   d.mass = mass();
   d.memory = kBytesPerElement * mesh.elements();
   d.saved_bytes = kSavedBytes * carcass.mesh().nodes();
-  if (const std::string refused = not_in_motion(); !refused.empty())
-    d.static_only = "whose key 'integrator' " + refused;
+  if (p.contact == PlanarContactOf::penalty)
+    d.own_contact = "whose key contact_law 'penalty' holds for rigid ground that is alike across",
+    d.own_contact_in_plane = true;
   d.takes = {"friction", "elements_circumference"};
   d.model = {{"elements", static_cast<double>(carcass.mesh().elements())}, {"step_limit_s", limit}};
   return d;

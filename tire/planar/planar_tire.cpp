@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "protocol/core/assert.hpp"
 #include "tire/extruded/extruded_tire.hpp"
 #include "tire/planar/planar_carcass.hpp"
+#include "tire/planar/tread_contact.hpp"
 
 namespace furrow::tire {
 
@@ -15,9 +15,14 @@ MassProperties planar_mass(const PlanarParams& params) {
   return {mass, Vec3(diametral, spin, diametral).asDiagonal()};
 }
 
-std::unique_ptr<Tire> make_planar_tire(const PlanarFile& file, TireShape shape, const Vec3& gravity) {
-  FURROW_ASSERT(file.params.integrator == PlanarIntegrator::semi_implicit_euler);
-  return make_extruded_tire(std::make_unique<PlanarCarcass>(file.params), std::move(shape), gravity);
+std::unique_ptr<Tire> make_planar_tire(const PlanarFile& file, TireShape shape, const Vec3& gravity,
+                                       const GroundProfilePoints& ground) {
+  const PlanarParams& p = file.params;
+  auto carcass = std::make_unique<PlanarCarcass>(p);
+  if (p.contact == PlanarContactOf::penalty)
+    carcass->set_contact(make_tread_contact(carcass->mesh(), carcass->tread(), carcass->mass(),
+                                            {p.contact_stiffness * p.options.width, p.friction}, ground));
+  return make_extruded_tire(std::move(carcass), std::move(shape), gravity);
 }
 
 }  // namespace furrow::tire

@@ -1,5 +1,5 @@
 // The planar finite-element tire in motion: planar_carcass.hpp, extruded over its width
-// (tire/extruded/extruded_tire.hpp). Its inner nodes move with the rim, which replaces the disc.
+// (tire/extruded/extruded_tire.hpp).
 #pragma once
 
 #include <memory>
@@ -8,10 +8,11 @@
 
 namespace furrow::tire {
 
-/// Mass, and inertia about the centre, of the nodes of the undeformed tire without its disc.
+/// Mass, and inertia about the centre, of the nodes of the undeformed tire, with its disc where that is elastic.
 MassProperties planar_mass(const PlanarParams& params);
 
-/// @pre the file's integrator is semi-implicit Euler
-std::unique_ptr<Tire> make_planar_tire(const PlanarFile& file, TireShape shape, const Vec3& gravity);
+/// @param ground of the tire's own contact, if it has that
+std::unique_ptr<Tire> make_planar_tire(const PlanarFile& file, TireShape shape, const Vec3& gravity,
+                                       const GroundProfilePoints& ground = {});
 
 }  // namespace furrow::tire

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "tests/tire/planar/planar_examples.hpp"
-#include "tests/tire/planar/rubbing_contact.hpp"
+#include "tire/planar/rubbing_contact.hpp"
 
 namespace furrow::tire {
 namespace {

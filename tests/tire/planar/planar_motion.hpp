@@ -7,12 +7,9 @@
 #include <functional>
 
 #include "tire/planar/planar_params.hpp"
+#include "tire/planar/rubbing_contact.hpp"
 
 namespace furrow::tire {
-
-struct PlanarState {
-  PlanarField x, v;
-};
 
 class PlanarMotion {
  public:

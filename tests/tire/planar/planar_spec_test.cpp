@@ -50,16 +50,20 @@ TEST(PlanarSpec, wrong_files_are_refused_with_file_key_and_what_was_expected) {
       {"/volume", {2}, "expected"},
       {"/volume", {"nodal"}, "expected 'averaged' or 'element'"},
       {"/integrator", {"leapfrog"}, "expected 'semi_implicit_euler' or 'runge_kutta_4'"},
+      {"/contact_law", {"hertz"}, "expected 'terrain' or 'penalty'"},
+      {"/disc_in_run", {"stiff"}, "expected 'rigid' or 'elastic'"},
       {"/step_share", {0}, "expected"},
       {"/step_share", {1.2}, "expected a number, above 0 up to 1"},
       {"/contact_stiffness", {0}, "expected"},
       {"/contact", {3}, "expected"},
       {"/pressure", {2e5}},
       {"/format_version", {2}, "expected"}};
-  expect_keys_are_checked(read_planar, file_text(), wrong,
+  json whole = file_text();
+  whole["contact_law"] = "penalty", whole["disc_in_run"] = "elastic";
+  expect_keys_are_checked(read_planar, whole, wrong,
                           {"radius", "rim_radius", "width", "elements_circumference", "elements_radial", "disc", "tire",
                            "step_share", "contact_stiffness", "contact"},
-                          {"law", "volume", "integrator"});
+                          {"law", "volume", "integrator", "contact_law", "disc_in_run"});
   json file = file_text();
   file["elements_circumference"] = 12, file["elements_radial"] = 14;
   EXPECT_EQ(complaint(file),
@@ -97,6 +101,31 @@ TEST(PlanarSpec, a_scenario_may_change_friction_and_the_mesh) {
   EXPECT_EQ(idle_keys(*read_tire(o)), std::vector<std::string>{"pressure"});  // another pressure is another material
   o.elements_circumference = 8;
   EXPECT_TRUE(holds(complaint(file_text(), o), "expected 12 to 2000"));
+}
+
+TEST(PlanarSpec, the_penalty_contact_is_its_own_and_takes_the_grip_of_the_ground) {
+  json file = file_text();
+  TireOptions o;
+  o.file = "tire.json";
+  EXPECT_EQ(read_planar(file, o)->describe().own_contact, "");
+  file["contact_law"] = "penalty", file["integrator"] = "runge_kutta_4";
+  const auto spec = read_planar(file, o);
+  EXPECT_TRUE(holds(spec->describe().own_contact, "contact_law"));
+  EXPECT_TRUE(spec->describe().own_contact_in_plane);
+  EXPECT_EQ(spec->describe().static_only, "");
+  for (const double ground : {0.3, 2.0}) {
+    const auto tire = spec->make({.ground_friction = ground});
+    RimState rim;
+    rim.position.z() = 0.522 - 2e-5;
+    rim.velocity.x() = 5.0;  // slides
+    RimTrajectory motion(rim);
+    tire->place(rim);
+    motion.extend(rim, 1e-4);
+    ASSERT_TRUE(tire->advance(motion, {}, 1).ok);
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& force : tire->stated_contact()->forces.force) sum += force;
+    EXPECT_NEAR(sum.x(), -std::min(ground, 0.8) * sum.z(), 1e-9 * sum.z());
+  }
 }
 
 TEST(PlanarSpec, pressing_gives_curve_and_footprint) {

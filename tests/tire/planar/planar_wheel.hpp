@@ -7,8 +7,8 @@
 
 #include "protocol/core/outcome.hpp"
 #include "tests/tire/planar/planar_motion.hpp"
-#include "tests/tire/planar/rubbing_contact.hpp"
 #include "tire/planar/planar_params.hpp"
+#include "tire/planar/rubbing_contact.hpp"
 
 namespace furrow::tire {
 

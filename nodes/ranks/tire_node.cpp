@@ -5,6 +5,7 @@
 // tire sends only its contact.
 // With contact tangents the forces follow the tire's motion within a step. Their difference from the forces that the
 // terrain then reports is recorded and returned (nodes/ranks/impulse_ledger.hpp).
+// A prompt tire that does not follow its rim computes its contact while it moves. It moves before it states the forces.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,10 +26,14 @@
 namespace furrow::ranks {
 namespace {
 
-/// For a tire whose contact is its own.
-GroundHeights ground_heights(const scenario::Scenario& scenario, int index) {
-  if (scenario.tires.at(index)->describe().own_contact.empty()) return {};
-  return scenario.terrain->heights(scenario.terrain_context());
+tire::TireContext tire_context(const scenario::Scenario& scenario, int index, std::function<void()> alive) {
+  tire::TireContext context{
+      .gravity = scenario.rig->gravity(), .ground_friction = scenario.ground_friction, .alive = std::move(alive)};
+  if (const tire::TireDescription tire = scenario.tires.at(index)->describe(); tire.own_contact_in_plane)
+    context.ground_profile = scenario.terrain->profile(scenario.terrain_context());
+  else if (!tire.own_contact.empty())
+    context.ground_heights = scenario.terrain->heights(scenario.terrain_context());
+  return context;
 }
 
 class TireNode : public Node {
@@ -38,10 +43,8 @@ class TireNode : public Node {
         index_(index),
         kind_(scenario.tires.at(index)->describe().kind),
         pressure_(scenario.tires.at(index)->options().pressure),
-        tire_(scenario.tires.at(index)->make({.gravity = scenario.rig->gravity(),
-                                              .ground_friction = scenario.ground_friction,
-                                              .ground_heights = ground_heights(scenario, index),
-                                              .alive = std::move(alive)})),
+        follows_rim_(scenario.tires.at(index)->describe().follows_rim),
+        tire_(scenario.tires.at(index)->make(tire_context(scenario, index, std::move(alive)))),
         reach_(tire::inflated_reach(*tire_, scenario::describe_rig(scenario).wheels.at(index).camber_angle)) {
     report_.prompt = scenario.prompt(index);
     report_.contact_tangent = scenario.tires.at(index)->options().contact_tangent;
@@ -102,17 +105,23 @@ class TireNode : public Node {
   void answer(Transport& transport, const StepHeader& header) override {
     if (!report_.prompt) return;
     const double duration = scenario_.run.step;
-    const Outcome stated = tire_->state_contact(rim_.rim, duration);
-    if (!stated.ok) throw physics_error(stated, to_string(Address{Role::tire, index_}), when(header));
+    if (const Outcome stated = tire_->state_contact(rim_.rim, duration); !stated.ok) throw failed(stated, header);
     trajectory_.extend_accelerated(rim_.rim, duration);
     SurfaceMotion end{header, {}, Order::go_on, kNotYet};
-    tire_->surface_on(trajectory_.end(), end.surface);
+    if (follows_rim_) {
+      tire_->surface_on(trajectory_.end(), end.surface);
+    } else {
+      forces_.clear();
+      move(header);
+      tire_->surface(end.surface);
+    }
     std::ranges::fill(end.surface.velocity, Vec3::Zero());  // the interval ends there
     send(transport, kTerrain, end);
     if (const StatedContact* contact = tire_->stated_contact())
       send(transport, kTerrain, ContactStatement{header, *contact});
     forces_ = receive_step<TerrainForces>(transport, kTerrain, header.step).forces;
-    move(header);
+    if (follows_rim_) move(header);
+    account(duration);
     send(transport, kRig, PromptWrench{header, report_.wrench});
   }
 
@@ -120,6 +129,7 @@ class TireNode : public Node {
     if (report_.prompt) return;
     trajectory_.extend(rim_.rim, scenario_.run.step);
     move(header);
+    account(scenario_.run.step);
   }
 
   Order due() const override { return due_; }
@@ -167,9 +177,12 @@ class TireNode : public Node {
     }
     if (pressure_.varies()) tire_->set_pressure(pressure_.at(header.time + 0.5 * duration));
     const Outcome outcome = tire_->advance(trajectory_, forces_, scenario_.tire_substeps);
-    if (!outcome.ok) throw physics_error(outcome, to_string(Address{Role::tire, index_}), when(header));
+    if (!outcome.ok) throw failed(outcome, header);
     tire_->acted(forces_);
-    account(duration);
+  }
+
+  Error failed(const Outcome& outcome, const StepHeader& header) const {
+    return physics_error(outcome, to_string(Address{Role::tire, index_}), when(header));
   }
 
   void account(double duration) {
@@ -236,6 +249,7 @@ class TireNode : public Node {
   int index_;
   std::string kind_;
   tire::PressureSchedule pressure_;
+  bool follows_rim_;
   std::unique_ptr<tire::Tire> tire_;
   double reach_;  // m
   tire::RimTrajectory trajectory_;

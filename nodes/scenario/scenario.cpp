@@ -39,7 +39,8 @@ std::string Scenario::tire_key(std::size_t wheel, const std::string& name) const
 }
 
 bool Scenario::prompt(std::size_t wheel) const {
-  return tires.at(wheel)->describe().follows_rim && terrain->describe().answers_at_once;
+  const tire::TireDescription tire = tires.at(wheel)->describe();
+  return (tire.follows_rim || !tire.own_contact.empty()) && terrain->describe().answers_at_once;
 }
 
 bool Scenario::has_own_contact() const {

@@ -173,6 +173,11 @@ class Checks {
       throw wrong("terrain.engine", "is '{}', expected {}: {} is a {}, {}", terrain_.engine,
                   terrain::engines_with_stated_contacts(), s_.tire_key(wheel, "file"), in_words(tires_[wheel]),
                   tires_[wheel].own_contact);
+    if (tires_[wheel].own_contact_in_plane && std::isfinite(terrain_.uneven.right))
+      throw wrong("terrain.profile_across",
+                  "is true and {} has heights that change across, expected false: {} is a {}, {}",
+                  "terrain." + terrain_.uneven_key, s_.tire_key(wheel, "file"), in_words(tires_[wheel]),
+                  tires_[wheel].own_contact);
   }
 
   void room() {

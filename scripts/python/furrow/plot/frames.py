@@ -49,8 +49,13 @@ class TireFrame(Frame):
     position = _dataset("position", 3, "Nodes, shape (n, 3), m.")
     velocity = _dataset("velocity", 3, "Of the nodes, shape (n, 3), m/s.")
     force = _dataset("force", 3, "On the nodes by the terrain, shape (n, 3), N.")
-    strain = _dataset("strain", 0, "Largest principal strain of the surface at the nodes, shape (n,); of shells.")
     triangle = _dataset("triangle", 3, "Indices of the nodes of each triangle, shape (m, 3).")
+
+    @cached_property
+    def strain(self) -> NDArray[np.generic] | None:
+        """Largest principal strain of the surface at the nodes, shape (n,); None of other tires than shells."""
+        with h5py.File(self.path, "r") as file:
+            return table(file, "strain", 0) if "strain" in file else None
 
 
 class GrainFrame(Frame):

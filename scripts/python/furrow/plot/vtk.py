@@ -51,8 +51,10 @@ def polydata(position: Array, cells: Mapping[str, Array], values: Mapping[str, A
 def text_of(frame: Frame) -> str:
     """A frame as the text of a .vtp file."""
     if isinstance(frame, TireFrame):
-        return polydata(frame.position, {"Polys": frame.triangle}, {"velocity": frame.velocity, "force": frame.force},
-                        frame.time)
+        values = {"velocity": frame.velocity, "force": frame.force}
+        if frame.strain is not None:
+            values["strain"] = frame.strain
+        return polydata(frame.position, {"Polys": frame.triangle}, values, frame.time)
     assert isinstance(frame, GrainFrame)
     points = np.arange(len(frame.radius)).reshape(-1, 1)
     return polydata(frame.position, {"Verts": points}, {"radius": frame.radius, "speed": frame.speed}, frame.time)

@@ -38,6 +38,10 @@ inline constexpr Key kProfileFile =
 inline constexpr Key kProfileAcross =
     key("profile_across", "",
         "Each wheel meets the heights where it is across profile_file. false: those at profile_v, alike for all y.");
+inline constexpr Key kProfileLine = key(
+    "profile_line", "", allowed::words("straight curved"),
+    "The reference line of a road in OpenCRG: straight along x, or curved by its headings. A curved one begins along "
+    "x where the straight one does.");
 inline constexpr Key kProfileV = key(
     "profile_v", "m", allowed::from(-1e7, 1e7),
     "What lies at y = 0 of the scenario: v of profile_file in OpenCRG, to the left of its reference line, or y of a "

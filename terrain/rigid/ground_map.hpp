@@ -7,23 +7,32 @@
 // energy of the contact is
 //   E = κ ∫ d dV = κ ∮ d²/(2 c) (−n_z) dA.                                                                     (2)
 // Height maps have no upright faces; the pressure acts along the surface's own normal, in all three directions.
+//
+// The grid may lie along a line that turns (road_line.hpp): h is then straight between nodes along u and along v.
 #pragma once
 
 #include <array>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "protocol/core/terrain_state.hpp"
 #include "protocol/core/vec.hpp"
 #include "terrain/rigid/ground_pressure.hpp"
+#include "terrain/rigid/road_line.hpp"
 
 namespace furrow::terrain {
 
 /// Heights at the nodes of a grid, m.
 struct HeightMap {
-  std::vector<double> x, y;  // of the nodes, rising, two at least, m
-  std::vector<double> z;     // [ix * y.size() + iy], finite
-  double turn = 0.0;         // of the line that is laid straight along x, rad
+  std::vector<double> x, y;              // of the nodes, rising, two at least, m; with a line: u and v along it
+  std::vector<double> z;                 // [ix * y.size() + iy], finite
+  double turn = 0.0;                     // of the line that is laid straight along x, rad
+  std::shared_ptr<const RoadLine> line;  // none: the grid lies along x and y
 };
+
+/// The least and the largest x, then y, m.
+std::array<double, 4> extent(const HeightMap& map);
 
 class GroundMap {
  public:
@@ -49,7 +58,16 @@ class GroundMap {
     double sx, sy;       // share of the way to the next
     bool inside_x, inside_y;
   };
-  Cell cell_at(double x, double y) const;
+  /// A rectangle of the grid.
+  struct Range {
+    double x_from, x_to, y_from, y_to;
+  };
+  RoadLine::Place place(double x, double y, std::size_t near) const;
+  Cell cell_at(const RoadLine::Place& at) const;
+  double height(const RoadLine::Place& at) const;
+  double cosine(const RoadLine::Place& at) const;
+  Range range_of(std::span<const RoadLine::Place> corners) const;
+  double highest(const Range& range) const;
   double at(std::size_t ix, std::size_t iy) const { return map_.z[ix * map_.y.size() + iy]; }
 
   HeightMap map_;

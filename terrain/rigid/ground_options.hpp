@@ -18,18 +18,19 @@ struct HeightMap;
 
 /// A stiff elastic layer: pressure = stiffness × depth + damping × its rate. The keys, and what the run supplies.
 struct GroundOptions : TerrainContext {
-  std::string scenario = "scenario";     // what messages name: the scenario's file
-  double friction = 0.9;                 // -, at most the tire's
-  double friction_velocity_scale = 5.0;  // c in F_t = μ N tanh(c |v_t|), s/m
-  double ground_stiffness = 4e8;         // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
-  double ground_shear_stiffness = 1e8;   // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
-  double ground_damping = 2.5e4;         // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
-  ProfilePoints profile;                 // z at x; empty: the plane z = 0
-  std::string profile_file;              // CSV or OpenCRG, in place of `profile`
-  bool profile_across = true;            // heights of the file may change across; false: they are those at profile_v
-  double profile_v = 0.0;                // of the file where y = 0, m
-  double profile_from = -1.0;            // x where the file's first height lies, m; negative: where the file says
-  std::shared_ptr<const HeightMap> map;  // of the file, where heights change across: in place of `profile`
+  std::string scenario = "scenario";      // what messages name: the scenario's file
+  double friction = 0.9;                  // -, at most the tire's
+  double friction_velocity_scale = 5.0;   // c in F_t = μ N tanh(c |v_t|), s/m
+  double ground_stiffness = 4e8;          // N/m³: 0.6 mm under 240 kPa; 4e5 N/m on a vertex that carries 10 cm²
+  double ground_shear_stiffness = 1e8;    // N/m³: a tread of 1 MPa shear modulus, 10 mm thick
+  double ground_damping = 2.5e4;          // N s/m³: holds such a vertex of 2.8 g on its own up to H = 4e-5 s
+  ProfilePoints profile;                  // z at x; empty: the plane z = 0
+  std::string profile_file;               // CSV or OpenCRG, in place of `profile`
+  bool profile_across = true;             // heights of the file may change across; false: they are those at profile_v
+  std::string profile_line = "straight";  // how the reference line of OpenCRG lies
+  double profile_v = 0.0;                 // of the file where y = 0, m
+  double profile_from = -1.0;             // x where the file's first height lies, m; negative: where the file says
+  std::shared_ptr<const HeightMap> map;   // of the file, where heights change across: in place of `profile`
   std::vector<std::pair<std::string, std::string>> remarks;  // of the file (GroundShape)
   std::string road_class;                                    // of ISO 8608, A to H, in place of `profile`
   double road_from = 5.0;                                    // x where it begins, m
@@ -56,6 +57,7 @@ void visit_fields(FieldsOf<GroundOptions> auto& s, auto&& visit) {
           "0."));
   visit(s.profile_file, keys::kProfileFile);
   visit(s.profile_across, keys::kProfileAcross);
+  visit(s.profile_line, keys::kProfileLine);
   visit(s.profile_v, keys::kProfileV);
   visit(s.profile_from, keys::kProfileFrom);
   visit(s.road_class,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/error.hpp"
 #include "terrain/rigid/ground_map.hpp"
 #include "terrain/rigid/roads/read_map.hpp"
 #include "terrain/rigid/roads/read_road.hpp"
@@ -18,7 +19,10 @@ constexpr double kMostStep = 3.0;   // m, of what a wheel or a vehicle meets
 }  // namespace
 
 UnevenPart GroundShape::uneven() const {
-  if (map) return {map->x.front(), map->x.back(), map->y.front(), map->y.back()};
+  if (map) {
+    const auto [from, to, right, left] = extent(*map);
+    return {from, to, right, left};
+  }
   UnevenPart part;
   if (const auto [from, to] = uneven_range(profile); from <= to) part.from = from, part.to = to;
   return part;
@@ -28,8 +32,8 @@ std::vector<std::pair<std::string, std::string>> GroundShape::remarks() const {
   std::vector<std::pair<std::string, std::string>> found;
   if (map && map->turn > kStraight)
     found.emplace_back("profile_file",
-                       fmt::format("has a reference line that turns by {:.2g} rad: it is laid straight along x, its "
-                                   "curves are not driven",
+                       fmt::format("has a reference line that turns by {:.2g} rad: it is laid straight along x; with "
+                                   "terrain.profile_line curved it turns",
                                    map->turn));
   double rise = 0.0, at = 0.0;  // the largest step, m
   const auto look = [&](double x, double run, double step) {
@@ -41,8 +45,10 @@ std::vector<std::pair<std::string, std::string>> GroundShape::remarks() const {
   for (std::size_t k = across; map && k < map->z.size(); ++k)
     look(map->x[k / across], map->x[k / across] - map->x[k / across - 1], map->z[k] - map->z[k - across]);
   if (rise > kMostStep)
-    found.emplace_back("profile_file",
-                       fmt::format("steps by {:g} m at x = {:g} m, expected heights in m: another unit?", rise, at));
+    found.emplace_back(
+        "profile_file",
+        fmt::format("steps by {:g} m at {} = {:g} m, expected lengths and heights in m: another unit, or degrees?",
+                    rise, map && map->line ? "u" : "x", at));
   return found;
 }
 
@@ -53,6 +59,10 @@ GroundHeights GroundShape::heights() const {
 }
 
 GroundShape read_shape(const std::filesystem::path& file, const RoadPlace& place, bool across) {
+  if (place.curved && !across)
+    throw input_error(file.string(), "",
+                      "is read along its reference line (terrain.profile_line curved), expected terrain.profile_across "
+                      "true");
   GroundShape shape;
   if (across) shape.map = read_map(file, place);
   if (!shape.map) shape.profile = read_road(file, place);

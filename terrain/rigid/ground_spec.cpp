@@ -105,7 +105,8 @@ std::unique_ptr<TerrainSpec> read_ground_spec(const nlohmann::json& section, con
   if (!options.profile_file.empty()) {
     options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
     GroundShape shape =
-        read_shape(options.profile_file, {options.profile_v, options.profile_from}, options.profile_across);
+        read_shape(options.profile_file, {options.profile_v, options.profile_from, options.profile_line == "curved"},
+                   options.profile_across);
     options.remarks = shape.remarks();
     options.map = std::move(shape.map);
     options.profile = std::move(shape.profile);

@@ -23,11 +23,12 @@ struct ScmOptions : TerrainContext {
   double grid_spacing = 0.01;  // between nodes, m
   double patch_width = -1.0;   // b of Bekker's law, m; negative: found from each contact patch
   // Heights before the run.
-  std::string profile_file;    // none: level, z = 0
-  bool profile_across = true;  // heights of the file may change across
-  double profile_v = 0.0;      // of the file where y = 0, m
-  double profile_from = -1.0;  // x where the file's first height lies, m; negative: where the file says
-  GroundShape shape;           // of the file
+  std::string profile_file;               // none: level, z = 0
+  bool profile_across = true;             // heights of the file may change across
+  std::string profile_line = "straight";  // how the reference line of OpenCRG lies
+  double profile_v = 0.0;                 // of the file where y = 0, m
+  double profile_from = -1.0;             // x where the file's first height lies, m; negative: where the file says
+  GroundShape shape;                      // of the file
   // Soil.
   double bekker_k_c = 102e3;              // N/m^(n+1)
   double bekker_k_phi = 5301e3;           // N/m^(n+2)
@@ -55,6 +56,7 @@ void visit_fields(FieldsOf<ScmOptions> auto& s, auto&& visit) {
             "smaller side of a long patch and the radius of a round one."));
   visit(s.profile_file, keys::kProfileFile);
   visit(s.profile_across, keys::kProfileAcross);
+  visit(s.profile_line, keys::kProfileLine);
   visit(s.profile_v, keys::kProfileV);
   visit(s.profile_from, keys::kProfileFrom);
   visit(s.bekker_k_c,

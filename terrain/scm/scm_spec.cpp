@@ -18,7 +18,9 @@ namespace {
 constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius in single precision
 
 constexpr double kMostSlope = 0.268;  // 15°
-constexpr double kMostSlopes = 1e6;   // places where the slope is measured
+constexpr double kLeastShare =
+    1e-4;  // m, of k_c over k_φ; soils in the table of [Wong 2008] have 5e-4 to 0.2, one 1e-5
+constexpr double kMostSlopes = 1e6;  // places where the slope is measured
 
 /// Over the distance of nodes, or where there are very many, of some of them.
 double steepest_slope(const ScmOptions& o) {
@@ -36,6 +38,11 @@ double steepest_slope(const ScmOptions& o) {
 
 std::vector<std::pair<std::string, std::string>> remarks_of(const ScmOptions& o) {
   auto remarks = o.shape.remarks();
+  if (o.bekker_k_c != 0.0 && std::abs(o.bekker_k_c) < kLeastShare * o.bekker_k_phi)
+    remarks.emplace_back("bekker_k_c",
+                         fmt::format("is {:g} N/m^(n+1), less than {:g} m × bekker_k_phi: it changes nothing, or is it "
+                                     "in kN?",
+                                     o.bekker_k_c, kLeastShare));
   if (const double slope = steepest_slope(o); slope > kMostSlope)
     remarks.emplace_back("profile_file",
                          fmt::format("rises by {:.0f}° at its steepest, expected at most 15°: empirical soil sinks "
@@ -57,10 +64,10 @@ class ScmSpec final : public TerrainSpec {
     if (options_.shape.given()) {
       d.uneven_key = "profile_file";
       d.uneven = options_.shape.uneven();
-      d.remarks = remarks_;
     } else {
       d.undisturbed_height = 0.0;
     }
+    d.remarks = remarks_;
     if (options_.cone_index > 0.0) d.cone_index = options_.cone_index;
     d.cohesive = options_.mohr_cohesion > kCohesionOfSand;
     return d;
@@ -118,7 +125,9 @@ std::unique_ptr<TerrainSpec> read_scm_spec(const nlohmann::json& section, const 
   read_fields(section, options);
   if (!options.profile_file.empty()) {
     options.profile_file = find_file(options.profile_file, context.key("profile_file"), context.file).string();
-    options.shape = read_shape(options.profile_file, {options.profile_v, options.profile_from}, options.profile_across);
+    options.shape =
+        read_shape(options.profile_file, {options.profile_v, options.profile_from, options.profile_line == "curved"},
+                   options.profile_across);
   }
   return make_scm_spec(options);
 }

@@ -1,4 +1,4 @@
-// Fuzzes tire files in our own and in the public ANCFTire layout, with a scenario's changes: they are read, described,
+// Fuzzes tire files in our own and in the public layouts, with a scenario's changes: they are read, described,
 // and meshed if that is quick. The document: {"file": a tire file, "pressure": …, "rigid": …, "around": …, "across": …}
 #include <algorithm>
 

@@ -59,6 +59,13 @@ def tires(root):
     files = documents(root, "tire/data/*.json")
     files = [file for file in files if "template" in file or "Template" in file or "model" in file]
     files += [public_layout(file) for file in files if file.get("template") == "ancf_shell"]
+    files += [{**files[-1], "8-Node Elements": True},
+              {"Name": "wheel", "Type": "Tire", "Template": "RigidTire", "Radius": 0.4, "Width": 0.2, "Mass": 30,
+               "Inertia": [3, 5, 3], "Contact Material": files[-1]["Contact Material"]},
+              {**{key: value for key, value in files[-1].items() if key != "8-Node Elements"},
+               "Template": "ReissnerTire", "Materials": 3 * [
+                  {"Type": "Orthotropic", "Density": 1000, "Ex": 4e8, "Ey": 1e8, "nu": 0.4, "Gxy": 3e7, "Gxz": 2e7,
+                   "Gyz": 1e7}]}]
     return files + [{"file": files[0], "pressure": [[0, 2e5], [0.5, 1e5]], "rigid": True},
                     {"file": files[-1], "pressure": 1.5e5, "around": 24, "across": 6}]
 
@@ -80,7 +87,11 @@ def texts(target, root):
     if target == "bed":
         return ["x_m,y_m,z_m\n0.1,0,0.1\n0.2,0,0.1\n", "\ufeffx_m,y_m,z_m,radius_m\r\n0.1, -1e-3,0.1,0.03\r\n\r\n"]
     if target == "road":
-        return ["cx_m,z_m\n-1,0\n6,0\n6,0.2\n", *(f"k{ROAD}#:{form}\n{CUTS}{rows}" for form, rows in ROWS.items())]
+        return ["cx_m,z_m\n-1,0\n6,0\n6,0.2\n", "cx_m,y_m,z_m\n0,0,0\n0,1,0\n1,0,0.1\n1,1,0\n",
+                "ancols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 2 3 4\n",
+                *(f"k{ROAD}#:{form}\n{CUTS}{rows}" for form, rows in ROWS.items()),
+                f"k{ROAD}#:LRFI\n{CUTS.replace('slope,m/m', 'phi,rad')}{ROWS['LRFI']}".replace(
+                    "$KD", "$ROAD_CRG_MODS\nREFPOINT_U_FRACTION = 0.5\nREFPOINT_Z = 1\n$\n$KD")]
     if target == "handling":
         return [(root / "tire" / "data" / name).read_text() for name in ("handling_start.tir", "sweep_lumped.csv")]
     found = {

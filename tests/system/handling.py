@@ -197,6 +197,34 @@ class Handling(SystemTest):
                 if name == "bank":  # its left side is the lower one
                     self.assertGreater(found[0] + found[2] - found[1] - found[3], 0.05 * found.sum())
 
+    def test_a_vehicle_leans_with_a_banked_curve_of_a_road(self):
+        """Where the bank is v²/(g R), the weight and the turn act along the road's normal: no load goes across."""
+        radius, speed, before = 40.0, 8.0, 6.0
+        bank = speed ** 2 / (9.81 * radius)  # falls to the left, into the turn
+        rows = "".join(f"{max(0.0, u - 0.25 - before) / radius:20.12f}{0:20.12f}{0:20.12f}\n"
+                       for u in np.arange(0.0, 60.1, 0.5))
+        (self.folder / "curve.crg").write_text(
+            f"$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 0.5\nREFERENCE_LINE_START_B = {-bank}\n"
+            f"REFERENCE_LINE_END_B = {-bank}\n$\n$KD_DEFINITION\n#:LDFI\nD:reference line phi,rad\n"
+            f"D:long section at v = -5,m\nD:long section at v = 5,m\n$\n$$\n{rows}")
+        path = {"kind": "circle", "x": 3, "y": 0, "lead_in": 3, "radius": radius, "turn": "left", "angle_deg": 80,
+                "steering": {"law": "preview"}}
+        told = self.run_of("curve", scenario={
+            "format_version": 1, "tire": {"file": "hmmwv_handling.tir"},
+            "rig": {"type": "vehicle", "vehicle": "hmmwv.json", "start": 3.0, "start_speed": speed + 0.5,
+                    "driver": {"speed": {"target": speed + 0.5}, "path": path}},
+            "terrain": {"engine": "rigid", "profile_file": "curve.crg", "profile_line": "curved"},
+            "run": {"step": 1e-3, "end": 4.0, "average_from": 2.5},
+            "output": {"series_interval": 0.01, "frame_interval": 0}})
+        loads = [wheel["columns"]["force_z_N"] for wheel in told["wheels"]]
+        self.assertLess(abs(loads[0] + loads[2] - loads[1] - loads[3]), 0.02 * sum(loads))
+        lines = [{key: float(value) for key, value in line.items()}
+                 for line in rows_of(self.folder / "curve" / "timeseries_vehicle.csv") if float(line["time_s"]) > 2.5]
+        for line in lines:
+            self.assertAlmostEqual(line["roll_rad"], -np.arctan(bank), delta=5e-3)
+            self.assertAlmostEqual(line["z_m"], lines[0]["z_m"], delta=3e-3)
+        self.assertGreater(lines[-1]["y_m"] - lines[0]["y_m"], 3.0)
+
     def test_pressed_on_a_plate_and_validated(self):
         path = write_json(self.folder / "scenario.json", STEADY)
         self.furrow("press", path, "--out", self.folder / "press", "--load", "4000")

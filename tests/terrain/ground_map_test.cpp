@@ -183,7 +183,8 @@ TEST_F(MapFile, mistakes_are_refused_by_their_place) {
       {head + "1 2 3\n", "row 2, column 2': is missing"},
       {head + "1 2 3 4 5\n", "has more than 4 heights"},
       {head + "1 2 x 4\n", "row 2, column 1': is 'x', expected a number"},
-      {head + "1 -9999 3 4\n", "row 1, column 2': has no height (NODATA_value -9999)"},
+      {head + "1 -9999 3 4\n",
+       "row 1, column 2': has no height (NODATA_value -9999), expected a grid that was cropped"},
       {head + "1 2e6 3 4\n", "has the height 2e+06 m at x = 1.5 m, y = 1.5 m"},
       {"ncols 2\nnrows 2\nxllcorner 0\nyllcorner 5.4e6\ncellsize 1\n1 2 3 4\n",
        "lies from y = 5.4e+06 to 5.4e+06 m, expected -1e+06 to 1e+06 m: terrain.profile_from and terrain.profile_v"}};

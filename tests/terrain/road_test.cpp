@@ -179,9 +179,10 @@ TEST_F(RoadFile, heights_in_millimetres_are_said_to_step) {
     const auto remarks = read_shape(put("road.csv", rows), {}, true).remarks();
     return remarks.empty() ? std::string() : remarks[0].second;
   };
-  EXPECT_EQ(told("x_m,z_m\n0,0\n1,0\n2,120\n"), "steps by 120 m at x = 2 m, expected heights in m: another unit?");
+  EXPECT_EQ(told("x_m,z_m\n0,0\n1,0\n2,120\n"),
+            "steps by 120 m at x = 2 m, expected lengths and heights in m: another unit, or degrees?");
   EXPECT_EQ(told("x_m,y_m,z_m\n0,0,0\n0,1,0\n1,0,0\n1,1,50\n"),
-            "steps by 50 m at x = 1 m, expected heights in m: another unit?");
+            "steps by 50 m at x = 1 m, expected lengths and heights in m: another unit, or degrees?");
   EXPECT_EQ(told("x_m,z_m\n0,0\n1,0\n1,2.5\n500,300\n"), "");  // a wall, and a mountain
 }
 
@@ -217,6 +218,27 @@ TEST_F(RoadFile, options_and_modifiers_that_are_defaults_or_scale_heights_are_ho
   EXPECT_NEAR(right[0][1], 1.02 + 0.25, 1e-12);  // the height beside it, and the offset
   EXPECT_NEAR(left[2][1], 1.06 + 0.25, 1e-12);
   EXPECT_NEAR(left[1][1], 1.0, 1e-12);
+}
+
+/// As crg_write of ASAM's MATLAB package leaves it; where the point lies in the plane changes no height.
+TEST_F(RoadFile, the_height_of_the_point_of_reference_is_that_of_its_modifier) {
+  const std::string rows =
+      "$KD_DEFINITION\n#:LRFI\n" + kCuts +
+      "$$\n 0.1000000 0.2000000 0.4000000\n 0.3000000 0.5000000 0.7000000\n 0.0000000 0.0000000 *missing*\n";
+  const auto middle = [&](const std::string& mods) {
+    return read_road(put("moved.crg", kRoad + "$ROAD_CRG_MODS\n" + mods +
+                                          "$\n$ROAD_CRG_OPTS\nrefline_continuation = 1.0\n$\n" + rows),
+                     {0.0})[0][1];
+  };
+  EXPECT_NEAR(middle("refpoint_u_fraction = 0\nrefpoint_u_offset = 0\nrefpoint_v = 0\nrefpoint_v_offset = 0\n"
+                     "refpoint_x = 10\nrefpoint_y = 0\nrefpoint_z = 0\nrefpoint_phi = 3.14\n"),
+              0.0, 1e-12);
+  EXPECT_NEAR(middle("refpoint_z = 7\n"), 7.0, 1e-12);
+  EXPECT_NEAR(middle("refpoint_u = 2.5\nrefpoint_v = 0.25\nrefpoint_z = 1\n"), 0.2 + 1.0 - 0.45, 1e-12);
+  EXPECT_NEAR(middle("refpoint_u_fraction = 0.5\nrefpoint_u_offset = -0.5\nrefpoint_v_fraction = 0.75\n"), 0.2 - 0.45,
+              1e-12);
+  expect_told("REFPOINT_Z': is the height at u = 4 m, v = 0.5 m, where the road has none",
+              [&] { middle("refpoint_u_fraction = 1\nrefpoint_v_fraction = 1\n"); });
 }
 
 TEST_F(RoadFile, a_binary_road_that_states_no_end_ends_before_the_padding_of_its_last_record) {
@@ -273,7 +295,8 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
        "line 6': SCALE_Z_GRID is given in $ROAD_CRG, expected it in $ROAD_CRG_MODS"},
       {kRoad + "$ROAD_CRG_OPTS\nBORDER_MODE_U = 3\n$\n" + text + rows,
        "line 12': BORDER_MODE_U is 3, expected 2: the road goes on with its last height"},
-      {kRoad + "$ROAD_CRG_MODS\nREFPOINT_Z = 0\n$\n" + text + rows, "line 12': REFPOINT_Z is given, expected none"},
+      {kRoad + "$ROAD_CRG_MODS\nREFPOINT_U = 0\nREFPOINT_U_FRACTION = 0\n$\n" + text + rows,
+       "REFPOINT_U': is given beside REFPOINT_U_FRACTION, expected one of them"},
       {kRoad + "$ROAD_CRG_MODS\nGRID_NAN_MODE = 5\n$\n" + text + rows,
        "line 12': GRID_NAN_MODE is 5, expected 0, 1 or 2"},
       {kRoad + "$KD_DEFINITION\n#:LRFI\n$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$\n" + rows,

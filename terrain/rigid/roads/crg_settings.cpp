@@ -14,11 +14,11 @@
 namespace furrow::terrain {
 namespace {
 
-constexpr double kAny = std::numeric_limits<double>::quiet_NaN(), kNone = std::numeric_limits<double>::infinity();
+constexpr double kAny = std::numeric_limits<double>::quiet_NaN();
 
 struct Setting {
   std::string_view name;
-  double only = kAny;    // the only value that is read; kAny: every one, kNone: none is
+  double only = kAny;    // the only value that is read; kAny: every one
   const char* why = "";  // no other is
 };
 
@@ -35,14 +35,13 @@ constexpr auto kParameters =
                             {"LONG_SECTION_V_INCREMENT"}});
 
 constexpr const char* kGoesOn = "the road goes on with its last height";
-constexpr const char* kStraight = "its reference line is laid straight along x";
 constexpr auto kOptions = std::to_array<Setting>({{"BORDER_MODE_U", 2, kGoesOn},
                                                   {"BORDER_OFFSET_U", 0, kGoesOn},
                                                   {"BORDER_MODE_V", 2, kGoesOn},
                                                   {"BORDER_OFFSET_V", 0, kGoesOn},
                                                   {"BORDER_SMOOTH_UBEG", 0, "the heights are taken as they are"},
                                                   {"BORDER_SMOOTH_UEND", 0, "the heights are taken as they are"},
-                                                  {"REFLINE_CONTINUATION", 0, kStraight},
+                                                  {"REFLINE_CONTINUATION"},
                                                   {"REFLINE_SEARCH_FAR"},
                                                   {"REFLINE_SEARCH_CLOSE"},
                                                   {"REFLINE_SEARCH_U"},
@@ -62,7 +61,6 @@ constexpr auto kOptions = std::to_array<Setting>({{"BORDER_MODE_U", 2, kGoesOn},
                                                   {"CHECK_TOL"}});
 
 // Where the line lies and how it is turned in the plane changes no height.
-constexpr const char* kMove = "points of reference are not read: REFLINE_OFFSET_Z moves the heights";
 constexpr auto kModifiers = std::to_array<Setting>({{"SCALE_Z_GRID"},
                                                     {"SCALE_SLOPE"},
                                                     {"SCALE_BANKING"},
@@ -77,16 +75,16 @@ constexpr auto kModifiers = std::to_array<Setting>({{"SCALE_Z_GRID"},
                                                     {"REFLINE_OFFSET_X"},
                                                     {"REFLINE_OFFSET_Y"},
                                                     {"REFLINE_OFFSET_Z"},
-                                                    {"REFPOINT_U_FRACTION", kNone, kMove},
-                                                    {"REFPOINT_U_OFFSET", kNone, kMove},
-                                                    {"REFPOINT_U", kNone, kMove},
-                                                    {"REFPOINT_V_FRACTION", kNone, kMove},
-                                                    {"REFPOINT_V_OFFSET", kNone, kMove},
-                                                    {"REFPOINT_V", kNone, kMove},
-                                                    {"REFPOINT_X", kNone, kMove},
-                                                    {"REFPOINT_Y", kNone, kMove},
-                                                    {"REFPOINT_Z", kNone, kMove},
-                                                    {"REFPOINT_PHI", kNone, kMove}});
+                                                    {"REFPOINT_U_FRACTION"},
+                                                    {"REFPOINT_U_OFFSET"},
+                                                    {"REFPOINT_U"},
+                                                    {"REFPOINT_V_FRACTION"},
+                                                    {"REFPOINT_V_OFFSET"},
+                                                    {"REFPOINT_V"},
+                                                    {"REFPOINT_X"},
+                                                    {"REFPOINT_Y"},
+                                                    {"REFPOINT_Z"},
+                                                    {"REFPOINT_PHI"}});
 
 std::span<const Setting> settings_of(const std::string& section) {
   if (section == "ROAD_CRG") return kParameters;
@@ -107,7 +105,6 @@ std::string crg_setting_fault(const std::string& section, const std::string& nam
     if (setting.name != name) continue;
     if (name == "GRID_NAN_MODE" && value != 0.0 && value != 1.0 && value != 2.0)
       return fmt::format("is {:g}, expected 0, 1 or 2", value);
-    if (setting.only == kNone) return fmt::format("is given, expected none: {}", setting.why);
     const bool read = setting.only != setting.only || setting.only == value;
     return read ? "" : fmt::format("is {:g}, expected {:g}: {}", value, setting.only, setting.why);
   }

@@ -299,7 +299,8 @@ class Reader {
                   parameter("REFLINE_OFFSET_Z", 0.0);
     const double steeper = parameter("SCALE_SLOPE", 1.0), banked = parameter("SCALE_BANKING", 1.0);
     const std::size_t width = channels_.size();
-    double before = kNaN, heading = 0.0, least = 0.0, most = 0.0;
+    const double bend = parameter("SCALE_CURVATURE", 1.0);
+    double before = kNaN, heading = 0.0;
     for (std::size_t row = 0; row + width <= rows.size(); row += width) {
       double slope = slope_before, banking = banking_before;
       std::vector<double> cuts;
@@ -308,22 +309,63 @@ class Reader {
         if (channels_[k] == Channel::cut) cuts.push_back(value * parameter("SCALE_Z_GRID", 1.0));
         if (channels_[k] == Channel::slope) slope = value;
         if (channels_[k] == Channel::banking) banking = value;
-        if (channels_[k] != Channel::heading || row == 0) continue;
-        if (!std::isnan(before)) heading += std::remainder(value - before, 2.0 * std::numbers::pi);
+        if (channels_[k] != Channel::heading || row == 0 || std::isnan(value)) continue;
+        if (!std::isnan(before)) heading += bend * std::remainder(value - before, 2.0 * std::numbers::pi);
         before = value;
-        least = std::min(least, heading), most = std::max(most, heading);
       }
-      // As the heading, the slope of a row is that from the row before to it; the first has none.
-      if (row > 0) line += steeper * slope * road.increment;
+      // The heading and the slope of a row are those from the row before to it; the first has none.
+      if (row > 0) line += steeper * slope * road.increment, road.headings.push_back(heading);
       std::vector<double> across;
       for (const std::size_t k : order) across.push_back(cuts[k]);
       fill_gaps(across);
       for (std::size_t k = 0; k < across.size(); ++k)
         road.heights.push_back(across[k] + line + banked * banking * road.v[k]);
     }
-    road.turn = (most - least) * std::abs(parameter("SCALE_CURVATURE", 1.0));
     if (road.count() < 2) throw wrong("", fmt::format("has {} cross-sections, expected two at least", road.count()));
+    const auto [least, most] = std::ranges::minmax(road.headings);
+    road.turn = most - least;
+    if (std::ranges::any_of(parameters_, [](const auto& one) { return one.first.starts_with("REFPOINT_"); }))
+      lift(road);
     return road;
+  }
+
+  /// To the height of its point of reference; where that lies in the plane is left out.
+  void lift(OpenCrg& road) const {
+    const double last = road.start + static_cast<double>(road.count() - 1) * road.increment;
+    const double u = reference("REFPOINT_U", road.start, last, road.start),
+                 v = reference("REFPOINT_V", road.v.front(), road.v.back(), 0.0);
+    const double z = height_at(road, u, v);
+    if (!std::isfinite(z))
+      throw wrong("REFPOINT_Z", fmt::format("is the height at u = {:g} m, v = {:g} m, where the road has none", u, v));
+    for (double& height : road.heights) height += parameter("REFPOINT_Z", 0.0) - z;
+  }
+
+  /// u or v of the point of reference, m.
+  double reference(const std::string& name, double first, double last, double otherwise) const {
+    if (!parameters_.contains(name + "_FRACTION")) return parameter(name, otherwise);
+    if (parameters_.contains(name)) throw wrong(name, "is given beside " + name + "_FRACTION, expected one of them");
+    return first + parameter(name + "_FRACTION", 0.0) * (last - first) + parameter(name + "_OFFSET", 0.0);
+  }
+
+  /// Straight along u and v between the cross-sections, beyond the grid that of its border, m.
+  static double height_at(const OpenCrg& road, double u, double v) {
+    const std::size_t cuts = road.v.size();
+    const auto cut = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(road.v, v) - road.v.begin(), 1,
+                                                std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(cuts) - 1));
+    const std::size_t left = std::min(static_cast<std::size_t>(cut), cuts - 1),
+                      right = static_cast<std::size_t>(cut) - 1;
+    const double across =
+        left == right ? 0.0 : std::clamp((v - road.v[right]) / (road.v[left] - road.v[right]), 0.0, 1.0);
+    const double place = std::clamp((u - road.start) / road.increment, 0.0, static_cast<double>(road.count() - 1));
+    const auto row = std::min(static_cast<std::size_t>(place), road.count() - 2);
+    const double along = place - static_cast<double>(row);
+    const auto between = [](double share, double a, double b) {  // NaN counts where it has a share alone
+      return share == 0.0 ? a : share == 1.0 ? b : a + share * (b - a);
+    };
+    const auto z = [&](std::size_t k) {
+      return between(across, road.heights[k * cuts + right], road.heights[k * cuts + left]);
+    };
+    return between(along, z(row), z(row + 1));
   }
 
   /// What GRID_NAN_MODE puts where a cross-section has no height: 0, or at its ends the last height that there is.

@@ -1,8 +1,8 @@
 // Measured roads in the format ASAM OpenCRG 1.2: heights on a grid, u along a reference line and v to its left.
 //
 // Read are the road parameters, the data definition and the road data in the four formats (LRFI and LDFI as text, KRBI
-// and KDBI as big-endian numbers). The reference line is laid straight: its heading is read to say how far it turns,
-// its position and that of the Earth are left out. Its slope and banking are added to the heights. Options and
+// and KDBI as big-endian numbers). Of the reference line the headings are read; its position and that of the Earth are
+// left out. Its slope and banking are added to the heights. Options and
 // modifiers that change the heights are honoured or refused by name (crg_settings.hpp), references to other files are
 // refused. A length of the data that does not fit the header or the records of 80 bytes is refused: bytes lost in
 // transfer shift all numbers behind them.
@@ -21,7 +21,8 @@ struct OpenCrg {
   double start = 0.0, increment = 0.0;  // u of the first cross-section, distance of two, m
   std::vector<double> v;                // of the longitudinal cuts, rising, m
   std::vector<double> heights;          // (cross-sections, cuts), m; NaN beside the road
-  double turn = 0.0;                    // from the least heading of the reference line to the largest, rad
+  std::vector<double> headings;         // of the reference line to each cross-section but the first, from 0 on, rad
+  double turn = 0.0;                    // from the least heading to the largest, rad
 
   std::size_t count() const { return v.empty() ? 0 : heights.size() / v.size(); }
 };

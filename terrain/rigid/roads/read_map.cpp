@@ -16,6 +16,7 @@
 #include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/rigid/ground_map.hpp"
+#include "terrain/rigid/road_line.hpp"
 #include "terrain/rigid/roads/open_crg.hpp"
 #include "terrain/rigid/roads/road_text.hpp"
 
@@ -45,6 +46,22 @@ HeightMap map_of(const OpenCrg& road, const std::filesystem::path& file) {
     std::fill(last, end, *last);
   }
   return map;
+}
+
+/// @pre the map is placed along x
+std::shared_ptr<const RoadLine> line_of(const HeightMap& map, const std::vector<double>& headings,
+                                        const RoadPlace& place, const std::filesystem::path& file) {
+  const double first = map.x.front(), increment = map.x[1] - first;
+  auto line = std::make_shared<const RoadLine>(RoadLine::Vec2(first, -place.v), first, increment, headings);
+  for (std::size_t k = 0; k < headings.size(); ++k)
+    for (const double v : {map.y.front(), map.y.back()})
+      if (const double room = line->room(k, v < 0.0 ? -1.0 : 1.0); std::abs(v) >= room)
+        throw input_error(file.string(), "",
+                          fmt::format("turns at u = {:g} m so sharply that its cross-sections meet {:.3g} m beside the "
+                                      "reference line, but has heights at v = {:g} m: expected terrain.profile_line "
+                                      "straight",
+                                      map.x[k], room, v));
+  return line;
 }
 
 /// Rows of a CSV file as the nodes of a grid; none if it is a profile.
@@ -154,8 +171,9 @@ class AsciiGrid {
     if (word.empty()) throw input_error(name_, place(), "is missing, expected ncols × nrows heights");
     if (!number) throw input_error(name_, place(), "is '" + excerpt(std::string(word)) + "', expected a number");
     if (*number == none)
-      throw input_error(name_, place(),
-                        fmt::format("has no height (NODATA_value {:g}), expected a grid without gaps", none));
+      throw input_error(
+          name_, place(),
+          fmt::format("has no height (NODATA_value {:g}), expected a grid that was cropped or filled", none));
     return *number;
   }
 
@@ -172,10 +190,12 @@ bool has_ending(const std::filesystem::path& file, std::string_view ending) {
 
 std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, const RoadPlace& place) {
   HeightMap map;
+  std::vector<double> headings;
   if (has_ending(file, ".crg")) {
-    const OpenCrg road = read_open_crg(file);
-    if (road.v.size() < 2) return nullptr;
+    OpenCrg road = read_open_crg(file);
+    if (road.v.size() < 2 && !place.curved) return nullptr;
     map = map_of(road, file);
+    headings = std::move(road.headings);
   } else if (has_ending(file, ".asc")) {
     map = AsciiGrid(file).read();
   } else if (auto grid = read_csv_map(file)) {
@@ -183,9 +203,14 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
   } else {
     return nullptr;
   }
+  if (place.curved && headings.empty())
+    throw input_error(file.string(), "", "has no reference line, expected OpenCRG with terrain.profile_line curved");
   const double shift = place.shift(map.x.front());
   for (double& x : map.x) x += shift;
-  for (double& y : map.y) y -= place.v;
+  if (place.curved)
+    map.line = line_of(map, headings, place, file), map.turn = 0.0;
+  else
+    for (double& y : map.y) y -= place.v;
   for (const auto& [name, values] : {std::pair("x", &map.x), {"y", &map.y}}) {
     if (values->size() < 2)
       throw input_error(file.string(), "", fmt::format("has one {} alone, expected a grid of two at least", name));
@@ -196,11 +221,19 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
                                     name, values->front(), values->back(), -kFarthest, kFarthest));
   }
   const std::size_t across = map.y.size();
-  for (std::size_t k = 0; k < map.z.size(); ++k)
+  const auto place_of = [&](std::size_t k) {
+    return fmt::format("{} = {:g} m, {} = {:g} m", map.line ? "u" : "x", map.x[k / across], map.line ? "v" : "y",
+                       map.y[k % across] + (map.line ? 0.0 : place.v));
+  };
+  for (std::size_t k = 0; k < map.z.size(); ++k) {
+    if (std::isnan(map.z[k]))
+      throw input_error(file.string(), "",
+                        fmt::format("has no height at {}, expected a road without gaps", place_of(k)));
     if (!(std::abs(map.z[k]) <= kFarthest))
       throw input_error(file.string(), "",
-                        fmt::format("has the height {:g} m at x = {:g} m, y = {:g} m, expected {:g} to {:g} m",
-                                    map.z[k], map.x[k / across], map.y[k % across] + place.v, -kFarthest, kFarthest));
+                        fmt::format("has the height {:g} m at {}, expected {:g} to {:g} m", map.z[k], place_of(k),
+                                    -kFarthest, kFarthest));
+  }
   return std::make_shared<const HeightMap>(std::move(map));
 }
 

@@ -10,6 +10,7 @@
 
 #include "protocol/core/error.hpp"
 #include "terrain/rigid/ground_map.hpp"
+#include "terrain/scm/scm_spec.hpp"
 #include "tests/refusal.hpp"
 #include "tests/saved.hpp"
 #include "tests/terrain/scm/driven_surface.hpp"
@@ -324,6 +325,21 @@ TEST(ScmGround, stops_when_a_tire_leaves_it_and_refuses_one_that_starts_in_it) {
   EXPECT_TRUE(holds(outcome.message("terrain"), "was left by a tire"));
   tool.position = Vec3(0.5, 0.0, -0.01);
   EXPECT_THROW(tool.attach(*make_scm_ground(small_bed()), 0.8), Error);
+}
+
+/// LETE sand with k_c in kN/m^(n+1); the k_c of dry sand, 990 N/m^(n+1) beside 1.53e6, is small and right.
+TEST(ScmGround, a_cohesive_modulus_in_kilonewtons_is_told) {
+  ScmOptions options = small_bed();
+  EXPECT_TRUE(make_scm_spec(options)->describe().remarks.empty());
+  options.bekker_k_c = 102;
+  const auto told = make_scm_spec(options)->describe().remarks;
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].first, "bekker_k_c");
+  EXPECT_EQ(told[0].second, "is 102 N/m^(n+1), less than 0.0001 m × bekker_k_phi: it changes nothing, or is it in kN?");
+  options.bekker_k_c = 990, options.bekker_k_phi = 1528430;
+  EXPECT_TRUE(make_scm_spec(options)->describe().remarks.empty());
+  options.bekker_k_c = 0.0;
+  EXPECT_TRUE(make_scm_spec(options)->describe().remarks.empty());
 }
 
 }  // namespace

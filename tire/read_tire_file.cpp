@@ -103,8 +103,9 @@ struct Template {
   const char* name;
   TireFile (*read)(JsonReader&);
 };
-constexpr std::array<Template, 2> kTemplates{
-    {{"template", "ancf_shell", read_own}, {"Template", "ANCFTire", read_chrono}}};
+constexpr std::array<Template, 3> kTemplates{{{"template", "ancf_shell", read_own},
+                                              {"Template", "ANCFTire", read_chrono},
+                                              {"Template", "ReissnerTire", read_chrono}}};
 
 void check(const TireFile& f) {
   double top = 0.0;

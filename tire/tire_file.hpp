@@ -1,9 +1,10 @@
 // The file of a shell tire: profile, layup, materials, pressure, contact. Two layouts are read: our own
-// (data/tire.schema.json describes it) and the public ANCFTire layout of Project Chrono. read_tire_file.cpp registers
-// the template names.
+// (data/tire.schema.json describes it) and the public one of Project Chrono (tire_file_chrono.hpp). read_tire_file.cpp
+// registers the template names.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/core/fields.hpp"
@@ -71,8 +72,8 @@ struct ProfileKnot {
 struct TireFile {
   static constexpr SchemaName kSchema{"shell",
                                       "A tire as a layered shell on a rim. SI units. The program reads this layout "
-                                      "(template ancf_shell) and the public "
-                                      "ANCFTire layout of Project Chrono."};
+                                      "(template ancf_shell) and the public layouts ANCFTire and ReissnerTire of "
+                                      "Project Chrono."};
   std::string path;
   std::string name;
   double rim_radius = 0.0;           // m
@@ -87,6 +88,7 @@ struct TireFile {
   Section bead, sidewall, tread;
   int elements_circumference = 0;
   std::vector<ProfileKnot> profile;
+  std::vector<std::pair<std::string, std::string>> remarks;  // keys of a public layout that are not followed, and how
 
   int elements_width() const {
     return 2 * (bead.elements_per_side + sidewall.elements_per_side + tread.elements_per_side);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "protocol/files/reader_fields.hpp"
@@ -20,17 +22,28 @@ constexpr double kRestitution = 0.2;
 constexpr double kNormalStiffness = 2.0e6;  // N/m^1.5
 constexpr double kNormalDamping = 13.0;     // N s/m^1.5
 
-LayerMaterial material(JsonReader reader, int index) {
+/// A tire of ReissnerTire; E_z = E_y changes nothing where ν_xz = ν_yz = 0.
+void take_plane(JsonReader& reader, LayerMaterial& m) {
+  const double across = reader.positive("Ey");
+  m.young_modulus = Vec3(reader.positive("Ex"), across, across);
+  m.poisson_ratio = Vec3(reader.number("nu"), 0.0, 0.0);
+  m.shear_modulus = Vec3(reader.positive("Gxy"), reader.positive("Gxz"), reader.positive("Gyz"));
+}
+
+LayerMaterial material(JsonReader reader, int index, bool in_plane) {
   LayerMaterial m;
   m.name = std::to_string(index);
   const std::string type = reader.text("Type");
   m.density = reader.positive("Density");
   if (type == "Isotropic") {
     m.young_modulus = Vec3::Constant(reader.positive("E"));
-    m.poisson_ratio = Vec3::Constant(reader.number("nu"));
+    const double nu = reader.number("nu");
+    m.poisson_ratio = in_plane ? Vec3(nu, 0.0, 0.0) : Vec3::Constant(nu);
     reader.skip("G");
     const double g = reader.has("G") ? reader.positive("G") : 0.5 * m.young_modulus.x() / (1.0 + m.poisson_ratio.x());
     m.shear_modulus = Vec3::Constant(g);
+  } else if (type == "Orthotropic" && in_plane) {
+    take_plane(reader, m);
   } else if (type == "Orthotropic") {
     const auto e = reader.numbers("E", 3), nu = reader.numbers("nu", 3), g = reader.numbers("G", 3);
     m.young_modulus = Vec3(e[0], e[1], e[2]);
@@ -64,7 +77,9 @@ Section section(JsonReader reader, std::size_t materials) {
   return s;
 }
 
-ContactBlock contact(JsonReader reader) {
+}  // namespace
+
+ContactBlock read_chrono_contact(JsonReader reader) {
   ContactBlock c;
   c.friction = reader.not_negative("Coefficient of Friction");
   c.restitution = reader.not_negative_or("Coefficient of Restitution", kRestitution);
@@ -92,32 +107,39 @@ ContactBlock contact(JsonReader reader) {
   return c;
 }
 
-}  // namespace
-
 TireFile read_chrono(JsonReader& reader) {
   TireFile f;
   f.name = reader.text_or("Name", "tire");
-  reader.skip("Template");
+  const bool in_plane = reader.text("Template") == "ReissnerTire";
   reader.skip("rim");  // read by tires.cpp for every layout
   if (const auto type = reader.text("Type"); type != "Tire") reader.fail("Type", "is '" + type + "', expected 'Tire'");
-  if (reader.flag_or("8-Node Elements", false))
-    reader.fail("8-Node Elements", "is true, only tires of 4-node elements (false) can be read");
+  const int parts = !in_plane && reader.flag_or("8-Node Elements", false) ? 2 : 1;  // of an element
+  for (const char* key : {"Number Lugs Copies", "Lugs", "Lugs Material"}) reader.skip(key);
+  if (reader.has("Lugs")) f.remarks.emplace_back("Lugs", "are left out: the tread is smooth");
   detail::take_value(reader, needed("Tire Radius", "m", keys::kSize, ""), f.radius);
   detail::take_value(reader, needed("Rim Radius", "m", keys::kSize, ""), f.rim_radius);
   detail::take_value(reader, needed("Rim Width", "m", keys::kSize, ""), f.rim_width);
-  f.contact = contact(reader.child("Contact Material"));
+  f.contact = read_chrono_contact(reader.child("Contact Material"));
   const json& materials = reader.array("Materials");
   for (std::size_t m = 0; m < materials.size(); ++m)
-    f.materials.push_back(
-        material(JsonReader(materials[m], reader.file(), fmt::format("Materials[{}]", m)), static_cast<int>(m)));
+    f.materials.push_back(material(JsonReader(materials[m], reader.file(), fmt::format("Materials[{}]", m)),
+                                   static_cast<int>(m), in_plane));
   if (f.materials.empty()) reader.fail("Materials", "is empty, expected at least one material");
   f.structural_damping = reader.not_negative("Structural Damping Coefficient");
   f.pressure = reader.not_negative("Default Pressure");
   f.bead = section(reader.child("Bead Section"), f.materials.size());
   f.sidewall = section(reader.child("Sidewall Section"), f.materials.size());
   f.tread = section(reader.child("Tread Section"), f.materials.size());
-  f.elements_circumference = reader.count("Number Elements Circumference", 8, kMaxAround);
+  f.elements_circumference = parts * reader.count("Number Elements Circumference", 8 / parts, kMaxAround / parts);
+  for (Section* part : {&f.bead, &f.sidewall, &f.tread}) part->elements_per_side *= parts;
   f.profile = read_profile(reader, "Profile");
+  double top = 0.0;
+  for (const ProfileKnot& knot : f.profile) top = std::max(top, f.rim_radius + knot.x);
+  if (in_plane && std::abs(top - f.radius) > 1e-3 * f.radius) {  // these count the lugs
+    f.remarks.emplace_back("Tire Radius",
+                           fmt::format("is {:g} m, but the profile rises to {:g} m, which holds", f.radius, top));
+    f.radius = top;
+  }
   reader.finish();
   return f;
 }

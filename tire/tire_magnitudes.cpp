@@ -67,6 +67,7 @@ std::vector<std::pair<std::string, std::string>> unlikely_values(const TireFile&
                   fmt::format("is {:g}°, cords lie within ±90°", angle));
     }
   for (const auto& [key, what] : unusual_values(file)) found.add(key, key, what);
+  for (const auto& [key, what] : file.remarks) found.add(key, key, what);
   return found.all();
 }
 

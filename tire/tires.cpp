@@ -102,7 +102,9 @@ std::unique_ptr<TireSpec> read_tire(const TireOptions& options) {
   const json document =
       is_tir(options.file) ? tire_file_of_tir(options.file) : load_json(options.file, "a tire file in JSON");
   refuse_other_kinds(document, FileKind::tire, options.file.string());
-  std::unique_ptr<TireSpec> spec = model_of(document, options.file.string()).read(document, options);
+  const bool wheel = document.contains("Template") && document["Template"] == kRigidWheel;
+  std::unique_ptr<TireSpec> spec =
+      wheel ? read_rigid_wheel(document, options) : model_of(document, options.file.string()).read(document, options);
   if (options.rigid) spec = make_rigid(std::move(spec));
   spec->set_rim(rim_of(document, options.file.string()));
   return spec;

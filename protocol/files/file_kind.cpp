@@ -26,7 +26,7 @@ constexpr Words kWords[] = {
     {FileKind::vehicle, "vehicle", "the key rig.vehicle of a scenario takes vehicles"},
 };
 
-constexpr const char* kChronoTires[] = {"ANCFTire"};  // those that Furrow reads
+constexpr const char* kChronoTires[] = {"ANCFTire", "ReissnerTire", "RigidTire"};  // those that Furrow reads
 
 constexpr std::string_view kOfSoils[] = {"format_version", "description", "terrain", "measured"};
 
@@ -69,8 +69,8 @@ std::string part_of_chrono(const Json& document) {
 
 const char* instead_of_chrono(FileKind expected) {
   if (expected == FileKind::tire)
-    return "of its tires the template ANCFTire is read, and the tire property file (.tir) that a Pac02Tire names; "
-           "any tire of that size with tire.rigid takes the place of a RigidTire";
+    return "of its tires the templates ANCFTire, ReissnerTire and RigidTire are read, and the tire property file "
+           "(.tir) that a Pac02Tire names";
   if (expected == FileKind::vehicle) return "vehicle/data/hmmwv.json is Chrono's HMMWV as a vehicle file";
   return "its vehicles, suspensions, engines and terrains are not read";
 }

@@ -112,8 +112,9 @@ TEST_F(TireFileTest, every_mistake_names_its_key) {
     EXPECT_TRUE(complaint(changed.dump()).starts_with(said)) << complaint(changed.dump());
   }
   for (const auto& [key, said] :
-       {std::pair("template",
-                  "is missing, expected one of: ancf_shell, ANCFTire; or 'model' in a tire of another kind"),
+       {std::pair(
+            "template",
+            "is missing, expected one of: ancf_shell, ANCFTire, ReissnerTire; or 'model' in a tire of another kind"),
         {"radius", "is missing, expected a number"}}) {
     json changed = good_;
     changed.erase(key);
@@ -224,13 +225,59 @@ TEST_F(TireFileTest, public_layout_mistakes_name_their_key) {
   EXPECT_EQ(with([](json&) {}), "");
   EXPECT_EQ(with([](json& j) { j["Tire Radios"] = 1; }), "key 'Tire Radios': is unknown, expected 'Tire Radius'?");
   EXPECT_EQ(with([](json& j) { j["Template"] = "FialaTire"; }),
-            "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire");
+            "key 'Template': is 'FialaTire', expected one of: ancf_shell, ANCFTire, ReissnerTire");
   EXPECT_EQ(with([](json& j) { j["Tread Section"]["Material ID"][0] = 7; }),
             "key 'Tread Section.Material ID': holds 7, expected whole numbers from 0 to 2");
   EXPECT_EQ(with([](json& j) { j["Materials"][0]["Type"] = "Fabric"; }),
             "key 'Materials[0].Type': is 'Fabric', expected one of: Isotropic, Orthotropic");
-  EXPECT_EQ(with([](json& j) { j["8-Node Elements"] = true; }),
-            "key '8-Node Elements': is true, only tires of 4-node elements (false) can be read");
+  EXPECT_EQ(with([](json& j) { j["Template"] = "ReissnerTire"; }).substr(0, 21), "key 'Materials[0].Ey'");
+}
+
+/// The nodes of 8-node elements lie at their corners and in the middle of their sides.
+TEST_F(TireFileTest, a_tire_of_eight_node_elements_has_their_nodes) {
+  json file = public_layout(read_tire_file(TIRE_DATA "/hmmwv_layered.json"));
+  const TireFile four = read_tire_file(write(file.dump()));
+  file["8-Node Elements"] = true;
+  const TireFile eight = read_tire_file(write(file.dump()));
+  EXPECT_EQ(eight.elements_circumference, 2 * four.elements_circumference);
+  EXPECT_EQ(eight.elements_width(), 2 * four.elements_width());
+  for (int j = 0; j < four.elements_width(); ++j)
+    for (int half : {0, 1}) EXPECT_EQ(eight.section(2 * j + half).thickness(), four.section(j).thickness());
+}
+
+/// σ_x = E_x/(1 − ν²E_y/E_x) (ε_x + ν E_y/E_x ε_y), and no stress through the thickness.
+TEST_F(TireFileTest, a_tire_of_reissner_shells_bears_plane_stress) {
+  json file = public_layout(read_tire_file(TIRE_DATA "/hmmwv_layered.json"));
+  file["Template"] = "ReissnerTire";
+  file.erase("8-Node Elements");
+  file["Materials"] = {{{"Type", "Orthotropic"},
+                        {"Density", 1000},
+                        {"Ex", 4e8},
+                        {"Ey", 1e8},
+                        {"nu", 0.4},
+                        {"Gxy", 3e7},
+                        {"Gxz", 2e7},
+                        {"Gyz", 1e7}},
+                       {{"Type", "Isotropic"}, {"Density", 1000}, {"E", 1e7}, {"nu", 0.45}},
+                       {{"Type", "Isotropic"}, {"Density", 1000}, {"E", 1e7}, {"nu", 0.45}}};
+  file["Lugs"] = json::array();
+  file["Tire Radius"] = 0.4973;  // with the lugs
+  const TireFile read = read_tire_file(write(file.dump()));
+  const auto c = stiffness(read.materials[0], "tire.json");
+  const double whole = 1.0 - 0.4 * 0.4 * 0.25;
+  EXPECT_NEAR(c(0, 0), 4e8 / whole, 1.0);
+  EXPECT_NEAR(c(0, 1), 0.4 * 1e8 / whole, 1.0);
+  EXPECT_NEAR(c(1, 1), 1e8 / whole, 1.0);
+  EXPECT_EQ(read.materials[0].shear_modulus, Vec3(3e7, 2e7, 1e7));
+  EXPECT_NEAR(stiffness(read.materials[1], "tire.json")(0, 0), 1e7 / (1.0 - 0.45 * 0.45), 0.1);
+  for (int m : {0, 1})
+    for (int k : {0, 1, 2}) EXPECT_NEAR(stiffness(read.materials[m], "tire.json")(3, k), 0.0, 1e-3);
+  ASSERT_EQ(read.remarks.size(), 2u);
+  EXPECT_EQ(read.remarks[0].first, "Lugs");
+  EXPECT_EQ(read.remarks[1].second, "is 0.4973 m, but the profile rises to 0.4673 m, which holds");
+  EXPECT_NEAR(read.radius, 0.4673, 1e-6);
+  file["Materials"][0].erase("Gyz");
+  EXPECT_EQ(complaint(file.dump()).substr(0, 22), "key 'Materials[0].Gyz'");
 }
 
 }  // namespace

@@ -172,5 +172,54 @@ TEST_F(TiresTest, pressure_tables_run_forward_in_time) {
             "before, 0.5 s");
 }
 
+/// The public layout of a rigid tire: a cylinder.
+TEST_F(TiresTest, a_rigid_tire_of_project_chrono_is_a_rigid_wheel) {
+  const json good = json::parse(R"({"Name": "Wheel", "Type": "Tire", "Template": "RigidTire", "Radius": 0.25,
+    "Width": 0.1, "Mass": 4, "Inertia": [0.08, 0.12, 0.08], "Contact Material": {"Coefficient of Friction": 0.7,
+    "Coefficient of Restitution": 0.1, "Properties": {"Young Modulus": 2e7, "Poisson Ratio": 0.3}}})");
+  const auto read = [&](const json& file) {
+    TireOptions options;
+    options.file = written(file).file;
+    return read_tire(options);
+  };
+  const auto said = [&](auto change) {
+    json file = good;
+    change(file);
+    return complaint(file);
+  };
+  const auto wheel = read(good);
+  const TireDescription d = wheel->describe();
+  EXPECT_EQ(d.kind, "rigid");
+  EXPECT_EQ(d.radius, 0.25);
+  EXPECT_EQ(d.tread_width, 0.1);
+  EXPECT_FALSE(d.deflects);
+  EXPECT_TRUE(wheel->unlikely_values().empty());
+  const auto made = wheel->make();
+  EXPECT_EQ(made->mass_properties().mass, 4.0);
+  EXPECT_EQ(made->mass_properties().inertia.diagonal(), Vec3(0.08, 0.12, 0.08));
+  const TireShape shape = wheel->shape();
+  EXPECT_EQ(shape.material.friction, 0.7);
+  EXPECT_EQ(shape.material.young_modulus, 2e7);
+  EXPECT_EQ(static_cast<int>(shape.vertex.size()), d.vertices);
+  double most = 0.0, widest = 0.0;
+  for (const Vec3& x : shape.vertex)
+    most = std::max(most, std::hypot(x.x(), x.z())), widest = std::max(widest, std::abs(x.y()));
+  EXPECT_NEAR(most, 0.25, 1e-12);
+  EXPECT_NEAR(widest, 0.05, 1e-12);
+
+  EXPECT_EQ(said([](json&) {}), "");
+  EXPECT_EQ(said([](json& j) { j.erase("Inertia"); }).substr(0, 13), "key 'Inertia'");
+  EXPECT_EQ(said([](json& j) { j["Inertia"] = {1, 0, 1}; }), "key 'Inertia': holds 0, expected numbers above 0");
+  EXPECT_EQ(said([](json& j) { j["Radius"] = -0.25; }).substr(0, 12), "key 'Radius'");
+  EXPECT_EQ(said([](json& j) { j["Raduis"] = 1; }), "key 'Raduis': is unknown, expected 'Radius'?");
+  json odd = good;
+  odd["Contact Mesh"] = {{"Mesh Filename", "wheel.obj"}};
+  odd["Inertia"] = {0.05, 0.2, 0.05};
+  const auto told = read(odd)->unlikely_values();
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].second, "is 0.2 kg m² about the axle, more than the sum of the others: no body has that");
+  EXPECT_EQ(told[1].second, "is left out: the wheel is a cylinder of 0.5 m by 0.1 m");
+}
+
 }  // namespace
 }  // namespace furrow::tire

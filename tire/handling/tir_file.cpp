@@ -181,7 +181,7 @@ class Sections {
     const auto [section, fresh] = sections_.try_emplace(open_, Section{number, {}, {}});
     if (!fresh && reads_)
       throw input_error(file_, "[" + open_ + "]",
-                        fmt::format("is given twice, in lines {} and {}", section->second.line, number));
+                        fmt::format("is given twice, in lines {} and {}, expected it once", section->second.line, number));
   }
 
   std::string file_, open_;

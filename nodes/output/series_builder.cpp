@@ -30,8 +30,13 @@ void forget_interval(WheelRow& row) {
 
 }  // namespace
 
-SeriesBuilder::SeriesBuilder(double radius, double ground, double step)
-    : radius_(radius), ground_(ground), step_(step), lines_(columns_of<WheelRow>()), values_(lines_.columns().size()) {}
+SeriesBuilder::SeriesBuilder(double radius, double ground, double step, bool level)
+    : radius_(radius),
+      ground_(ground),
+      step_(step),
+      level_(level),
+      lines_(columns_of<WheelRow>()),
+      values_(lines_.columns().size()) {}
 
 void SeriesBuilder::add(const StepReports& r) {
   FURROW_ASSERT(std::abs(r.heading.norm() - 1.0) < 1e-9, r.heading.transpose());
@@ -63,11 +68,12 @@ void SeriesBuilder::measure_means(const StepReports& r) {
 
 /// Uses the wrench that acted on the tire in this interval, whenever the terrain computed it, and the contact centre at
 /// the interval's middle; thus the moments balance those on the rim. The ground plane is the undisturbed surface. If
-/// the tire has sunk below it, the plane is at the tire's lowest point, the bottom of the rut.
+/// the tire has sunk below it, or that is not level, the plane is at the tire's lowest point, the bottom of the rut.
 void SeriesBuilder::measure_tire_axes(const StepReports& r) {
   RimState middle = r.rim;
   if (memory_.started > 0.0) middle.position = 0.5 * (memory_.last_rim_position + r.rim.position);
-  const tire::WheelAxes axes = tire::wheel_axes(middle, r.heading, std::min(ground_, r.tire.lowest_point));
+  const double lowest = r.tire.lowest_point;
+  const tire::WheelAxes axes = tire::wheel_axes(middle, r.heading, level_ ? std::min(ground_, lowest) : lowest);
   const Wrench wrench = axes.wrench(r.tire.contact.force, r.tire.contact.moment, middle.position);
   row_.iso_force = wrench.force;
   row_.iso_moment = wrench.moment;

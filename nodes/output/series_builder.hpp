@@ -28,8 +28,9 @@ class SeriesBuilder {
  public:
   /// @param radius undeformed tire radius, m
   /// @param ground undisturbed surface height h₀, m
+  /// @param level the surface has that height everywhere
   /// @pre radius > 0, step > 0
-  SeriesBuilder(double radius, double ground, double step);
+  SeriesBuilder(double radius, double ground, double step, bool level = true);
 
   /// Call it once per synchronization n ≥ 1. @pre time grows; travel is a unit vector
   void add(const StepReports& reports);
@@ -70,6 +71,7 @@ class SeriesBuilder {
   void measure_instants(const StepReports& r);
 
   double radius_, ground_, step_;
+  bool level_;
   WheelRow row_;  // of the last interval: cumulative and largest values continue from it
   LineBuilder lines_;
   std::vector<double> values_;  // of row_

@@ -245,10 +245,12 @@ class RigNode : public Node {
   }
 
   void make_tables() {
+    const bool level = scenario_.terrain->describe().uneven_key.empty();
     const std::vector<rigs::Subject> subjects = rig_->subjects();
     for (int k = 0; k < static_cast<int>(subjects.size()); ++k) {
       std::optional<output::SeriesBuilder> wheel;
-      if (k < rig_->wheel_count()) wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step);
+      if (k < rig_->wheel_count())
+        wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step, level);
       series_.emplace_back(subjects[k], std::move(wheel));
     }
     for (int k = 0; k < rig_->wheel_count(); ++k)

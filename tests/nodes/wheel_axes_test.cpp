@@ -134,6 +134,23 @@ TEST(SeriesBuilder, columns_in_the_tires_axes_are_those_of_the_middle_of_the_int
   EXPECT_NEAR(row.effective_rolling_radius, kSpeed * c / 8.4, 1e-14);
 }
 
+/// On a road that has climbed by 2 m the contact centre is under the wheel, not at the height of the start.
+TEST(SeriesBuilder, columns_in_the_tires_axes_count_from_the_tires_lowest_point_on_uneven_ground) {
+  output::SeriesBuilder builder(0.47, 0.0, 1e-3, false);
+  output::StepReports r;
+  for (int n = 1; n <= 2; ++n) {
+    r.time = n * 1e-3;
+    r.rim = wheel(0.0, 0.0, 1.0);
+    r.rim.position = Vec3(kSpeed * r.time, 0.0, 2.45);
+    r.tire.lowest_point = 2.0;
+    r.tire.contact.force = Vec3(-60.0, 700.0, 4500.0);
+    r.tire.contact.moment = Vec3(0.0, 0.0, -0.45).cross(r.tire.contact.force);
+    builder.add(r);
+  }
+  EXPECT_NEAR(builder.last().loaded_radius, 0.45, 1e-12);
+  EXPECT_LT(builder.last().iso_moment.norm(), 1e-10);
+}
+
 /// (ω R − v)/v.
 TEST(SeriesBuilder, slip_ratio_is_that_of_iso_8855) {
   const double radius = 0.5;

@@ -134,6 +134,16 @@ class Reports(SystemTest):
         self.assertIn("taken/report.html: was not written", done.stderr)
         self.assertEqual((taken / "report.html").read_text(), "the user's own")
 
+    def test_a_table_that_was_cut_short_is_told(self):
+        table = self.run / "timeseries.csv"
+        table.write_text("time_s,position_m\n" + "".join(f"{k / 100},0\n" for k in range(1, 101)))
+        for end, lines, told in ((1.0, 101, False), (1.0, 50, True), (1.0, 1, False)):
+            self.summary({"end_time_s": end})
+            table.write_text("\n".join(table.read_text().split("\n")[:lines]) + "\n0.5")
+            done = self.report("--only", "forces", code=5)
+            words = "the table of the wheel ends at 0.49 s and the run at 1 s: it was cut short"
+            self.assertEqual(words in done.stderr, told, done.stderr)
+
     def test_summary_that_is_none(self):
         for text in ("[1, 2]", "{", "", '{"a": ' + "[" * 100000 + "]" * 100000 + "}"):
             (self.run / "summary.json").write_text(text)

@@ -45,6 +45,15 @@ class Sweep(SystemTest):
             done = self.furrow("sweep", self.study(set={"run.end": 0.03}, grid={"rig.slip": [slip]}))
             self.assertEqual("sweep.csv: held 1 run of another study" in done.stderr, others, done.stderr)
 
+    def test_a_misspelt_result_is_told_and_needs_no_run_again(self):
+        keys = {"set": {"run.end": 0.03}, "grid": {"rig.slip": [0.1]}}
+        done = self.furrow("sweep", self.study(**keys, results=["drawbar_pul_N.mean"]),
+                           says="has no result 'drawbar_pul_N.mean', expected 'drawbar_pull_N.mean' or ")
+        self.assertEqual(self.table()[0]["drawbar_pul_N.mean"], "")
+        done = self.furrow("sweep", self.study(**keys, results=["drawbar_pull_N.mean"]), says="is done already",
+                           lacks="has no result")
+        self.assertNotEqual(self.table()[0]["drawbar_pull_N.mean"], "", done.stderr)
+
     def test_a_removed_folder_ends_it_and_is_not_made_anew(self):
         study = self.study(grid={"rig.slip": [0.1, 0.2, 0.3, 0.4]})
         out = self.folder / "results" / "study"

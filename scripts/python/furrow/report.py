@@ -44,6 +44,8 @@ def tell_share(names, k):
 
 def words(run):
     """What a reader must know of the result besides the plots."""
+    if run.cut_short:
+        note(run.cut_short)
     for what, found in (run.summary.get("accounts") or {}).items():
         if isinstance(found, dict) and found.get("closes") is False:
             note(f"the account of {printable(what)} DOES NOT CLOSE: see accounts of summary.json")

@@ -391,6 +391,8 @@ def badges(run):
 def fill(page, arrays, run, sections):
     page["title"] = run.title if run.summary else str(run.failed.get("scenario") or run.directory.name)
     page["badges"] = badges(run)
+    if run.cut_short:
+        page["left_out"].append(f"curves: {run.cut_short}.")
     sections(page, [
         ("result", lambda: answer(run)),
         ("curves of the vehicle", lambda: vehicle_series(run, arrays)

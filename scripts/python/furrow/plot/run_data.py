@@ -225,6 +225,14 @@ class Run:
         """Columns of the table of wheel 0."""
         return self.table("timeseries.csv") or self.table("timeseries_wheel0.csv")
 
+    @property
+    def cut_short(self):
+        """Of a finished run's table without its end: a sentence; empty for any other."""
+        time, end = self.series.get("time_s", []), self.summary.get("end_time_s")
+        if not is_number(end) or len(time) < 2 or end - time[-1] <= 2 * (time[-1] - time[-2]):
+            return ""
+        return f"the table of the wheel ends at {time[-1]:.4g} s and the run at {end:.4g} s: it was cut short"
+
     def table(self, name):
         """Columns of a table by their names; none when there is no such file."""
         path = self.directory / name
@@ -299,7 +307,7 @@ class Run:
         name = self.summary.get("scenario") or self.directory.name
         what = [name]
         if self.rig.get("vehicle"):
-            what.append(self.rig["vehicle"].removesuffix(".json"))
+            what.append(pathlib.PurePath(self.rig["vehicle"]).stem)
         if "terrain_engine" in self.summary:
             engine = self.summary["terrain_engine"]
             law = self.summary.get("law")  # of grains

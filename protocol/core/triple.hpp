@@ -7,6 +7,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "protocol/core/host_device.hpp"
+
 namespace furrow::simd {
 
 template <class T>
@@ -14,27 +16,27 @@ struct Triple {
   T x, y, z;
 };
 template <class T>
-inline Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
+FURROW_HD inline Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class T>
-inline Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
+FURROW_HD inline Triple<T> operator-(const Triple<T>& a, const Triple<T>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class T>
-inline Triple<T> operator*(const T& s, const Triple<T>& a) {
+FURROW_HD inline Triple<T> operator*(const T& s, const Triple<T>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 template <class T>
-inline Triple<T>& operator+=(Triple<T>& a, const Triple<T>& b) {
+FURROW_HD inline Triple<T>& operator+=(Triple<T>& a, const Triple<T>& b) {
   return a = a + b;
 }
 template <class T>
-inline T dot(const Triple<T>& a, const Triple<T>& b) {
+FURROW_HD inline T dot(const Triple<T>& a, const Triple<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 template <class T>
-inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
+FURROW_HD inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -42,9 +44,9 @@ inline Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
 template <class T>
 struct Numbers {
   using Real = T;
-  static T root(T a) { return std::sqrt(a); }
+  FURROW_HD static T root(T a) { return std::sqrt(a); }
   /// 2^k of k held in the low bits of a number that was rounded by adding 1.5 · 2^52 (double) or 1.5 · 2^23 (float).
-  static T power_of_two(T shifted) {
+  FURROW_HD static T power_of_two(T shifted) {
     using Bits = std::conditional_t<std::is_same_v<T, float>, std::uint32_t, std::uint64_t>;
     constexpr bool kSingle = std::is_same_v<T, float>;
     static_assert(kSingle || std::is_same_v<T, double>);
@@ -60,19 +62,19 @@ using RealOf = typename Numbers<T>::Real;
 
 /// `a` in every lane.
 template <class T>
-inline T constant(double a) {
+FURROW_HD inline T constant(double a) {
   return T{} + static_cast<RealOf<T>>(a);
 }
 template <class T>
-inline T root(T a) {
+FURROW_HD inline T root(T a) {
   return Numbers<T>::root(a);
 }
 template <class T>
-inline T larger(T a, T b) {
+FURROW_HD inline T larger(T a, T b) {
   return a > b ? a : b;
 }
 template <class T>
-inline T smaller(T a, T b) {
+FURROW_HD inline T smaller(T a, T b) {
   return a < b ? a : b;
 }
 

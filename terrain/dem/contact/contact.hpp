@@ -77,7 +77,7 @@ struct StableStep {
 
 /// Rate of work of the contact on the grains, W; its rolling torque adds rolling·roll.
 template <class T>
-inline T power_of(const ContactForce<T>& f, const ContactMotion<T>& at) {
+FURROW_HD inline T power_of(const ContactForce<T>& f, const ContactMotion<T>& at) {
   return f.normal * dot(at.velocity, at.normal) + dot(f.tangential, at.velocity);
 }
 
@@ -88,7 +88,7 @@ inline constexpr double kTiny = 1e-35;
 
 /// Turns a vector in the contact plane with the contact (spin about n, projection, same length) and scales it.
 template <class T>
-inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T spin_angle, T scale) {
+FURROW_HD inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T spin_angle, T scale) {
   const Triple<T> spun = old + spin_angle * cross(n, old);
   const Triple<T> flat = spun - dot(spun, n) * n;
   const T before = dot(old, old), after = dot(flat, flat);
@@ -98,7 +98,7 @@ inline Triple<T> turn_with_contact(const Triple<T>& old, const Triple<T>& n, T s
 
 /// Cuts spring + damper at `limit`; the spring keeps limit − damper. Returns the sum.
 template <class T>
-inline Triple<T> cut_at_limit(Triple<T>& spring, const Triple<T>& damper, T limit) {
+FURROW_HD inline Triple<T> cut_at_limit(Triple<T>& spring, const Triple<T>& damper, T limit) {
   const Triple<T> sum = spring + damper;
   const T square = dot(sum, sum);
   const auto over = square > limit * limit;

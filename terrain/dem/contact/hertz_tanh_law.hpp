@@ -53,7 +53,8 @@ struct HertzTanhLaw {
   }
 
   template <bool kRolling, class C, class S, class T>
-  static inline ContactForce<T> force(const Coefficients<C>& c, S, const ContactMotion<T>& at, ContactHistory<T>&) {
+  FURROW_HD static inline ContactForce<T> force(const Coefficients<C>& c, S, const ContactMotion<T>& at,
+                                                ContactHistory<T>&) {
     const T zero = constant<T>(0.0), tiny = constant<T>(1e-30);
     const T s = at.root_overlap;
     const T v_n = dot(at.velocity, at.normal);
@@ -79,8 +80,8 @@ struct HertzTanhLaw {
   }
 
   template <bool kRolling, class C, class S, class T>
-  static inline ContactSampleOf<T> sample(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
-                                          ContactHistory<T> history) {
+  FURROW_HD static inline ContactSampleOf<T> sample(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
+                                                    ContactHistory<T> history) {
     const ContactForce<T> f = force<kRolling>(c, dt, at, history);
     const T v_n = dot(at.velocity, at.normal);
     ContactSampleOf<T> out;
@@ -91,14 +92,14 @@ struct HertzTanhLaw {
     return out;
   }
 
-  static inline Stored held(const Coefficients<double>& c, double overlap, const ContactHistory<double>&) {
+  FURROW_HD static inline Stored held(const Coefficients<double>& c, double overlap, const ContactHistory<double>&) {
     return {.cohesion = -(c.cohesion_force * overlap), .tangential = 0.0};
   }
 
   /// k_n = 3/2 k_n √δ, c_n = g_n √δ; while tanh is nearly linear, friction is a dashpot c_t = F_t/|v_t| without
   /// stiffness.
-  static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
-                                         const ContactForce<double>& f, double share) {
+  FURROW_HD static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
+                                                   const ContactForce<double>& f, double share) {
     ContactStiffness t;
     if (!(f.elastic > 0.0)) return t;
     const double s = at.root_overlap, v_n = dot(at.velocity, at.normal);

@@ -15,7 +15,7 @@ namespace furrow::terrain::dem {
 
 /// Sets normal and overlap. @param gap D² − d² > 0, m²  @param sum D, m
 template <class T>
-[[gnu::always_inline]] inline void set_pair_overlap(ContactMotion<T>& to, const Triple<T>& d, T gap, T sum) {
+[[gnu::always_inline]] FURROW_HD inline void set_pair_overlap(ContactMotion<T>& to, const Triple<T>& d, T gap, T sum) {
   const T distance = root(dot(d, d));
   to.normal = (constant<T>(1.0) / distance) * d;
   to.overlap = gap / (sum + distance);
@@ -33,8 +33,8 @@ struct RelativeMotion {
 
 /// Sets velocity and spin. @pre the normal is set
 template <bool kSizes, class T>
-[[gnu::always_inline]] inline void set_pair_velocity(ContactMotion<T>& to, const Triple<T>& d,
-                                                     const RelativeMotion<T>& relative) {
+[[gnu::always_inline]] FURROW_HD inline void set_pair_velocity(ContactMotion<T>& to, const Triple<T>& d,
+                                                               const RelativeMotion<T>& relative) {
   const T half = constant<T>(0.5);
   to.velocity = relative.dv - half * cross(relative.turn, d);
   if constexpr (kSizes) to.velocity = to.velocity - (half * relative.delta) * cross(relative.roll, to.normal);
@@ -49,8 +49,8 @@ struct PairLoads {
 
 /// @param delta Δ, m, with sizes
 template <bool kSizes, class T>
-[[gnu::always_inline]] inline PairLoads<T> pair_loads(const ContactForce<T>& f, const Triple<T>& normal,
-                                                      const Triple<T>& d, T delta) {
+[[gnu::always_inline]] FURROW_HD inline PairLoads<T> pair_loads(const ContactForce<T>& f, const Triple<T>& normal,
+                                                                const Triple<T>& d, T delta) {
   const T half = constant<T>(0.5);
   PairLoads<T> out{f.normal * normal + f.tangential, -half * cross(d, f.tangential), f.rolling};
   if constexpr (kSizes) out.couple = out.couple - (half * delta) * cross(normal, f.tangential);
@@ -62,9 +62,9 @@ template <bool kSizes, class T>
 /// Sets the motion against a surface at rest. @param arm from the grain's centre to the point, m  @param v, w of the
 /// grain, m/s, rad/s
 template <class T>
-[[gnu::always_inline]] inline ContactMotion<T> motion_on_surface(const Triple<T>& normal, T overlap,
-                                                                 const Triple<T>& arm, const Triple<T>& v,
-                                                                 const Triple<T>& w) {
+[[gnu::always_inline]] FURROW_HD inline ContactMotion<T> motion_on_surface(const Triple<T>& normal, T overlap,
+                                                                           const Triple<T>& arm, const Triple<T>& v,
+                                                                           const Triple<T>& w) {
   return {normal, overlap, root(overlap), v + cross(w, arm), constant<T>(0.5) * dot(w, normal), w};
 }
 
@@ -76,8 +76,8 @@ struct WallPoint {
 };
 /// @param distance of the wall from the centre, m
 template <class T>
-[[gnu::always_inline]] inline WallPoint<T> point_on_wall(const Triple<T>& normal, T distance, T overlap,
-                                                         const Triple<T>& v, const Triple<T>& w) {
+[[gnu::always_inline]] FURROW_HD inline WallPoint<T> point_on_wall(const Triple<T>& normal, T distance, T overlap,
+                                                                   const Triple<T>& v, const Triple<T>& w) {
   const Triple<T> arm = (-distance) * normal;
   return {arm, motion_on_surface(normal, overlap, arm, v, w)};
 }
@@ -87,7 +87,7 @@ struct SurfaceLoads {
   Triple<T> force, torque;  // N, N m
 };
 template <class T>
-[[gnu::always_inline]] inline SurfaceLoads<T> wall_loads(const ContactForce<T>& f, const WallPoint<T>& at) {
+[[gnu::always_inline]] FURROW_HD inline SurfaceLoads<T> wall_loads(const ContactForce<T>& f, const WallPoint<T>& at) {
   return {f.normal * at.motion.normal + f.tangential, cross(at.arm, f.tangential) + f.rolling};
 }
 
@@ -97,8 +97,8 @@ struct FacetLoads {
   Triple<T> push, drag, torque;  // N, N, N m
 };
 template <class T>
-[[gnu::always_inline]] inline FacetLoads<T> facet_loads(const ContactForce<T>& f, const Triple<T>& normal,
-                                                        const Triple<T>& arm, T share) {
+[[gnu::always_inline]] FURROW_HD inline FacetLoads<T> facet_loads(const ContactForce<T>& f, const Triple<T>& normal,
+                                                                  const Triple<T>& arm, T share) {
   const Triple<T> push = (share * f.normal) * normal, drag = share * f.tangential;
   return {push, drag, cross(arm, push + drag) + share * f.rolling};
 }

@@ -75,7 +75,7 @@ struct MindlinLaw {
 
   /// K, k_t ∝ R*^½,   c_n, c_t ∝ (R*^½ m*)^½,   F_c ∝ min(r)²,   μ_r R* ∝ R*,   c_r ∝ (R*^{5/2} I*)^½.
   template <class S, class T>
-  static inline Coefficients<T> scaled(const Coefficients<S>& c, const SizeScale<T>& s) {
+  FURROW_HD static inline Coefficients<T> scaled(const Coefficients<S>& c, const SizeScale<T>& s) {
     const T root_r = root(s.radius);
     Coefficients<T> out;
     out.stiffness = c.stiffness * root_r;
@@ -91,8 +91,8 @@ struct MindlinLaw {
   }
 
   template <bool kRolling, class C, class S, class T>
-  static inline ContactForce<T> force(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
-                                      ContactHistory<T>& history) {
+  FURROW_HD static inline ContactForce<T> force(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
+                                                ContactHistory<T>& history) {
     const T zero = constant<T>(0.0);
     const T s = at.root_overlap, q = root(s);
     const T v_n = dot(at.velocity, at.normal);
@@ -129,8 +129,8 @@ struct MindlinLaw {
   }
 
   template <bool kRolling, class C, class S, class T>
-  static inline ContactSampleOf<T> sample(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
-                                          const ContactHistory<T>& history) {
+  FURROW_HD static inline ContactSampleOf<T> sample(const Coefficients<C>& c, S dt, const ContactMotion<T>& at,
+                                                    const ContactHistory<T>& history) {
     const T zero = constant<T>(0.0), per_step = constant<T>(1.0) / (zero + dt);
     const T s = at.root_overlap, q = root(s);
     const T v_n = dot(at.velocity, at.normal);
@@ -170,7 +170,8 @@ struct MindlinLaw {
     return out;
   }
 
-  static inline Stored held(const Coefficients<double>& c, double overlap, const ContactHistory<double>& history) {
+  FURROW_HD static inline Stored held(const Coefficients<double>& c, double overlap,
+                                      const ContactHistory<double>& history) {
     Stored out{.cohesion = -(c.cohesion_force * overlap), .tangential = 0.0};
     if (!(history.root_overlap > 0.0) || !(c.shear_stiffness > 0.0)) return out;
     const double k = c.shear_stiffness * history.root_overlap, r2 = c.rolling_radius * c.rolling_radius;
@@ -181,8 +182,8 @@ struct MindlinLaw {
 
   /// k_n = dF/dδ = 3/2 K √δ, c_n = c_n δ^{1/4}; while friction holds, k_t = 8 G* √(R*δ) and its damping. The change of
   /// the dampers with δ is neglected.
-  static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
-                                         const ContactForce<double>& f, double share) {
+  FURROW_HD static inline ContactStiffness tangent(const Coefficients<double>& c, const ContactMotion<double>& at,
+                                                   const ContactForce<double>& f, double share) {
     ContactStiffness t;
     if (!(f.elastic > 0.0)) return t;
     const double s = at.root_overlap, q = std::sqrt(s);
@@ -257,7 +258,7 @@ struct MindlinLaw {
   };
 
   template <class T, class S>
-  static inline SpringLosses<T> spring_losses(const SpringStep<T>& at, S dt) {
+  FURROW_HD static inline SpringLosses<T> spring_losses(const SpringStep<T>& at, S dt) {
     const T zero = constant<T>(0.0), half = constant<T>(0.5), one = constant<T>(1.0), tiny = constant<T>(kTiny);
     const T unloading = at.root / larger(at.root_before, at.root);
     const Triple<T> turned = turn_with_contact(at.before, at.normal, at.angle, unloading);

@@ -10,7 +10,7 @@ namespace furrow::terrain::dem {
 
 /// a³: for a radius in reference radii, volume and mass relative to the reference grain.
 template <class T>
-inline T cube(T a) {
+FURROW_HD inline T cube(T a) {
   return a * a * a;
 }
 
@@ -26,7 +26,7 @@ struct SizeScale {
 
 /// Scale for two grains with radii a r₀ and b r₀; bitwise the same for (b, a).
 template <class T>
-inline SizeScale<T> pair_scale(T a, T b) {
+FURROW_HD inline SizeScale<T> pair_scale(T a, T b) {
   const T two = simd::constant<T>(2.0);
   const T product = a * b, a3 = cube(a), b3 = cube(b);
   SizeScale<T> s;
@@ -40,7 +40,7 @@ inline SizeScale<T> pair_scale(T a, T b) {
 /// Scale for a grain with radius a r₀ against a surface. `share`: mass of the reference grain over that of the piece of
 /// surface that it moves, 0 for a wall; that piece grows as r². @pre a > 0, share ≥ 0
 template <class T>
-inline SizeScale<T> surface_scale(T a, double share) {
+FURROW_HD inline SizeScale<T> surface_scale(T a, double share) {
   using simd::constant;
   const T light = constant<T>(share) / (a * a), heavy = constant<T>(1.0) / cube(a);
   return {.radius = a,

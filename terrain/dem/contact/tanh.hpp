@@ -8,7 +8,7 @@ namespace furrow::terrain::dem {
 /// tanh(x) for x ≥ 0, to 2e-16 absolute in double, 1e-7 in float: with t = 2x = k ln 2 + r, |r| ≤ ½ ln 2,
 /// e^t − 1 = 2^k (e^r − 1) + (2^k − 1) and tanh x = (e^t − 1)/(e^t + 1); e^r − 1 by its series to r^13 or r^7.
 template <class T>
-inline T tanh_of_positive(T x) {
+FURROW_HD inline T tanh_of_positive(T x) {
   using simd::constant;
   constexpr bool kSingle = std::is_same_v<simd::RealOf<T>, float>;
   const T t = simd::smaller(x + x, constant<T>(kSingle ? 20.0 : 40.0));

@@ -118,6 +118,10 @@ class TerrainSpec {
   virtual std::vector<TerrainFile> files() const { return {}; }
   /// What this program lacks to run it, and what is expected, for messages; empty if nothing.
   virtual std::string lacking() const { return {}; }
+  /// The key of the section that needs it.
+  virtual const char* lacking_key() const { return "engine"; }
+  /// The device that the terrain would use here and what it needs of it, for people; empty: processors only.
+  virtual std::string device_text(const TerrainContext&) const { return {}; }
   /// Stiffness against a rigid wheel at rest on it, N/m; 0 if not known. @param width m @param load N
   virtual double stiffness_under(double /*radius*/, double /*width*/, double /*load*/) const { return 0.0; }
   /// Heights of ground that takes stated contacts; empty: it is the plane z = 0.

@@ -17,6 +17,7 @@ struct GrainBench {
   std::string bed = "default";      // CSV of positions (x_m,y_m,z_m), or default: the reference bed, from the cache
   std::string law = "mindlin";      // mindlin | hertz_tanh
   std::string precision = "mixed";  // mixed | double
+  std::string device = "cpu";       // cpu | gpu
   double cohesion = 0.0;            // Pa
   double rolling_friction = 0.0;    // -
   double step = 4e-5;               // s
@@ -35,6 +36,8 @@ void check(const GrainBench& bench) {
   terrain::dem::for_each_law([&](auto law) { known |= bench.law == law.kName; });
   require(known, "--law", terrain::dem::law_names());
   require(bench.precision == "mixed" || bench.precision == "double", "--precision", "mixed or double");
+  require(bench.device == "cpu" || bench.device == "gpu", "--device", "cpu or gpu");
+  require(bench.device == "cpu" || bench.precision == "mixed", "--precision", "mixed with --device gpu");
   require(bench.threads >= 1 && bench.threads <= 1024, "--threads", "1 to 1024");
   require(bench.steps >= 1, "--steps", "1 or more");
   require(bench.warm >= 0, "--warm", "0 or more");
@@ -51,6 +54,7 @@ terrain::dem::DemOptions grain_options(const GrainBench& bench) {
   options.cohesion = bench.cohesion;
   options.rolling_friction = bench.rolling_friction;
   options.precision = bench.precision;
+  options.device = bench.device;
   options.step = bench.step;
   options.threads = options.settle_threads = bench.threads;
   const terrain::dem::StableStep stable = terrain::dem::stable_at(options, terrain::dem::stated_overlap(options));
@@ -82,6 +86,8 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
                                        {"bytes_per_grain", r.bytes / n},
                                        {"steps", bench.steps},
                                        {"threads", bench.threads},
+                                       {"device", r.device},
+                                       {"driver", r.driver},
                                        {"law", bench.law},
                                        {"precision", bench.precision},
                                        {"cohesion_Pa", bench.cohesion},
@@ -99,6 +105,7 @@ Action add_options(CLI::App& command, Typed&) {
       "0.6 and z ≥ 0. 'default' is the reference bed.");
   command.add_option("--law", arguments->law, "Choose the contact law: " + terrain::dem::law_names() + ".");
   command.add_option("--precision", arguments->precision, "Choose the precision of the contact law: mixed or double.");
+  command.add_option("--device", arguments->device, "Step the grains on this device: cpu or gpu.");
   command.add_option("--cohesion", arguments->cohesion, "Set the cohesion of the contacts, Pa.");
   command.add_option("--rolling-friction", arguments->rolling_friction, "Set the coefficient of rolling resistance.");
   command.add_option("--threads", arguments->threads, "Use this number of threads.");

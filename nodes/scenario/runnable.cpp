@@ -14,7 +14,7 @@ void require_runnable(const Scenario& scenario) {
                         tire.static_only);
   }
   if (const std::string lacking = scenario.terrain->lacking(); !lacking.empty())
-    throw input_error(scenario.file.string(), "terrain.engine", lacking);
+    throw input_error(scenario.file.string(), std::string("terrain.") + scenario.terrain->lacking_key(), lacking);
 }
 
 }  // namespace furrow::scenario

@@ -173,6 +173,7 @@ std::string validation_text(const Scenario& s, const RunTime* time) {
     line("run step", fmt::format("{:g} s, {:.0f} % of the {:.3g} s that {} allows", s.run.step,
                                  100.0 * s.run.step / least.step, least.step, least.because));
   line("terrain", e.terrain.text);
+  if (const std::string device = s.terrain->device_text(s.terrain_context()); !device.empty()) line("GPU", device);
   const std::vector<tire::TireDescription> tires = describe_tires(s);
   const rigs::RigDescription rig = describe_rig(s, tires);
   const std::vector<WheelScales> scales = wheel_scales(s);

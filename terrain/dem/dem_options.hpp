@@ -52,8 +52,10 @@ struct DemOptions : TerrainContext {
   bool activity = true;                  // let resting grains sleep
   std::string precision = "mixed";       // of the contact law between grains: mixed (single, sums in double) | double
   bool allow_unstable_step = false;      // *_tr scenarios: warn instead of refusing
+  std::string device = "cpu";            // that steps the grains: cpu | gpu
 
   bool periodic_y() const { return sides == "periodic"; }
+  bool on_gpu() const { return device == "gpu"; }
 };
 
 /// Messages list the keys that a soil file may have in the order of those with role::soil.
@@ -149,6 +151,10 @@ void visit_fields(FieldsOf<DemOptions> auto& s, auto&& visit) {
         key("precision", "", kBed, words("mixed double"),
             "Precision of the contact law between grains, engine dem. mixed: the law in single precision; positions, "
             "sums of forces and motion in double. double: all in double, half as fast."));
+  visit(s.device,
+        key("device", "", kBed, words("cpu gpu"),
+            "Device that steps the grains, engine dem. gpu: an NVIDIA GPU, where the program has the library for it. "
+            "There no grain sleeps, precision is mixed and size_spread 0."));
   visit(s.friction_impulse_limit,
         key("friction_impulse_limit", "",
             "Limit friction so that one step cannot reverse a sliding grain, law hertz_tanh. false reproduces the 2016 "

@@ -6,6 +6,8 @@
 #include "protocol/core/error.hpp"
 #include "terrain/bulk_cohesion.hpp"
 #include "terrain/dem/dem_terrain.hpp"
+#include "terrain/gpu/gpu_grains.hpp"
+#include "terrain/gpu/gpu_terrain.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -17,14 +19,29 @@ class DemSpec final : public TerrainSpec {
   TerrainDescription describe() const override {
     TerrainDescription d = describe_grains(options_);
     d.engine = "dem";
-    d.name = "grains, law " + options_.law;
+    d.name = (options_.on_gpu() ? "grains on a GPU, law " : "grains, law ") + options_.law;
+    d.gives_tangents = !options_.on_gpu();
     return d;
   }
   TerrainEstimate estimate(const TerrainContext& context) const override {
-    return estimate_dem_terrain(with_context(options_, context));
+    const DemOptions options = with_context(options_, context);
+    if (options.on_gpu()) check_gpu_options(options);
+    return estimate_dem_terrain(options);
   }
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
-    return make_dem_terrain(with_context(options_, context));
+    const DemOptions options = with_context(options_, context);
+    if (!options.on_gpu()) return make_dem_terrain(options);
+    check_dem_run(options);
+    return make_gpu_terrain(options);
+  }
+  std::string lacking() const override { return options_.on_gpu() ? gpu::gpu_library_problem() : ""; }
+  const char* lacking_key() const override { return "device"; }
+  std::string device_text(const TerrainContext& context) const override {
+    return options_.on_gpu() ? gpu_text(options_, static_cast<double>(estimate(context).grains)) : "";
+  }
+  Archive joined_state(std::vector<Archive> parts, const TerrainContext& context) const override {
+    if (!options_.on_gpu()) return TerrainSpec::joined_state(std::move(parts), context);
+    return gpu_state_as_solver_state(parts.front(), with_context(options_, context));
   }
   std::vector<TerrainFile> files() const override { return bed_files(options_); }
   const DemOptions* grains() const override { return &options_; }

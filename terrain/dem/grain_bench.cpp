@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/dem_terrain.hpp"
 #include "terrain/dem/solver_setup.hpp"
+#include "terrain/gpu/bed_transfer.hpp"
+#include "terrain/gpu/gpu_grains.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
@@ -64,6 +67,75 @@ std::string state_hash(const Grains& grains) {
   return hash.hex();
 }
 
+[[noreturn]] void not_at_rest() { throw physics_error("a grain left the bin: the bed is not at rest with this law"); }
+
+void time_on_cpu(const GrainBench& bench, const DemOptions& options, GrainSolver& solver, const ProgressCall& progress,
+                 GrainBenchResult& result) {
+  const auto steps = [&](const char* what, int count) {
+    for (int k = 0; k < count; ++k) {
+      progress(what, static_cast<double>(k) / count);
+      if (solver.step(options.step, k + 1 == count) >= 0) not_at_rest();
+    }
+  };
+  steps("warming up", bench.warm);
+  if (!bench.save.empty())
+    write_positions_csv(bench.save, std::span(solver.grains().position).first(solver.grains().count),
+                        0.5 * kReferenceWidth);
+  solver.reset_accounts();
+  const double begin = wall_clock();
+  steps("stepping", bench.steps);
+  result.wall = wall_clock() - begin;
+
+  const Accounts& a = solver.accounts();
+  result.device = "cpu";
+  result.contacts = a.contacts;
+  for (int k = 0; k < solver.strips().count(); ++k) result.pairs_listed += solver.strips()[k].pairs;
+  result.floor_force = a.floor_force;
+  result.kinetic_energy = a.kinetic;
+  result.force_residual = a.contact_force > 0.0 ? a.net_force / a.contact_force : 0.0;
+  result.list_rebuilds = solver.rebuilds();
+  result.bytes = static_cast<double>(solver.bytes());
+  result.state_hash = state_hash(solver.grains());
+}
+
+void time_on_gpu(const GrainBench& bench, const DemOptions& options, const GrainSolver& solver,
+                 const ProgressCall& progress, GrainBenchResult& result) {
+  const gpu::DeviceInfo info = gpu::gpu_device();
+  result.device = info.name;
+  result.driver = info.driver;
+  gpu::GpuGrains grains(solver.params());
+  grains.set_coefficients(solver.coefficients());
+  gpu::send_bed(solver, grains);
+  const auto steps = [&](const char* what, int count) {
+    progress(what, 0.0);
+    const double dt = options.step;
+    if (grains.run({count, dt, dt, 0.0, 0.0, std::numeric_limits<double>::infinity(), 0.0}).lost >= 0) not_at_rest();
+  };
+  if (bench.warm > 0) steps("warming up", bench.warm);
+  if (!bench.save.empty()) {
+    std::vector<Quad> positions;
+    for (const Vec3& x : grains.motion(false).position) positions.push_back({x.x(), x.y(), x.z(), options.radius});
+    write_positions_csv(bench.save, positions, 0.5 * kReferenceWidth);
+  }
+  const auto rebuilds = static_cast<double>(grains.sums(false, options.step).rebuilds);
+  const double begin = wall_clock();
+  steps("stepping", bench.steps);
+  result.wall = wall_clock() - begin;
+
+  const gpu::Sums s = grains.sums(false, options.step);
+  result.contacts = std::llround(s.contacts);
+  result.pairs_listed = std::llround(s.listed);
+  result.floor_force = s.floor_force;
+  result.kinetic_energy = 0.5 * (solver.params().grain.mass * s.speed2 + solver.params().grain.inertia * s.spin2);
+  result.force_residual = s.contact_force > 0.0 ? s.net_force / s.contact_force : 0.0;
+  result.list_rebuilds = static_cast<double>(s.rebuilds) - rebuilds;
+  result.bytes = static_cast<double>(s.bytes);
+  const gpu::GrainMotion at = grains.motion(true);
+  Hash hash;
+  for (const auto* array : {&at.position, &at.velocity, &at.spin}) hash.add(std::span<const Vec3>(*array));
+  result.state_hash = hash.hex();
+}
+
 }  // namespace
 
 GrainBenchResult run_grain_bench(const GrainBench& bench, const ProgressCall& progress) {
@@ -78,34 +150,10 @@ GrainBenchResult run_grain_bench(const GrainBench& bench, const ProgressCall& pr
   GrainBenchResult result;
   if (bench.settle > 0.0) result.settled = settle(solver, options, progress, bench.settle).time;
   solver.set_coefficients(run_coefficients(options, options.step));
-
-  const auto steps = [&](const char* what, int count) {
-    for (int k = 0; k < count; ++k) {
-      progress(what, static_cast<double>(k) / count);
-      if (solver.step(options.step, k + 1 == count) >= 0)
-        throw physics_error("a grain left the bin: the bed is not at rest with this law");
-    }
-  };
-  steps("warming up", bench.warm);
-  if (!bench.save.empty())
-    write_positions_csv(bench.save, std::span(solver.grains().position).first(solver.grains().count),
-                        0.5 * kReferenceWidth);
-  solver.reset_accounts();
-  const double begin = wall_clock();
-  steps("stepping", bench.steps);
-  result.wall = wall_clock() - begin;
-
-  const Accounts& a = solver.accounts();
   result.grains = solver.grains().count;
-  result.contacts = a.contacts;
-  for (int k = 0; k < solver.strips().count(); ++k) result.pairs_listed += solver.strips()[k].pairs;
-  result.floor_force = a.floor_force;
   result.weight = solver.relative_mass() * params.grain.mass * -params.gravity.z();
-  result.kinetic_energy = a.kinetic;
-  result.force_residual = a.contact_force > 0.0 ? a.net_force / a.contact_force : 0.0;
-  result.list_rebuilds = solver.rebuilds();
-  result.bytes = static_cast<double>(solver.bytes());
-  result.state_hash = state_hash(solver.grains());
+  options.on_gpu() ? time_on_gpu(bench, options, solver, progress, result)
+                   : time_on_cpu(bench, options, solver, progress, result);
   return result;
 }
 

@@ -21,7 +21,9 @@ struct GrainBench {
 
 /// Sums and forces are from the last step.
 struct GrainBenchResult {
-  double wall = 0.0;  // of the timed steps, s
+  double wall = 0.0;   // of the timed steps, s
+  std::string device;  // cpu, or the name of the GPU
+  int driver = 0;      // version of CUDA that its driver supports; 0: no GPU
   int grains = 0;
   std::int64_t contacts = 0, pairs_listed = 0;
   double floor_force = 0.0, weight = 0.0;  // N

@@ -15,8 +15,10 @@ struct LiggghtsOptions : dem::DemOptions {
   }
 };
 
-/// Resting grains never sleep, and every contact is computed in double precision.
-constexpr bool is_key_of_dem_only(std::string_view name) { return name == "activity" || name == "precision"; }
+/// Resting grains never sleep, and every contact is computed in double precision, on processors.
+constexpr bool is_key_of_dem_only(std::string_view name) {
+  return name == "activity" || name == "precision" || name == "device";
+}
 
 void visit_fields(FieldsOf<LiggghtsOptions> auto& s, auto&& visit) {
   using Base =

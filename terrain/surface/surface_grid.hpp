@@ -19,6 +19,13 @@ class SurfaceGrid {
   void build(std::span<const Vec3> vertex, std::span<const std::array<int, 3>> triangle, std::span<const int> listed,
              double margin);
 
+  /// Its contents, for another device: cell (x, y, z) has the number (x ny + y) nz + z.
+  const Vec3& origin() const { return origin_; }
+  double inverse_cell() const { return inverse_cell_; }
+  const std::array<int, 3>& cells() const { return cells_; }
+  std::span<const std::int32_t> first() const { return first_; }
+  std::span<const int> entries() const { return entry_; }
+
   /// Candidates for a point; empty outside the grid.
   std::span<const int> candidates(const Vec3& point) const {
     const double x = (point.x() - origin_.x()) * inverse_cell_;

@@ -47,11 +47,15 @@ void StepRefinement::set_step(double step) {
   } while (limits_.back() < deepest && limits_.size() <= kFinestLevel);
 }
 
-Outcome StepRefinement::choose(const GrainSolver& solver, bool begins) {
+double StepRefinement::watched() const {
+  return limits_.empty() ? kInfinite : std::min(limits_[state_.level], deepest_);
+}
+
+Outcome StepRefinement::choose(const FindHard& find, bool begins) {
   FURROW_ASSERT(step_ > 0.0, step_);
   if (limits_.empty()) return {};
-  if (begins && state_.level > 0) relax(solver);
-  const HardContacts hard = hard_contacts(solver, std::min(limits_[state_.level], deepest_), step_);
+  if (begins && state_.level > 0) relax(find);
+  const HardContacts hard = find(watched(), step_);
   if (hard.past > 0) return too_hard(hard);
   const int finest = static_cast<int>(limits_.size()) - 1;
   if (!(hard.overlap > limits_[state_.level])) return {};
@@ -84,9 +88,9 @@ Outcome StepRefinement::too_deep(double overlap) const {
                   overlap, stable.step, stable.reason, 1 << (limits_.size() - 1), step_));
 }
 
-void StepRefinement::relax(const GrainSolver& solver) {
+void StepRefinement::relax(const FindHard& find) {
   const double calm = std::min(kRelaxShare * limits_[state_.level - 1], deepest_);
-  if (hard_contacts(solver, calm, 0.0).count > 0) {
+  if (find(calm, 0.0).count > 0) {
     state_.calm = 0;
   } else if (++state_.calm >= kRelaxSteps) {
     --state_.level;

@@ -22,6 +22,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "protocol/core/archive.hpp"
@@ -54,9 +55,16 @@ class StepRefinement {
   /// Sets another whole step, s, and begins at level 0. @pre step > 0
   void set_step(double step);
 
+  /// The contacts that now overlap by more than `above`, as hard_contacts() finds them.
+  using FindHard = std::function<HardContacts(double above, double ahead)>;
   /// Chooses the length of the coming part from the contacts now. @param begins whether it is the first of its step
   /// @returns failure when a contact is deeper than any step can hold
-  Outcome choose(const GrainSolver& solver, bool begins);
+  Outcome choose(const FindHard& find, bool begins);
+  Outcome choose(const GrainSolver& solver, bool begins) {
+    return choose([&](double above, double ahead) { return hard_contacts(solver, above, ahead); }, begins);
+  }
+  /// The overlap above which choose() may refine or fail at the present level, m; infinite: never.
+  double watched() const;
   /// For an engine that obtains its contacts only by evaluating them: chooses the parts of the coming steps from the
   /// hardest contact of the last ones. It refines earlier, at kRelaxShare of a part's limit, because its data are late.
   /// @returns failure when a contact was deeper than any step can hold
@@ -77,7 +85,7 @@ class StepRefinement {
   double limit(int level) const { return limits_.at(level); }
 
  private:
-  void relax(const GrainSolver& solver);
+  void relax(const FindHard& find);
   Outcome too_hard(const HardContacts& hard) const;
   Outcome too_deep(double overlap) const;
 

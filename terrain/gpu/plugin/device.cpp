@@ -36,7 +36,9 @@ DeviceInfo device_info() {
 Device::Device(int order) : order_(order) {
   device_info();  // says why there is no device
   // A thread that spins while it waits would take the tire's core.
-  check(cudaSetDeviceFlags(cudaDeviceScheduleBlockingSync), "settings of the GPU");
+  if (const cudaError_t error = cudaSetDeviceFlags(cudaDeviceScheduleBlockingSync);
+      error != cudaErrorSetOnActiveProcess)  // of an engine made earlier
+    check(error, "settings of the GPU");
   cudaStream_t stream = nullptr;
   check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "start of the GPU");
   stream_ = stream;
@@ -60,8 +62,8 @@ void Device::release(void* memory, std::size_t bytes) noexcept {
   bytes_ -= static_cast<i64>(bytes);
 }
 void Device::upload(void* to, const void* from, std::size_t bytes) {
+  // From memory that is not pinned this returns once `from` may change.
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, as_stream(stream_)), "copy to the GPU");
-  wait();
 }
 void Device::download(void* to, const void* from, std::size_t bytes) {
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, as_stream(stream_)), "copy from the GPU");

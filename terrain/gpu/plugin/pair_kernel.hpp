@@ -1,6 +1,6 @@
 // Forces between grains: each thread sums the contacts of one grain in the order of its neighbours' numbers. Both
-// grains of a pair evaluate it; the exact difference of their positions and all that follows from it only changes its sign, so
-// momentum is conserved to the round-off of double, and both keep the same springs.
+// grains of a pair evaluate it. The exact difference of their positions, and all that follows from it, only changes its
+// sign. So momentum is conserved to the round-off of double, and both keep the same springs.
 #pragma once
 
 #include "terrain/dem/contact/kinematics.hpp"

@@ -14,9 +14,9 @@ from .plot import frames, vtk
 from .plot.run_data import Run
 
 
-def kinds_of(directory):
+def kinds_of(run):
     """{"tire0": frames, …, "terrain": frames} of what the folder holds."""
-    run, found, wheel = Run(directory), {}, 0
+    found, wheel = {}, 0
     while files := run.frames(f"tire{wheel}"):
         found[f"tire{wheel}"] = frames.Frames(frames.TireFrame, files)
         wheel += 1
@@ -66,7 +66,7 @@ def main():
     try:
         if out.exists() and (not out.is_dir() or any(out.iterdir())):
             return fail(f"command line: key '--vtk': {out} exists and is not an empty folder, expected a new one", 2)
-        kinds = kinds_of(arguments.directory)
+        kinds = kinds_of(Run(arguments.directory))
         if not kinds:
             return fail(f"{arguments.directory}: has no frames, expected a run with output.frame_interval above 0", 2)
         taken = Taken(kinds, arguments.progress)

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from .frames_vtk import kinds_of
 from .plot import run_data
 from .plot.frames import Frames, GrainFrame, TireFrame
 from .plot.run_data import Missing
@@ -164,8 +165,7 @@ class Run:
 
         Returns the folder. Any VTK or ParaView opens them.
         """
-        kinds = {f"tire{wheel}": self.tire(wheel) for wheel in range(max(1, len(self._wheel_names)))}
-        return pathlib.Path(write_kinds(pathlib.Path(folder), {**kinds, "terrain": self.grains}))
+        return pathlib.Path(write_kinds(pathlib.Path(folder), kinds_of(self._run)))
 
     def __repr__(self) -> str:
         return f"<Run {self.name} in {self.directory}: {self.state}; {', '.join(self.subjects)}>"

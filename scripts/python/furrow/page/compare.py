@@ -6,10 +6,8 @@ from ..plot.units import is_number, naming
 
 from . import blocks, curves, run_page, scenario
 
-KEYS = (("drawbar_pull_N", "drawbar pull"), ("sinkage_m", "sinkage"), ("rut_depth_m", "rut depth"),
-        ("drawbar_coefficient", "pull over load"),
-        ("drive_torque_Nm", "drive torque"), ("tractive_efficiency", "tractive efficiency"),
-        ("vertical_load_N", "load"))
+KEYS = ("drawbar_pull_N", "sinkage_m", "rut_depth_m", "drawbar_coefficient", "drive_torque_Nm", "tractive_efficiency",
+        "vertical_load_N")
 
 
 def names(runs):
@@ -31,11 +29,11 @@ def mean_and_half(summary, key):
 def results(runs, arrays):
     rows, items, missing = [], [], []
     called = names(runs)
-    for key, words in KEYS:
+    for key in KEYS:
         found = [mean_and_half(run.summary, key) for run in runs]
         if not any(is_number(mean) for mean, _ in found):
             continue
-        _, unit, factor = naming(key)
+        words, unit, factor = naming(key)
         rows.append([words] + [blocks.quantity(key, mean, half)[0] for mean, half in found] + [unit])
         lines = []
         for k, (mean, half) in enumerate(found):

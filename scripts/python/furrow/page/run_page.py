@@ -10,16 +10,11 @@ from ..plot.units import is_number, naming
 
 from . import blocks, curves, ground, scenario
 
-# Keys of a wheel that become cards: (key, its standard error, how many independent values, what it is).
-CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff", "sinkage"),
-         ("rut_depth_m", "rut_depth_sem_m", "rut_depth_n_eff", "rut depth"),
-         ("drawbar_coefficient", None, None, "pull over load"),
-         ("vertical_load_N", None, None, "load"),
-         ("tire_deflection_m", None, None, "tire deflection"),
-         ("drive_torque_Nm", None, None, "drive torque"),
-         ("tractive_efficiency", None, None, "tractive efficiency"))
-EXPECTED = (("drawbar_pull", "drawbar_pull_N", "drawbar pull"), ("sinkage", "sinkage_m", "sinkage"),
-            ("rut_depth", "rut_depth_m", "rut depth"))
+# Keys of a wheel that become cards: (key, its standard error, how many independent values).
+CARDS = (("sinkage_m", "sinkage_sem_m", "sinkage_n_eff"), ("rut_depth_m", "rut_depth_sem_m", "rut_depth_n_eff"),
+         *((key, None, None) for key in ("drawbar_coefficient", "vertical_load_N", "tire_deflection_m",
+                                         "drive_torque_Nm", "tractive_efficiency")))
+EXPECTED = (("drawbar_pull", "drawbar_pull_N"), ("sinkage", "sinkage_m"), ("rut_depth", "rut_depth_m"))
 OF_WHEELS = ("slip", "vertical_force_N", "tractive_effort_N", "terrain_resistance_N", "drive_torque_Nm", "sinkage_m",
              "rut_depth_m", "lateral_force_N", "tire_deflection_m", "tractive_efficiency")
 PROVENANCE = ("version", "scenario", "scenario_digest", "state_hash", "format_version", "compiler", "cpu",
@@ -117,13 +112,13 @@ def answer_cards(run):
                                  "good" if pull.get("steady") else "warn",
                                  "steady" if pull.get("steady") else "not steady"))
     hard, rigid = hard_ground(run), all_rigid(run)
-    for key, sem, count, name in CARDS:
+    for key, sem, count in CARDS:
         if not is_number(summary.get(key)) or (hard and key == "sinkage_m") or (rigid and key == "tire_deflection_m"):
             continue
         half = blocks.half_95(summary.get(sem), summary.get(count), blocks.LEAST_SAMPLES) if sem else None
         value, unit = blocks.quantity(key, summary[key], half)
         few = f"no error: fewer than {blocks.LEAST_SAMPLES} independent values" if sem and half is None else ""
-        items.append(blocks.card(name, value, unit, "95 %" if half is not None else "", explanation=few))
+        items.append(blocks.card(naming(key)[0], value, unit, "95 %" if half is not None else "", explanation=few))
     return items
 
 
@@ -196,7 +191,7 @@ def expected_table(run):
     if not isinstance(expected, dict):
         return []
     rows, outside = [], 0
-    for key, result, name in EXPECTED:
+    for key, result in EXPECTED:
         value = run.summary.get(result)
         value = value.get("mean") if isinstance(value, dict) else value
         target, spread = expected.get(key), expected.get(f"{key}_spread")
@@ -206,8 +201,8 @@ def expected_table(run):
         if is_number(spread):
             verdict = "within the spread" if abs(value - target) <= spread else "outside of the spread"
             outside += abs(value - target) > spread
-        rows.append([name, *(blocks.quantity(result, v)[0] for v in (value, target, spread)),
-                     naming(result)[1], verdict])
+        words, unit, _ = naming(result)
+        rows.append([words, *(blocks.quantity(result, v)[0] for v in (value, target, spread)), unit, verdict])
     if not rows:
         return []
     words = ("This run is within what the scenario's author expects." if not outside

@@ -10,9 +10,8 @@ from ..plot.run_data import Missing
 
 from . import blocks
 
-PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "Drawbar pull"),
-          ("sinkage_m", None, "Sinkage"), ("rut_depth_m", None, "Rut depth"),
-          ("tractive_efficiency", None, "Tractive efficiency"))
+PASSES = (("drawbar_pull_N.mean", "drawbar_pull_N.sem"), ("sinkage_m", ""), ("rut_depth_m", ""),
+          ("tractive_efficiency", ""))
 MOST_ROWS = 2000
 # sweep.csv has them; without them a study that was interrupted has the page of one that was not
 WALL_TIMES = {"wall_s"}
@@ -62,15 +61,15 @@ def curve(sweep, arrays):
 def passes(sweep, arrays):
     """Pull, sinkage and rut over the number of the pass."""
     groups, over, items = studies.chains(sweep), sweep.plot.get("mean_over"), []
-    for key, sem, title in PASSES:
-        _, unit, factor = named(key)
+    for key, sem in PASSES:
+        words, unit, factor = named(key)
         lines = []
         for label, rows in groups.items():
             if any(math.isfinite(studies.number(row.get(key))) for row in rows):
-                x, y, half, _ = studies.points(rows, "pass", key, sem or "", over)
-                lines.append(line(arrays, label or title.lower(), x, y, half, factor))
+                x, y, half, _ = studies.points(rows, "pass", key, sem, over)
+                lines.append(line(arrays, label or words, x, y, half, factor))
         if lines:
-            items.append(blocks.chart(title, "pass", "", unit, lines))
+            items.append(blocks.chart(words.capitalize(), "pass", "", unit, lines))
     made = [blocks.charts(items, f"Whiskers: 95 % interval of the mean over {over}."
                           if over else "Whiskers: standard error of each run.")]
     if unsteady := sum(map(studies.unsteady, sweep.rows)):
@@ -85,7 +84,8 @@ def beds(sweep, arrays):
         raise Missing("no bed is done")
     at = np.array([studies.number(row["folder"].removeprefix("seed")) for row in sweep.rows])
     items, cards = [], []
-    for key, sem, what, unit, factor in studies.OF_BEDS:
+    for key, sem in studies.OF_BEDS:
+        what, unit, factor = named(key)
         values, errors = (factor * np.array([studies.number(row.get(name)) for row in sweep.rows])
                           for name in (key, sem))
         known = values[np.isfinite(values)]

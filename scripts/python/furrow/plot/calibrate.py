@@ -87,8 +87,7 @@ def mark_places(axis, target):
 
 
 def label_of(name):
-    words, unit, _ = quantity(name)
-    return f"{words}, {unit}" if unit else words
+    return ", ".join(filter(None, quantity(name)[:2]))
 
 
 def fit_of_figures(axis, target, colour):

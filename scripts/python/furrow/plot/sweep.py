@@ -259,10 +259,9 @@ def rut_along(sweep):
     return figure
 
 
-# Figures of beds: key of a bed's summary and of its standard error, what it is, unit, scale.
-OF_BEDS = (("drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar pull", "N", 1.0),
-           ("sinkage_m", "sinkage_sem_m", "sinkage", "mm", 1e3),
-           ("rut_depth_m", "rut_depth_sem_m", "depth of the rut", "mm", 1e3))
+# Figures of beds: keys of a bed's summary and of its standard error.
+OF_BEDS = (("drawbar_pull_N.mean", "drawbar_pull_N.sem"), ("sinkage_m", "sinkage_sem_m"),
+           ("rut_depth_m", "rut_depth_sem_m"))
 
 
 def beds(sweep):
@@ -272,7 +271,8 @@ def beds(sweep):
     at = np.array([number(row["folder"].removeprefix("seed")) for row in sweep.rows])
     which = np.array([unsteady(row) for row in sweep.rows])
     figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.4))
-    for axis, (key, sem, what, unit, scale) in zip(axes, OF_BEDS):
+    for axis, (key, sem) in zip(axes, OF_BEDS):
+        what, unit, scale = named(key)
         values, errors = (scale * np.array([number(row.get(name)) for row in sweep.rows]) for name in (key, sem))
         if not np.isfinite(values).any():
             axis.set_title(f"{what}: not measured")

@@ -20,7 +20,8 @@ WORDS = {"simulated_s": "simulated time", "wall_s": "wall time", "settle_wall_s"
          "compute_s": "computing", "communicate_s": "communicating", "wait_s": "waiting", "step_s": "step",
          "cpu": "processor", "z_m": "height", "contacts_tire": "contacts of the tire",
          "active_share": "share of grains awake", "active_share_mean": "share of grains awake, mean",
-         "sinkage_kinematic_m": "kinematic sinkage", "toe_rad": "toe-in", "half_track_m": "half-track",
+         "sinkage_kinematic_m": "kinematic sinkage", "drawbar_coefficient": "pull over load",
+         "vertical_load_N": "load", "toe_rad": "toe-in", "half_track_m": "half-track",
          "roll_center_m": "roll centre above ground", "scrub_m": "scrub radius",
          "spring_ratio": "motion ratio of the spring", "shock_ratio": "motion ratio of the shock",
          "anti_dive": "anti-dive, anti-lift", "steer_rad": "steer angle to the left"}

@@ -294,16 +294,6 @@ class Press(SystemTest):
                    says="tire.pressure changes in time: the tire is pressed at that of t = 0, 200000 Pa")
         self.assertEqual(self.summary()["pressure_Pa"], 200000)
 
-    def test_a_static_tire_does_not_run(self):
-        tire = read_json(ROOT / "tire/data/aligator_planar.json")
-        write_json(self.folder / "tire.json", {**tire, "integrator": "runge_kutta_4"})
-        path = write_json(self.folder / "static.json", {**SCENARIO, "tire": {"file": "tire.json"}})
-        for command in ("validate", "run"):
-            self.furrow(command, path, code=2, says="key 'tire.file': is a planar finite-element tire, whose key "
-                        "'integrator' is 'runge_kutta_4'")
-            self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["static.json", "tire.json"])
-        self.furrow("validate", path, "--set", "tire.rigid=true")
-
     def test_bad_input(self):
         for more, word in ((("--on", "sand"), "--on"), (("--deflection", "-1"), "--deflection"),
                            (("--load", "inf"), "--load"),

@@ -6,10 +6,6 @@
 
 namespace furrow::tire {
 
-namespace keys {
-inline constexpr Allowed kPositive = allowed::above(0).optional();
-}  // namespace keys
-
 /// Negative: the file does not state it.
 struct RimProperties {
   static constexpr SchemaName kSchema{"rim",
@@ -22,18 +18,19 @@ struct RimProperties {
 };
 
 void visit_fields(FieldsOf<RimProperties> auto& s, auto&& visit) {
-  visit(s.mass, key("mass", "kg", keys::kPositive,
-                    "Mass of the rim with its spindle, without the tire; rig.rim_mass overrides it."));
+  constexpr Allowed kPositive = allowed::above(0).optional();
+  visit(s.mass,
+        key("mass", "kg", kPositive, "Mass of the rim with its spindle, without the tire; rig.rim_mass overrides it."));
   visit(s.spin_inertia,
-        key("spin_inertia", "kg m²", keys::kPositive,
+        key("spin_inertia", "kg m²", kPositive,
             "Moment of inertia of the rim about its axle, without the tire; rig.rim_spin_inertia overrides it."));
   visit(s.diametral_inertia,
-        key("diametral_inertia", "kg m²", keys::kPositive,
+        key("diametral_inertia", "kg m²", kPositive,
             "Moment of inertia of the rim about a diameter, without the tire; rig.rim_diametral_inertia overrides it. "
             "The "
             "default is half of the spin inertia, as of a thin ring."));
   visit(s.carrier_mass,
-        key("carrier_mass", "kg", keys::kPositive,
+        key("carrier_mass", "kg", kPositive,
             "Mass that the wheel carries besides rim and tire; rig.load and rig.carrier_mass override it."));
 }
 

@@ -29,12 +29,12 @@ struct HandlingFile {
   std::string lacking_key, lacking;  // the first of these that neither file says, and what is expected; empty: none
 };
 void visit_fields(FieldsOf<HandlingFile> auto& s, auto&& visit) {
+  constexpr Allowed kPositive = allowed::above(0).optional();
   visit(s.tir, needed("tir", "", "Tire property file, relative to this file."));
-  visit(s.mass,
-        key("mass", "kg", keys::kPositive.usual(0.01, 2000), "Mass of the tire; without it MASS of [INERTIA]."));
-  visit(s.spin_inertia, key("spin_inertia", "kg m²", keys::kPositive,
+  visit(s.mass, key("mass", "kg", kPositive.usual(0.01, 2000), "Mass of the tire; without it MASS of [INERTIA]."));
+  visit(s.spin_inertia, key("spin_inertia", "kg m²", kPositive,
                             "Moment of inertia of the tire about its axle; without it IYY of [INERTIA]."));
-  visit(s.diametral_inertia, key("diametral_inertia", "kg m²", keys::kPositive,
+  visit(s.diametral_inertia, key("diametral_inertia", "kg m²", kPositive,
                                  "Moment of inertia of the tire about a diameter; without it IXX of [INERTIA]."));
 }
 

@@ -40,6 +40,15 @@ struct Allowed {
   bool takes_null = false;  // null is allowed and is the default; the description states its meaning
   bool takes_empty = true;  // an empty text is allowed
 
+ private:
+  template <class Change>
+  constexpr Allowed changed(const Change& change) const {  // before its uses: clang 14 needs it there
+    Allowed other = *this;
+    change(other);
+    return other;
+  }
+
+ public:
   constexpr Allowed from(double least, double most = std::numeric_limits<double>::infinity()) const {
     return changed([&](Allowed& a) { a.low = least, a.high = most; });
   }
@@ -75,14 +84,6 @@ struct Allowed {
   }
   constexpr Allowed not_empty() const {
     return changed([](Allowed& a) { a.takes_empty = false; });
-  }
-
- private:
-  template <class Change>
-  constexpr Allowed changed(const Change& change) const {
-    Allowed other = *this;
-    change(other);
-    return other;
   }
 };
 

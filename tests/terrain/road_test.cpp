@@ -269,6 +269,7 @@ TEST_F(RoadFile, mistakes_of_an_open_crg_file_are_told_by_line_and_parameter) {
       {kRoad + rows, "defines no channel"},
       {kRoad + "$KD_DEFINITION\n#:LRFI\nD:reference line phi,rad\n$\n" + rows, "has no cut along the road"},
       {kRoad + "$KD_DEFINITION\n#:XXXX\n" + kCuts + rows, "line 12': is the data format 'XXXX'"},
+      {kRoad + "$KD_DEFINITION\nD\n$\n" + rows, "defines no channel"},
       {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section one,m\n$\n" + rows, "line 13': is not a cut"},
       {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,mm\n$\n" + rows, "line 13': is not a cut"},
       {kRoad + "$KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section at v = 0,m\n$\n" + rows,

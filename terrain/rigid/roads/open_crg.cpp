@@ -104,7 +104,7 @@ class Reader {
         throw wrong_line("is the data format '" + excerpt(format) + "', expected LRFI, LDFI, KRBI or KDBI");
       text_ = format.front() == 'L', double_ = format[1] == 'D';
     }
-    const std::string kind = upper(content.substr(0, 2)), channel = upper(trimmed(content.substr(2)));
+    const std::string kind = upper(content.substr(0, 2)), channel = upper(trimmed(content.substr(kind.size())));
     if (kind == "U:") expect_unit(channel, "M");
     if (kind != "D:") return;
     constexpr std::string_view kCut = "LONG SECTION";

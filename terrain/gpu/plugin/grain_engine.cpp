@@ -216,8 +216,7 @@ void GrainEngine::build() {
     device_.clear(state_.touching.data(), n * sizeof(u32));
   }
   find_near_walls(listed_);
-  for (const auto& s : surfaces_)
-    if (s->near.count > 0) find_near_surface(*s, order_.data());
+  for (const auto& s : surfaces_) find_near_surface(*s, order_.data());
   listed_ = true;
   ++rebuilds_;
   read_control();

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "protocol/core/error.hpp"
+#include "terrain/gpu/tire_on_gpu.hpp"
 #include "tests/terrain/gpu/gpu_grains.hpp"
+#include "tests/terrain/surface_meshes.hpp"
 
 namespace furrow::terrain::gpu {
 namespace {
@@ -287,6 +289,32 @@ TEST(GpuGrains, holds_grains_on_a_slope_by_friction_and_rolling_resistance) {
   rolls.run(few.options.step, 10000);
   // A sphere that rolls without slip falls at 5/7 g sin α.
   EXPECT_NEAR(rolls.at.velocity[0].x() / (5.0 / 7.0 * 9.81 * std::sin(0.1) * 0.2), 1.0, 5e-3);
+}
+
+TEST(GpuGrains, falls_on_a_surface_that_was_far_and_rests_there_with_its_weight) {
+  FewGrains few = mixed("mindlin");
+  few.gravity = 9.81;
+  const double r = few.options.radius, top = 0.1, dt = few.options.step;
+  SteppedGrains s(few.make({{0.31, 0.01, top + 5.0 * r, 0.0}}));
+  const testing::Surface plate = testing::sheet(0.25, -0.05, 0.02, 5, 5, [=](double, double) { return top; });
+  const ContactMaterial material = dem::grain_material(few.options);
+  TireOnGpu tire(s.grains, 0, plate.mesh, material, testing::at_rest(plate), r,
+                 SurfacePatches(plate.mesh, plate.vertex, r));
+  s.grains.set_surface_coefficients(0, few.coefficients().floor, false);
+  NodalForces forces;
+  ContactSums sums;
+  for (int k = 0; k < 600; ++k) {
+    tire.set_target(testing::at_rest(plate), 50 * dt);
+    tire.send(s.grains, {Vec3(0.0, -0.3, 0.0), Vec3(0.6, 0.3, 1.0)});
+    ASSERT_EQ(s.grains.run({50, dt, dt, 0.0, 0.02, INFINITY, k < 100 ? 0.0 : 20.0}).stop, Stop::none);
+    tire.finish(s.grains, forces, sums);
+  }
+  const double weight = few.mass() * 9.81;
+  EXPECT_NEAR(sums.force.z(), -weight, 1e-3 * weight);
+  EXPECT_EQ(sums.contacts, 1);
+  EXPECT_LE(forces.vertex.size(), 3U);
+  s.at = s.grains.motion(true);
+  EXPECT_NEAR(top + r - s.at.position[0].z(), few.resting_overlap(), 1e-3 * few.resting_overlap());
 }
 
 TEST(GpuGrains, closes_the_account_of_energy) {

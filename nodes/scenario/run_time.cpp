@@ -21,7 +21,8 @@ namespace furrow::scenario {
 namespace {
 
 // Factors from measured runs over the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
-constexpr double kLargeBed = 2.1;      // a grain-step of a bed that is settled or rolled on
+constexpr double kSettled = 1.8;       // a grain-step of a bed that settles
+constexpr double kRolled = 2.1;        // a grain-step of a bed that is rolled on
 constexpr double kPackings = 2.5;      // number of beds until one has the wanted solid fraction, and their sample
 constexpr double kOnSoil = 1.2;        // a step of a tire
 constexpr double kDouble = 1.5;        // a grain-step in double precision over one in mixed
@@ -127,10 +128,10 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
   t.bed_is_kept = true;
   if (const terrain::dem::DemOptions* const keys = s.terrain->grains()) {
     const terrain::dem::DemOptions o = terrain::dem::with_context(*keys, s.terrain_context());
-    const double grain = kLargeBed * machine.grain_step * (o.precision == "double" ? kDouble : 1.0);
+    const double grain = machine.grain_step * (o.precision == "double" ? kDouble : 1.0);
     const double settled = settling(o);
     t.bed_is_kept = settled == 0.0;
-    t.bed = settled * grain / std::clamp(o.settle_threads, 1, t.cores);
+    t.bed = settled * kSettled * grain / std::clamp(o.settle_threads, 1, t.cores);
     if (o.activity && !s.terrain->describe().core_per_rank) t.awake = awake_share(s, tires, o);
     const GrainLoads loads = grain_loads(s);
     t.refined = loads.refined;
@@ -141,7 +142,7 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
       t.terrain = steps * terrain::liggghts::rank_step(load, machine.grain_step);
       all += t.terrain * s.terrain_ranks;
     } else {
-      const double terrain = steps * t.awake * terrain::dem::expected_grains(o) * grain;
+      const double terrain = steps * t.awake * terrain::dem::expected_grains(o) * kRolled * grain;
       t.terrain = terrain / std::min(t.threads, t.cores);
       all += terrain;
     }

@@ -36,10 +36,10 @@ def is_here(case):
     return case not in peers.PEERS or shutil.which(peers.PEERS[case][0])
 
 
-def grains(folder, rounds, steps):
-    """The columns of grains."""
+def grains(given, folder, rounds, steps):
+    """The columns of grains, on this bed."""
     bed = folder / "bed.csv"
-    peers.bench_grains("default", "mindlin", THREADS, 1, 1, "--save-bed", bed)
+    peers.bench_grains(given, "mindlin", THREADS, 1, 1, "--save-bed", bed)
     peers.settle(bed, THREADS, folder)
     done = {name: [] for name, case in CASES.items() if is_here(case)}
     for _ in range(rounds):
@@ -60,7 +60,7 @@ def medians(rounds, keys, *words):
 
 def main():
     parser = driver.options(
-        __doc__, rounds={"type": int, "default": 3}, steps={"type": int, "default": 1000},
+        __doc__, bed={"default": "default"}, rounds={"type": int, "default": 3}, steps={"type": int, "default": 1000},
         rig={"default": "drawbar_pull.json"}, rig_steps={"type": int, "default": 2000},
         rig_warm={"type": float, "default": 0.2},
         out={"type": pathlib.Path, "default": pathlib.Path(__file__).resolve().with_suffix(".csv")})
@@ -71,7 +71,7 @@ def main():
         folder = pathlib.Path(name)
         row = {"date": datetime.date.today().isoformat(), "commit": made["commit"], "milestone": arguments.milestone,
                "compiler": made["compiler"], "processor": made["processor"], "threads": THREADS,
-               **grains(folder, rounds, arguments.steps),
+               **grains(arguments.bed, folder, rounds, arguments.steps),
                **medians(rounds, {"tire_ms_per_step": "ms_per_step"}, "tire"),
                **medians(rounds, {"rig_s_per_simulated_s": "s_per_simulated_s", "rig_terrain_ms": "terrain_ms",
                                   "rig_tire_ms": "tire_ms", "rig_slower_of_both_ms": "slower_of_both_ms",

@@ -1,5 +1,6 @@
 #include "tire/surface_strain.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "protocol/core/assert.hpp"

@@ -1,6 +1,6 @@
-// Strain of a tire's contact surface, of its triangles. With the metric tensors G and g of a triangle's two edges before
-// and after, the in-plane Green–Lagrange strain has the principal values of ½ G⁻¹ (g − G) [Holzapfel 2000, Nonlinear
-// Solid Mechanics, 2.5].
+// Strain of a tire's contact surface, of its triangles. With the metric tensors G and g of a triangle's two edges
+// before and after, the in-plane Green–Lagrange strain has the principal values of ½ G⁻¹ (g − G) [Holzapfel 2000,
+// Nonlinear Solid Mechanics, 2.5].
 #pragma once
 
 #include <vector>

@@ -2,7 +2,8 @@
 //
 // The line is straight between points P_0 … P_n that are `increment` apart. Segment k, from P_k to P_{k+1}, holds the
 // places between the normals of the line at its ends: at a point within the line on P_{k+1} − P_{k−1}, at the ends of
-// the line on its first or last segment, of a closed line in the middle between both. With m_k the unit vector along the former, t_k along the segment,
+// the line on its first or last segment, of a closed line in the middle between both. With m_k the unit vector along
+// the former, t_k along the segment,
 //   v = t_k × (p − P_k),   u = u_k + increment · a/(a + b),
 //   a = (p − P_k)·m_k / (t_k·m_k),   b = (P_{k+1} − p)·m_{k+1} / (t_k·m_{k+1}).
 // Before and behind the line u goes on straight. This is the evaluation of ASAM OpenCRG 1.2.0 (chapter 9, "Evaluation")
@@ -37,8 +38,8 @@ class RoadLine {
   Vec2 beside(std::size_t k, double v) const;
   std::size_t points() const { return point_.size(); }
   double increment() const { return increment_; }
-  /// The largest v to the left (side 1) or right (side −1) of segment k at which its places do not overlap with those of
-  /// the segments beside it, m; infinite where the line does not turn to that side.
+  /// The largest v to the left (side 1) or right (side −1) of segment k at which its places do not overlap with those
+  /// of the segments beside it, m; infinite where the line does not turn to that side.
   double room(std::size_t segment, double side) const;
   double most_curvature() const { return most_curvature_; }  // 1/m
 

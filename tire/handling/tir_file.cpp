@@ -180,8 +180,9 @@ class Sections {
     reads_ = std::find(kRead.begin(), kRead.end(), open_) != kRead.end();
     const auto [section, fresh] = sections_.try_emplace(open_, Section{number, {}, {}});
     if (!fresh && reads_)
-      throw input_error(file_, "[" + open_ + "]",
-                        fmt::format("is given twice, in lines {} and {}, expected it once", section->second.line, number));
+      throw input_error(
+          file_, "[" + open_ + "]",
+          fmt::format("is given twice, in lines {} and {}, expected it once", section->second.line, number));
   }
 
   std::string file_, open_;

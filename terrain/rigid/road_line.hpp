@@ -38,7 +38,7 @@ class RoadLine {
   Vec2 beside(std::size_t k, double v) const;
   std::size_t points() const { return point_.size(); }
   double increment() const { return increment_; }
-  /// The largest v to the left (side 1) or right (side −1) of segment k at which its places do not overlap with those
+  /// The largest v to the left (side 1) or right (side −1) of a segment at which its places do not overlap with those
   /// of the segments beside it, m; infinite where the line does not turn to that side.
   double room(std::size_t segment, double side) const;
   double most_curvature() const { return most_curvature_; }  // 1/m

@@ -37,7 +37,6 @@ class RoadLine {
   /// Where the point k of the line lies moved by v to the left, on the normal of the line.
   Vec2 beside(std::size_t k, double v) const;
   std::size_t points() const { return point_.size(); }
-  double increment() const { return increment_; }
   /// The largest v to the left (side 1) or right (side −1) of a segment at which its places do not overlap with those
   /// of the segments beside it, m; infinite where the line does not turn to that side.
   double room(std::size_t segment, double side) const;

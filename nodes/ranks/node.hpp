@@ -5,7 +5,7 @@
 // Forces act one step late, so that rig, tires and terrain compute at the same time. A tire that only follows its rim
 // has nothing to compute, and grounds given by formulas have little. Between such a tire and such a ground, forces are
 // prompt. In answer() the tire moves with the rim of t_n, the terrain returns the forces of that interval, and the rig
-// gets their wrench.
+// gets their wrench. A tire that states its contact is prompt as well.
 //
 // synchronize sends everything before it receives anything, so that no order of ranks can deadlock. The rig orders
 // checkpoints and stops. At t_n it informs the tires, at t_{n+1} they inform the terrain, and all save at t_{n+2},

@@ -8,15 +8,17 @@
 // is the semi-implicit Euler rule for the velocities v = V + u. Held nodes move with the rim; the force that holds them
 // is
 //   R = m Δv/h − F_int − F_ext − m g,   −Σ R on the rim, −Σ r × R about its centre.                           (2)
-// So momentum and angular momentum change by the acting impulses, to round-off. The fourth-order Runge–Kutta method takes
-// the same steps for v and r + (V' h) with held nodes on straight ways; F_int and the forces of a contact of the tire's
-// own (tread_contact.hpp) are those of its stages, F_ext is constant. Its momenta change by the means of these forces.
+// So momentum and angular momentum change by the acting impulses, to round-off.
+//
+// The fourth-order Runge–Kutta method takes the same steps h with held nodes on straight ways. F_int and the forces of a
+// contact of the tire's own (tread_contact.hpp) are those of its stages, F_ext is constant. Momentum changes by the
+// means of these forces.
 //
 // Energy of a step, with the work of F_ext and R as they act and Δr = r' − r:
 //   work = Δ(kinetic + elastic + potential) + viscous + numerical,
 //   numerical = ½ Σ m |Δv|² + ½ Σ (F_int' − F_int)·Δr,   viscous = ½ h (P + P'),                              (3)
 // P the viscous power. The error of (3) is of third order in h in the elastic part and of second order in the viscous
-// part. The Runge–Kutta method loses only ½ Σ m |Δv|² of held nodes, and the error is its own, besides the viscous part.
+// part. Of the Runge–Kutta method only ½ Σ m |Δv|² of held nodes is lost; what it loses by itself is an error of (3).
 #pragma once
 
 #include <cstdint>

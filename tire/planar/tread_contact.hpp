@@ -1,5 +1,5 @@
-// The penalty contact (rubbing_contact.hpp) of a planar tire in a run, on ground that is alike across the way: a profile
-// z(x), or level.
+// The penalty contact (rubbing_contact.hpp) of a planar tire in a run, on ground that is alike across: a profile z(x),
+// or level.
 //
 // The outer nodes in the middle of the width touch the ground in the vertical plane of x and z, so a wheel may steer
 // and lean. Forces act in this plane; friction also acts across it, along y. Their part in the wheel's plane moves the

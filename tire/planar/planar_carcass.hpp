@@ -10,9 +10,9 @@
 //   R = m Δv/h − F_int − F_ext − m g,   −Σ R on the rim, −Σ r × R about its centre.                           (2)
 // So momentum and angular momentum change by the acting impulses, to round-off.
 //
-// The fourth-order Runge–Kutta method takes the same steps h with held nodes on straight ways. F_int and the forces of a
-// contact of the tire's own (tread_contact.hpp) are those of its stages, F_ext is constant. Momentum changes by the
-// means of these forces.
+// The fourth-order Runge–Kutta method takes the same steps h with held nodes on straight ways. F_int and the forces of
+// the tire's own contact (tread_contact.hpp) are those of its stages, F_ext is constant. Momentum changes by the means
+// of these forces.
 //
 // Energy of a step, with the work of F_ext and R as they act and Δr = r' − r:
 //   work = Δ(kinetic + elastic + potential) + viscous + numerical,

@@ -25,10 +25,10 @@ namespace furrow::terrain {
 
 /// Heights at the nodes of a grid, m.
 struct HeightMap {
-  std::vector<double> x, y;              // of the nodes, rising, two at least, m; with a line: u and v along it
-  std::vector<double> z;                 // [ix * y.size() + iy], finite
-  double turn = 0.0;                     // of the line that is laid straight along x, rad
-  std::shared_ptr<const RoadLine> line;  // none: the grid lies along x and y
+  std::vector<double> x, y;                   // of the nodes, rising, two at least, m; with a line: u and v along it
+  std::vector<double> z;                      // [ix * y.size() + iy], finite
+  double turn = 0.0;                          // of the line that is laid straight along x, rad
+  std::shared_ptr<const RoadLine> line = {};  // none: the grid lies along x and y
 };
 
 /// The least and the largest x, then y, m.

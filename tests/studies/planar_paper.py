@@ -9,7 +9,7 @@ curb  rigs/curb.json beside the standalone wheel with the same masses (tests/tir
       rim has the other half. off_the_standalone is the rms difference of the centre's height from 1.2 m before the
       edge to 2 m behind it, over the curb's height.
 car   the HMMWV on the planar tires of cleat_roll.py, let down on level ground, driven off at 1 s, coasting from
-      2.5 s: mean loads over the last second, beside the weight of vehicle and tires.
+      2.5 s: means over the last second beside the weight of vehicle and tires, and the front axle's load at rest.
 """
 import json
 
@@ -92,11 +92,17 @@ def car(name, changes):
 
 def car_row(name, changes):
     folder = car(name, changes)
-    end = driver.summary(folder)
-    loads = [driver.mean_of(wheel["vertical_load_N"]) for wheel in end["wheels"]]
+    end, line = driver.summary(folder), driver.series(folder, "vehicle")
+    wheels = [driver.series(folder, f"wheel{k}") for k in range(4)]
+    last = wheels[0]["time_s"] > 3.0
+    loads, sides = ([float(wheel[column][last].mean()) for wheel in wheels] for column in ("force_z_N", "force_y_N"))
     energy = end["accounts"]["energy"]
-    return {"case": "car", "contact": name, **{f"load_{k}_N": load for k, load in enumerate(loads)},
-            "load_N": sum(loads), "energy_residual_of_turnover": energy["residual"] / energy["turnover"]}
+    return {"case": "car", "contact": name, "weight_N": end["vehicle"]["mass_kg"] * GRAVITY, "load_N": sum(loads),
+            "front_N": loads[0] + loads[1],
+            "front_at_rest_N": sum(wheel["vertical_load_N"] for wheel in end["wheels"][:2]),
+            "acceleration_m_s2": float(line["acceleration_m_per_s2"][line["time_s"] > 3.0].mean()),
+            "side_force_N": sum(sides), "off_its_line_m": float(line["y_m"][-1] - line["y_m"][0]),
+            "energy_residual_of_turnover": energy["residual"] / energy["turnover"]}
 
 
 def main():
@@ -105,7 +111,7 @@ def main():
     parts, made = parser.parse_args().parts, provenance.made_here()
     rows = list(curb_rows()) if "curb" in parts else []
     rows += [car_row(name, changes) for name, changes in CAR.items()] if "car" in parts else []
-    driver.write("planar_paper.csv", rows, made, told=True)
+    driver.write("planar_paper.csv", rows, made, 5, told=True)
 
 
 if __name__ == "__main__":

@@ -46,6 +46,7 @@ class GpuTerrain final : public Terrain {
       : options_(options), params_(gpu_params(options)), refinement_(options), dt_(options.step), part_(options.step) {
     gpu_device();  // the error if there is none
     refinement_.set_step(dt_);
+    start();  // a run that is resumed attaches its tires before it restores the grains
   }
 
   double do_prepare(const ProgressCall& progress) override {
@@ -53,7 +54,6 @@ class GpuTerrain final : public Terrain {
     dem::GrainSolver solver(params_);
     solver.set_coefficients(dem::run_coefficients(options_, dt_));
     const dem::PreparedBed prepared = dem::load_bed(solver, dem::level(options_), progress);
-    start();
     send_bed(solver, *grains_);
     now_ = grains_->sums(false, dt_);
     energies_.begin({{now_.cohesion, now_.tangential}}, 0.0);
@@ -149,7 +149,7 @@ class GpuTerrain final : public Terrain {
     }
   }
 
-  std::int64_t size() const override { return grains_ ? grains_->count() : 0; }
+  std::int64_t size() const override { return grains_->count(); }
 
   void save(Archive& archive) const override {
     const Archive::Scope scope(archive, "terrain/");

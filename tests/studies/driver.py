@@ -171,6 +171,24 @@ def finished_runs(results, cases):
     return found
 
 
+def rows_before(table, made, *names):
+    """{values of the named columns, as text: row} of a table beside the studies, so that a study is continued where its
+    runs are no longer kept. Empty where the program of another commit, as in `made`, has made the table."""
+    path = HERE / table
+    if not path.exists() or provenance.read_origin(path).get("commit") != made["commit"]:
+        return {}
+    return {tuple(row[name] for name in names): {key: number_of(text) for key, text in row.items()}
+            for row in provenance.read_table(path)}
+
+
+def number_of(text):
+    """Of an entry of a table; the text where it is none, None where it is empty."""
+    try:
+        return float(text) if text else None
+    except ValueError:
+        return text
+
+
 # ---- write ----------------------------------------------------------------------------------------------------------
 
 def short(value, digits=4):

@@ -6,7 +6,8 @@ usage: lete_sand.py [slip] [variants] [--seeds 1 2 …] [--cases NAME …] [--fi
 `slip` runs drawbar_pull_small.json at slips from -0.1 to 0.8 on a bed long enough for all of them and writes
 lete_sand_slip.csv; `variants` runs it with one thing changed at a time and writes lete_sand_variants.csv. A row is one
 bed, or, without a seed, the mean over the beds with half of its 95 % interval; of a variant, the difference from the
-shipped case on the same beds. --finished runs nothing and writes the tables of what has run so far.
+shipped case on the same beds. Rows that the program of this commit has written are kept. --finished runs nothing and
+writes the tables of what has run so far.
 
 Expected, written down before the first run: net traction at slip 0 below zero; a fall of the pull from its peak to slip
 0.7 of less than 15 %; gross traction at slip 0.2 within 20 % of the WES regression.
@@ -69,11 +70,16 @@ def pooled(rows, base=None):
 def table(name, label, cases, seeds, finished, paired):
     """Runs the cases {label: settings} bed by bed, so that every case has beds early on."""
     rows, made = {case: [] for case in cases}, provenance.made_here()
+    before = driver.rows_before(name, made, label, "seed")
     names = [label, "seed", "beds", "steady", "sem_N"]
     for column in FIGURES:
         names += [column, f"{column}_half"] if column in OVER_BEDS else [column]
     for seed in seeds:
         for case, changed in cases.items():
+            if row := before.get((str(case), str(seed))):
+                rows[case].append({key: value for key, value in row.items()
+                                   if key not in ("beds", label) and not key.endswith("_half")})
+                continue
             words = [RIG, *driver.settings(ALWAYS, changed, {"run.seed": seed})]
             out = driver.RESULTS / "lete_sand" / f"{label}_{case}_{seed}".replace(" ", "_").replace("/", "_")
             stale = driver.stale_because(words, out)

@@ -4,8 +4,8 @@ deflection and in steady motion, and the criterion of Wong for a rigid or flexib
 
 usage: patch_pressure.py [--law mindlin|report] [--seed 1]
 
-Runs drawbar_pull.json (with the report's law drawbar_pull_tr.json) with frames. Writes patch_pressure_LAW.csv, the
-pressure in wheel axes, patch_pressure.csv, a row for each law, and patch_pressure.png.
+Runs drawbar_pull.json (with the report's law drawbar_pull_tr.json) with frames. Adds a row to patch_pressure.csv. With
+seed 1 it also writes patch_pressure_LAW.csv, the pressure in wheel axes, and patch_pressure.png.
 
 Pressure of a node: the force on it along the surface's inward normal over a third of the area of its triangles. Angles
 count from the downward vertical, forward positive. The row across is the node's place in the meridian. The largest
@@ -120,17 +120,18 @@ def main():
     steady = [frame for frame in frames if frame.time >= begin]
     touch = min(frames, key=lambda frame: abs(frame.time - at))
     maps = {f"largest deflection, {touch.time:.2f} s": mean_map([touch], rows), "steady": mean_map(steady, rows)}
-    driver.write(f"patch_pressure_{arguments.law}.csv",
-                 [{"when": when, "angle_deg": round(math.degrees(angle * STEP_OF_ANGLE)), "row": row,
-                   "pressure_kPa": pressure / 1e3}
-                  for when, values in maps.items() for (angle, row), pressure in sorted(values.items())
-                  if abs(pressure) > 1e3], made)
     last = frames[-1]
-    right = last.position[:-2, 1] >= np.mean(last.position[:-2, 1])
-    draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]))
+    if arguments.seed == 1:
+        driver.write(f"patch_pressure_{arguments.law}.csv",
+                     [{"when": when, "angle_deg": round(math.degrees(angle * STEP_OF_ANGLE)), "row": row,
+                       "pressure_kPa": pressure / 1e3}
+                      for when, values in maps.items() for (angle, row), pressure in sorted(values.items())
+                      if abs(pressure) > 1e3], made)
+        right = last.position[:-2, 1] >= np.mean(last.position[:-2, 1])
+        draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]))
     load = driver.mean_of(summary["vertical_load_N"])
     pull = summary["drawbar_pull_N"]
-    row = {"law": arguments.law, "seed": arguments.seed, "pull_N": pull["mean"], "sem_N": pull["sem"],
+    row = {"law": arguments.law, "seed": arguments.seed, "commit": made["commit"], "pull_N": pull["mean"], "sem_N": pull["sem"],
            "steady": int(pull["steady"]), "sinkage_mm": 1e3 * summary["sinkage_m"], "load_N": load,
            "frames": len(steady), "largest_kPa": max(maps["steady"].values()) / 1e3,
            "largest_at_deflection_kPa": max(next(iter(maps.values())).values()) / 1e3,

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""The HMMWV at full size across the soil: tables and a picture of the runs of vehicle_straight.json.
+"""The HMMWV at full size across the soil: tables and a picture of the runs of vehicle_straight.json or of another
+study, whose name then stands in the names of the files.
 
     /usr/bin/python3 tests/studies/run_study.py tests/studies/vehicle_straight.json
-    /usr/bin/python3 tests/studies/vehicle_straight.py [CASE]
+    /usr/bin/python3 tests/studies/vehicle_straight.py [--study report_vehicle] [CASE]
 
 Writes beside this script, from the series and the summary of every finished case alone; of one CASE, whose name then
 stands in the names of the files:
@@ -10,7 +11,7 @@ stands in the names of the files:
   vehicle_straight_axles.csv   the axles beside each other over a stretch that is steady enough
   vehicle_straight_gear.csv    the balance of a change of gear
   vehicle_straight_nodes.csv   per rank: threads, unknowns, and the time that it computes, exchanges and waits
-  vehicle_straight_series.csv  means of 20 ms of what the figures show
+  vehicle_straight_series.csv  means of 20 ms of what the figures show, of axles and of the left wheels
   vehicle_straight.png         speeds, pitch, height, engine and gear, forces, sinkages (of the first case)
 """
 import json
@@ -24,7 +25,6 @@ from furrow.plot import axles, events, gear_balance
 from furrow.plot.run_data import Run
 from furrow.plot.vehicle_run import VehicleRun, running_mean
 
-STUDY = pathlib.Path(__file__).with_suffix(".json")
 INTERVAL = 0.02  # s, of the thinned series
 # column of the vehicle's table: name and factor here
 VEHICLE = {"x_m": ("x_m", 1.0), "z_m": ("height_mm", 1e3), "speed_m_s": ("speed_m_s", 1.0),
@@ -35,6 +35,8 @@ AXLE = {"spin_rad_per_s": ("spin_rad_s", 1.0, False), "iso_force_x_N": ("force_x
         "iso_force_z_N": ("force_z_N", 1.0, True), "terrain_resistance_N": ("resistance_N", 1.0, True),
         "spindle_torque_Nm": ("torque_Nm", 1.0, True), "sinkage_m": ("sinkage_mm", 1e3, False),
         "sinkage_in_rut_m": ("sinkage_in_rut_mm", 1e3, False)}
+# column of the tables of the left wheels: name here
+LEFT = {"iso_force_z_N": "force_z_N", "terrain_resistance_N": "resistance_N", "iso_force_x_N": "force_x_N"}
 STEPPED = ("gear", "throttle")  # not to be averaged
 GEAR = {"shift_wheel_speed_m_s": "shift_speed", "limit_over_weight": "limit", "throttle": "throttle",
         "largest_wheel_speed_m_s": "reached", "at_s": "time", "gross_traction_over_weight": "gross",
@@ -56,6 +58,9 @@ def series_rows(v):
         for column, (name, factor, total) in AXLE.items():
             values = running_mean(v.time, axles.axle_series(v, axle, column, total), INTERVAL)
             found[f"{v.axles[axle]}_{name}"] = factor * values[np.searchsorted(v.time, at)]
+        for column, name in LEFT.items():
+            values = running_mean(v.time, v.of_axle(axle)[0][column], INTERVAL)
+            found[f"{v.axles[axle]}_left_{name}"] = values[np.searchsorted(v.time, at)]
     return [{name: finite(values[k]) for name, values in found.items()} for k in range(len(at))]
 
 
@@ -128,15 +133,14 @@ def picture(v, name):
 
 
 def main():
-    cases = list(json.loads(STUDY.read_text())["cases"])
-    parser = driver.options(__doc__, results={"type": pathlib.Path, "default": driver.RESULTS / STUDY.stem})
-    parser.add_argument("case", nargs="?", choices=cases, help="the only case of the tables; all by default")
+    parser = driver.options(__doc__, results={"type": pathlib.Path}, study={"default": "vehicle_straight"})
+    parser.add_argument("case", nargs="?", help="the only case of the tables; all by default")
     arguments = parser.parse_args()
+    cases = json.loads((driver.HERE / f"{arguments.study}.json").read_text())["cases"]
     only = [arguments.case] if arguments.case else []
-    stem = "_".join([STUDY.stem, *only])
-    folders = driver.finished_runs(arguments.results, only or cases)
+    stem = "_".join([arguments.study, *only])
+    folders = driver.finished_runs(arguments.results or driver.RESULTS / arguments.study, only or cases)
     origin = provenance.origin_of_runs(folders.values())
-    origin["command"] = " ".join([pathlib.Path(__file__).name, *only])
     tables = {"events": [], "axles": [], "gear": [], "nodes": [], "series": []}
     for case, folder in folders.items():
         v = VehicleRun(Run(folder))

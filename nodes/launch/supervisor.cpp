@@ -90,7 +90,7 @@ std::vector<std::string> launcher_command(const Launch& launch) {
     command.insert(command.end(), {"--oversubscribe", "--bind-to", "none"});
     if (geteuid() == 0) command.push_back("--allow-run-as-root");  // supervise() reports it
     // Ranks on other machines of an allocation do not inherit the environment.
-    for (const char* variable : {kSupervisedVariable, "OMP_WAIT_POLICY", "OPENBLAS_NUM_THREADS"})
+    for (const char* variable : {kSupervisedVariable, "OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "OPENBLAS_NUM_THREADS"})
       command.insert(command.end(), {"-x", variable});
   }
   command.insert(command.end(), {"-n", std::to_string(launch.ranks.size())});

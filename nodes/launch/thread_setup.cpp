@@ -26,6 +26,7 @@ namespace {
 
 constexpr int kCoresToBind = 4;  // with fewer, the system balances better than a binding
 constexpr int kCoresForOwnRigCore = 8;
+constexpr char kSpinCount[] = "2000";  // of libgomp, tries
 
 struct Demand {
   int rig_cores = 0;  // 0: the rig shares the tires' cores
@@ -212,6 +213,7 @@ void apply(const ThreadPlan& plan) {
 
 void set_passive_environment() {
   setenv("OMP_WAIT_POLICY", "passive", 0);
+  setenv("GOMP_SPINCOUNT", kSpinCount, 0);
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
 }
 

@@ -21,17 +21,18 @@ namespace furrow::scenario {
 namespace {
 
 // Factors from measured runs over the rates of the machine, whose bed fits a cache and whose tire rolls on hard ground.
-constexpr double kSettled = 1.8;       // a grain-step of a bed that settles
-constexpr double kRolled = 2.1;        // a grain-step of a bed that is rolled on
+constexpr double kSettled = 1.2;       // a grain-step of a bed that settles
+constexpr double kRolled = 1.95;       // a grain-step of a bed that is rolled on
 constexpr double kPackings = 2.5;      // number of beds until one has the wanted solid fraction, and their sample
 constexpr double kOnSoil = 1.2;        // a step of a tire
+constexpr double kRolls = 1.35;        // a grain-step with rolling resistance over one without
 constexpr double kDouble = 1.5;        // a grain-step in double precision over one in mixed
 constexpr double kSettling = 0.6;      // simulated time in which a new bed settles, s
 constexpr double kJoints = 0.15;       // settling of joints between tiles, as if all grains were awake
 constexpr double kAwake = 2.0;         // tire radii around an axle within which grains are awake
 constexpr double kMeshExponent = 1.1;  // of a tire's step time over its unknowns
-constexpr double kRigidTire = 5e-5;    // of a step: moving the surface, s
-constexpr double kMessages = 8e-5;     // for each tire, in its rank and the rig's: send, receive and write, s
+constexpr double kRigidTire = 4e-5;    // of a step: moving the surface, s
+constexpr double kMessages = 5e-5;     // for each tire, in its rank and the rig's: send, receive and write, s
 constexpr double kFewRanks = 3.0;      // for a core: with more of them messages take longer
 constexpr double kCrowd = 0.8;         // by this share with each doubling
 constexpr double kStart = 0.45;        // until mpirun has begun, and until it has ended, s
@@ -128,7 +129,8 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
   t.bed_is_kept = true;
   if (const terrain::dem::DemOptions* const keys = s.terrain->grains()) {
     const terrain::dem::DemOptions o = terrain::dem::with_context(*keys, s.terrain_context());
-    const double grain = machine.grain_step * (o.precision == "double" ? kDouble : 1.0);
+    const double grain =
+        machine.grain_step * (o.precision == "double" ? kDouble : 1.0) * (o.rolling_friction > 0.0 ? kRolls : 1.0);
     const double settled = settling(o);
     t.bed_is_kept = settled == 0.0;
     t.bed = settled * kSettled * grain / std::clamp(o.settle_threads, 1, t.cores);

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """The contact law of the 2016 report on the small rig: does it turn the trends of its Figs 8, 16 and 20?
 
-usage: report_law.py [shear] [rig] [passes] [--seeds 1 2 …] [--finished]
+usage: report_law.py [shear] [rig] [passes] [factors] [--seeds 1 2 …] [--finished]
 
 `shear`: direct shear at 0.05 to 4 m/s with the report's law at three steps, and with `mindlin`, three beds each;
 writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the report's rim speed of 4 m/s on a bed of
 6 m over slip and cohesion; writes report_law.csv, a row for each bed, and report_law_slopes.csv. `passes`: three passes
-in one rut; writes report_law_passes.csv.
+in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig. 8, one change at a time from the rig's
+runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. Its small steps run on the first bed alone.
 
 Expected, written down before the first run: a trend agrees with the report's if the 95 % interval of the slope over
 beds excludes zero with the report's sign: pull grows with slip (Fig. 8), tractive effort falls with cohesion (Fig. 16),
@@ -21,10 +22,22 @@ LAW = {"terrain.law": "hertz_tanh", "terrain.normal_stiffness": 1e6, "terrain.no
        "terrain.allow_unstable_step": True}
 FAST = {"rig.angular_speed": 8.56, "terrain.length": 6.0, "run.end": 1.2, "run.average_from": 0.6,
         "output.frame_interval": 0}
-SLIPS, COHESIONS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9), (40e3, 60e3, 100e3)  # -, Pa; the scenario has 0.3 and 80 kPa
+SLIPS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+COHESIONS = (40e3, 50e3, 60e3, 70e3, 90e3, 100e3)  # Pa; the scenario has slip 0.3 and 80 kPa
 CASES = {f"slip {slip:g}": {"rig.slip": slip} for slip in SLIPS} | {
     f"cohesion {cohesion / 1e3:g} kPa": {"terrain.cohesion": cohesion} for cohesion in COHESIONS}
 PASSES = {"cohesion 80 kPa": {}, "cohesion 40 kPa": {"terrain.cohesion": 40e3}}
+SLOW = {"rig.angular_speed": 4.28, "run.end": 1.8, "run.average_from": 0.9}
+STIFF = {"terrain.normal_stiffness": 5.17e6}  # N/m^1.5, of the scenario's 1e8 Pa at 10 mm
+DOUBLE = {"terrain.friction_velocity_scale": 10}  # s/m
+FACTORS = {
+    "report's law": LAW, "speed 2 m/s": LAW | SLOW, "c = 10 s/m": LAW | DOUBLE,
+    "speed 2 m/s, c = 10 s/m": LAW | SLOW | DOUBLE, "impulse limit": LAW | {"terrain.friction_impulse_limit": True},
+    "stiffness of 1e8 Pa": LAW | STIFF, "mindlin": {}, "mindlin, speed 2 m/s": SLOW,
+    "mindlin, stiffness of 1e6 N/m^1.5": {"terrain.young_modulus": 1.93e7}}
+SMALL_STEPS = {f"step {step * 1e6:g} µs": LAW | {"run.step": step} for step in (20e-6, 6e-6)} | {
+    "step 6 µs, 40 kPa": LAW | {"run.step": 6e-6, "terrain.cohesion": 40e3},
+    "step 6 µs, 100 kPa": LAW | {"run.step": 6e-6, "terrain.cohesion": 100e3}}
 FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
            "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m"}
 # law, settings, step (s), cohesions (Pa), speeds (m/s)
@@ -80,18 +93,22 @@ def slope(points):
     return ((n * sum(a * b for a, b in points) - x * y) / (n * sum(a * a for a, _ in points) - x * x))
 
 
+def run_of(part, case, seed, finished, *changed):
+    """The summary of a run of the rig; None where it has failed or must not run."""
+    words = [RIG, *driver.settings(FAST, *changed, {"run.seed": seed})]
+    out = driver.RESULTS / part / f"{case}_{seed}".replace(" ", "_").replace("/", "_")
+    stale = driver.stale_because(words, out)
+    return None if stale and (finished or not driver.run_case(out.name, words, out)) else driver.summary(out)
+
+
 def rig(seeds, finished):
     rows, made = [], provenance.made_here()
     for seed in seeds:
         for case, changed in CASES.items():
-            words = [RIG, *driver.settings(LAW, FAST, changed, {"run.seed": seed})]
-            out = driver.RESULTS / "report_law" / f"{case.replace(' ', '_')}_{seed}"
-            stale = driver.stale_because(words, out)
-            if stale and (finished or not driver.run_case(out.name, words, out)):
-                continue
-            rows.append({"case": case, "seed": seed, "slip": changed.get("rig.slip", 0.3),
-                         "cohesion_kPa": changed.get("terrain.cohesion", 80e3) / 1e3, **row_of(driver.summary(out))})
-            driver.write("report_law.csv", rows, made)
+            if summary := run_of("report_law", case, seed, finished, LAW, changed):
+                rows.append({"case": case, "seed": seed, "slip": changed.get("rig.slip", 0.3),
+                             "cohesion_kPa": changed.get("terrain.cohesion", 80e3) / 1e3, **row_of(summary)})
+                driver.write("report_law.csv", rows, made)
     trends = (("Fig. 8: pull, N for each unit of slip", "slip ", "slip", "pull_N"),
               ("Fig. 16: tractive effort, N for each kPa", "cohesion ", "cohesion_kPa", "gross_N"),
               ("Fig. 15: resistance, N for each kPa", "cohesion ", "cohesion_kPa", "resistance_N"))
@@ -121,10 +138,21 @@ def passes(seeds):
             driver.write("report_law_passes.csv", rows, made)
 
 
+def factors(seeds, finished):
+    rows, made = [], provenance.made_here()
+    for seed in seeds:
+        for case, changed in (FACTORS | SMALL_STEPS if seed == seeds[0] else FACTORS).items():
+            for slip in (0.3,) if "kPa" in case else (0.1, 0.7):
+                summary = run_of("report_law_factors", f"{case} {slip:g}", seed, finished, changed, {"rig.slip": slip})
+                if summary:
+                    rows.append({"case": case, "slip": slip, "seed": seed, **row_of(summary)})
+                    driver.write("report_law_factors.csv", rows, made)
+
+
 def main():
     parser = driver.options(__doc__, seeds={"type": int, "nargs": "+", "default": [1, 2, 3, 4, 5]},
                             finished={"action": "store_true"})
-    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes"])
+    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors"])
     arguments = parser.parse_args()
     if "shear" in arguments.parts:
         shear()
@@ -132,6 +160,8 @@ def main():
         rig(arguments.seeds, arguments.finished)
     if "passes" in arguments.parts:
         passes(arguments.seeds)
+    if "factors" in arguments.parts:
+        factors(arguments.seeds, arguments.finished)
 
 
 if __name__ == "__main__":

@@ -131,9 +131,9 @@ def main():
         draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]))
     load = driver.mean_of(summary["vertical_load_N"])
     pull = summary["drawbar_pull_N"]
-    row = {"law": arguments.law, "seed": arguments.seed, "commit": made["commit"], "pull_N": pull["mean"], "sem_N": pull["sem"],
-           "steady": int(pull["steady"]), "sinkage_mm": 1e3 * summary["sinkage_m"], "load_N": load,
-           "frames": len(steady), "largest_kPa": max(maps["steady"].values()) / 1e3,
+    row = {"law": arguments.law, "seed": arguments.seed, "commit": made["commit"], "pull_N": pull["mean"],
+           "sem_N": pull["sem"], "steady": int(pull["steady"]), "sinkage_mm": 1e3 * summary["sinkage_m"],
+           "load_N": load, "frames": len(steady), "largest_kPa": max(maps["steady"].values()) / 1e3,
            "largest_at_deflection_kPa": max(next(iter(maps.values())).values()) / 1e3,
            "strain_percent": 100 * float(last.strain.max()), "p_i_and_p_c_kPa": pressure_on_plate() / 1e3,
            "p_gcr_kPa": critical_pressure(load) / 1e3}

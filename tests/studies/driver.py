@@ -120,7 +120,8 @@ def kept(out, command, *words, scenario=None, finished_only=False, made_at=None)
         file.write_text(json.dumps(scenario), encoding="utf-8")
         words.insert(0, str(file))
     (out / RECORD).unlink(missing_ok=True)
-    furrow(command, *words, "--out", out, "--overwrite", "--quiet", *(["--no-plots"] if command == "run" else []))
+    furrow(command, *words, "--out", out, "--quiet", *(["--overwrite"] if command != "sweep" else []),
+           *(["--no-plots"] if command in ("run", "sweep") else []))
     provenance.record_run(out, made_at, made_of=made_of)
     print(f"{out.parent.name}: {out.name}", file=sys.stderr, flush=True)
     return out

@@ -36,7 +36,7 @@ using tire::handling::SweepPoint;
 constexpr double kMost = 1e9;          // largest magnitude of a coefficient
 constexpr std::size_t kColumns = 110;  // of comments
 
-struct Quantity {
+struct ForceQuantity {
   std::string_view name;
   const char* column;  // of fit.csv
   const char* unit;
@@ -64,7 +64,7 @@ double rolling_radius(const MagicFormula& tire, const SweepPoint& p) {
   return tire::handling::rolling_radius(tire, tire::handling::spring_deflection(tire, p.state.load));
 }
 
-constexpr auto kQuantities = std::to_array<Quantity>({
+constexpr auto kForceQuantities = std::to_array<ForceQuantity>({
     {"fx", "Fx_N", "N", false, measured<&HandlingForces::fx>, said<&HandlingForces::fx>},
     {"fy", "Fy_N", "N", false, measured<&HandlingForces::fy>, said<&HandlingForces::fy>},
     {"mx", "Mx_Nm", "N m", false, measured<&HandlingForces::mx>, said<&HandlingForces::mx>},
@@ -108,7 +108,7 @@ double* coefficient(MagicFormula& tire, const std::string& name) {
 
 /// The quantity and the rows that a target compares.
 struct Rows {
-  const Quantity* quantity = nullptr;
+  const ForceQuantity* quantity = nullptr;
   std::vector<SweepPoint> points;
 };
 
@@ -220,7 +220,7 @@ class HandlingModel final : public CalibrationModel {
     Target& target = keys.target;
     const std::string of = reader.text("of");
     Rows rows;
-    rows.quantity = &entry_named(kQuantities, of,
+    rows.quantity = &entry_named(kForceQuantities, of,
                                  [&](const std::string& what) { return reader.wrong("of", "'" + of + "' " + what); });
     if (!reader.given("name")) target.name += "_" + of;
     reader.finish();

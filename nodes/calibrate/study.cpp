@@ -22,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Reader = OrderedJsonReader;
 
-constexpr int kFormatVersion = 1;
+constexpr int kStudyVersion = 1;
 constexpr int kMostEvaluations = 1000, kMostStarts = 1000, kMostTargets = 1000, kLargestSeed = 2147483647;
 /// Names of a calibration's result files.
 constexpr const char* kTaken[] = {"calibration.json", "sweep.json", "summary.json", "scenario.json"};
@@ -177,7 +177,7 @@ Calibration load_calibration(const std::filesystem::path& name) {
   if (kind.noisy) keys.emplace_back("evaluations");
   keys.insert(keys.end(), kind.keys.begin(), kind.keys.end());
   reader.allow_only(keys);
-  reader.check_version(kFormatVersion);
+  reader.check_version(kStudyVersion);
   Calibration c;
   c.file = file;
   c.name = file.stem().string();

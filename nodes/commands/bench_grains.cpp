@@ -96,7 +96,7 @@ std::string bench_grains(const GrainBench& bench, const ProgressCall& progress) 
   return json.dump(2) + "\n";
 }
 
-Action add_options(CLI::App& command, Typed&) {
+Action add_bench_grains_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<GrainBench>();
   command.option_defaults()->always_capture_default();
   command.add_option(
@@ -126,7 +126,7 @@ Command bench_grains_entry() {
   return {.name = "bench grains",
           .task = nullptr,
           .purpose = "Time the steps of a settled bed, with every grain integrated in every step.",
-          .options = add_options,
+          .options = add_bench_grains_options,
           .examples = {
               {"bench grains --cohesion 5000 --threads 2", "Time the reference bed with cohesion, on two cores."}}};
 }

@@ -163,7 +163,7 @@ std::string bench_rig(const RigBench& bench, const RunArguments& arguments, laun
   return json.dump(2) + "\n";
 }
 
-Action add_options(CLI::App& command, Typed& typed) {
+Action add_bench_rig_options(CLI::App& command, Typed& typed) {
   const auto arguments = std::make_shared<RigBench>();
   command.option_defaults()->always_capture_default();
   command.add_option("--scenario", arguments->scenario, "Run this scenario file (JSON), as given or in rigs/.");
@@ -184,7 +184,7 @@ Command bench_rig_entry() {
   return {.name = "bench rig",
           .task = nullptr,
           .purpose = "Time the steps of a scenario's ranks: rig, tires and terrain.",
-          .options = add_options,
+          .options = add_bench_rig_options,
           .examples = {{"bench rig", "Time the reference rig at full size, 379,147 grains."},
                        {"bench rig --scenario first_look.json --steps 1000", "Time another scenario."}}};
 }

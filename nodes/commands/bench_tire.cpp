@@ -164,7 +164,7 @@ std::string bench_tire(const TireBench& bench, const ProgressCall& progress) {
   return json.dump(2) + "\n";
 }
 
-Action add_options(CLI::App& command, Typed&) {
+Action add_bench_tire_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<TireBench>();
   command.option_defaults()->always_capture_default();
   command.add_option("--tire", arguments->tire, "Read this tire file. 'default' is the layered tire.");
@@ -197,7 +197,7 @@ Command bench_tire_entry() {
   return {.name = "bench tire",
           .task = nullptr,
           .purpose = "Time the parts of a step of a loaded tire that rolls on hard ground.",
-          .options = add_options,
+          .options = add_bench_tire_options,
           .examples = {{"bench tire --tire hmmwv_lumped.json", "Time the steps of this tire."}}};
 }
 

@@ -20,7 +20,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kModesVersion = 1;
 constexpr int kMostAround = 2000, kMostAcross = 400;
 constexpr double kMostPressure = 1e8;  // Pa
 
@@ -115,7 +115,7 @@ ExitCode modes(const ModesArguments& arguments) {
     std::cout << tire::modes_csv(results);
     return ExitCode::done;
   }
-  nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
+  nlohmann::ordered_json summary = {{"format_version", kModesVersion},
                                     {"version", FURROW_VERSION},
                                     {"tire", spec->options().file.filename().string()},
                                     {"details", spec->describe().details}};
@@ -139,7 +139,7 @@ ExitCode modes(const ModesArguments& arguments) {
   return ExitCode::done;
 }
 
-Action add_options(CLI::App& command, Typed&) {
+Action add_modes_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<ModesArguments>();
   command.add_option("TIRE", arguments->tire, "Read this tire file (JSON), as given or in tire/data/.")->required();
   CLI::Option* out = add_folder_options(command, arguments->out, arguments->overwrite, "<tire>-modes-NNN");
@@ -171,7 +171,7 @@ Command modes_entry() {
           .purpose =
               "Compute the lowest natural frequencies of a tire on a rim at rest, by circumferential order, and print "
               "the folder of the results.",
-          .options = add_options,
+          .options = add_modes_options,
           .examples = {{"modes hmmwv_lumped.json --orders 3", "Get the frequencies of the lowest orders."}}};
 }
 

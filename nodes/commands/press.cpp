@@ -21,7 +21,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kPressVersion = 1;
 constexpr double kMostCamber = 0.7;  // rad, same as the rig's limit
 
 /// Options that are not given have the values of the scenario's section `press`.
@@ -131,7 +131,7 @@ ExitCode press(const scenario::Scenario& scenario, const PressArguments& argumen
     const double begin = wall_clock();
     const tire::PressResults results = test->press(options, launch::shown_on(display, " during pressing"));
     display.clear();
-    nlohmann::ordered_json summary = {{"format_version", kFormatVersion},
+    nlohmann::ordered_json summary = {{"format_version", kPressVersion},
                                       {"version", FURROW_VERSION},
                                       {"scenario", scenario.name},
                                       {"tire", scenario.tires.front()->options().file.filename().string()}};
@@ -157,7 +157,7 @@ ExitCode press(const scenario::Scenario& scenario, const PressArguments& argumen
   return ExitCode::physics;
 }
 
-Action add_options(CLI::App& command, Typed& typed) {
+Action add_press_options(CLI::App& command, Typed& typed) {
   const auto arguments = std::make_shared<PressArguments>();
   add_scenario(command, typed);
   add_folder_options(command, arguments->out, arguments->overwrite, "<scenario>-press-NNN");
@@ -188,7 +188,7 @@ Command press_entry() {
           .purpose =
               "Press the tire of a scenario on a plate, a cleat or a profile, statically, and print the folder of the "
               "results.",
-          .options = add_options,
+          .options = add_press_options,
           .examples = {{"press rigid_ground.json --load 6000", "Get the load-deflection curve, and a footprint."},
                        {"press cleat_press.json --cleat-height 0.025", "Press the tire on a cleat."}}};
 }

@@ -22,7 +22,7 @@
 namespace furrow::commands {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kVehicleVersion = 1;
 constexpr double kTravelShare = 0.2;  // of the smallest tire's radius
 constexpr double kMostTravel = 1.0;   // m
 constexpr double kQuiet = 2.0;        // most vehicles come to rest in it; progress is shown later, s
@@ -87,8 +87,8 @@ std::vector<vehicle::KinematicsRow> sweep(const vehicle::VehicleSpec& spec, cons
 nlohmann::ordered_json summary(const vehicle::VehicleSpec& spec, const vehicle::VehiclePage& page,
                                const vehicle::KinematicsOptions& options) {
   nlohmann::ordered_json json = {
-      {"format_version", kFormatVersion}, {"version", FURROW_VERSION}, {"vehicle", spec.name}, {"file", spec.file},
-      {"travel_m", options.travel},       {"points", options.points}};
+      {"format_version", kVehicleVersion}, {"version", FURROW_VERSION}, {"vehicle", spec.name}, {"file", spec.file},
+      {"travel_m", options.travel},        {"points", options.points}};
   vehicle::KinematicsOptions drawn = options;
   drawn.points = 1;
   json["as_drawn"] = nlohmann::ordered_json::array();
@@ -132,7 +132,7 @@ ExitCode kinematics(const KinematicsArguments& arguments) {
   return ExitCode::done;
 }
 
-Action add_options(CLI::App& command, Typed&) {
+Action add_vehicle_options(CLI::App& command, Typed&) {
   const auto arguments = std::make_shared<KinematicsArguments>();
   command.add_option("VEHICLE", arguments->vehicle, "Read this vehicle file (JSON), as given or in vehicle/data/.")
       ->required();
@@ -168,7 +168,7 @@ Command kinematics_entry() {
           .purpose =
               "Move the suspensions of a vehicle, tabulate camber, toe, roll centre, rates and more against travel and "
               "steering, and print the folder of the results.",
-          .options = add_options,
+          .options = add_vehicle_options,
           .examples = {{"kc hmmwv.json --travel 0.05", "Move the wheels by 50 mm up and down."}}};
 }
 

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxLines = 40;
 constexpr std::size_t kMaxWords = 600;  // characters
 // Begins Open MPI's paragraph of all possible reasons why ranks fail to start. Other paragraphs contain the cause.
 constexpr std::string_view kUsual = "It looks like MPI_INIT failed for some reason";
-constexpr std::size_t kMaxLine = 2000;  // characters: a search in a longer line would exhaust the stack
+constexpr std::size_t kLongestLine = 2000;  // characters: a search in a longer line would exhaust the stack
 
 bool is_rule(std::string_view line) {
   return line.size() > 10 && std::all_of(line.begin(), line.end(), [](char c) { return c == '-' || c == '='; });
@@ -40,7 +40,7 @@ int signal_called(const std::string& name) {
 void LauncherText::add(std::string_view line) {
   // "mpirun noticed that process rank 2 with PID 0 on node host exited on signal 9 (Killed)."
   static const std::regex kDead("process rank ([0-9]+) with PID [0-9]+ on node .* exited on signal ([0-9]+)");
-  line = line.substr(0, kMaxLine);
+  line = line.substr(0, kLongestLine);
   std::match_results<std::string_view::const_iterator> found;
   if (std::regex_search(line.begin(), line.end(), found, kDead)) {
     if (!lost_) lost_ = LostRank{std::stoi(found[1].str()), std::stoi(found[2].str())};

@@ -53,10 +53,10 @@ ThreadPlan plan_threads(const Transport& transport, int terrain_threads, std::in
 /// that the user chose by OMP_PROC_BIND, OMP_PLACES or GOMP_CPU_AFFINITY.
 void apply(const ThreadPlan& plan);
 
-/// Makes OpenMP threads wait passively: threads that spin while they wait take the cores of other ranks. For about 0.1 ms
-/// they spin all the same, since most waits are shorter and waking a thread takes as long. OpenMP reads these settings
-/// from the environment before main begins. Therefore, unless OMP_WAIT_POLICY is set, this sets them and restarts the
-/// program.
+/// Makes OpenMP threads wait passively: threads that spin while they wait take the cores of other ranks. For about
+/// 0.1 ms they spin all the same, since most waits are shorter and waking a thread takes as long. OpenMP reads these
+/// settings from the environment before main begins. Therefore, unless OMP_WAIT_POLICY is set, this sets them and
+/// restarts the program.
 void wait_passively(char** argv);
 
 /// Sets the variables of wait_passively that are not set already, for the ranks of a supervisor.

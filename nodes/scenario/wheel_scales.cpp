@@ -33,12 +33,12 @@ constexpr double kTimesToSettle = 4.0;  // z/v: F grows with depth while the dam
 constexpr double kStatic = 0.38, kFast = 0.64, kInertial0 = 0.279;
 
 // Limits beyond which a scale binds the answer.
-constexpr double kGrains = 5.0;       // diameters in the contact, either way
-constexpr double kDepth = 8.0;        // sinkages
-constexpr double kBeside = 0.5;       // tread widths
-constexpr double kNearEnd = 0.1;      // of the averaging window
-constexpr double kRateEffect = 0.05;  // of the friction, of the pressure
-constexpr double kNodes = 5.0;        // of empirical soil in the contact's length
+constexpr double kGrains = 5.0;          // diameters in the contact, either way
+constexpr double kDeepEnough = 8.0;      // sinkages
+constexpr double kBesideTread = 0.5;     // tread widths
+constexpr double kNearEnd = 0.1;         // of the averaging window
+constexpr double kRateEffect = 0.05;     // of the friction, of the pressure
+constexpr double kNodesInContact = 5.0;  // of empirical soil in the contact's length
 
 constexpr double kLeapfrog = 0.5;  // ω H of a prompt force at which the rule's error is about 1 %
 
@@ -155,14 +155,14 @@ void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
       fmt::format("the contact is about {:.1f} grains long and {:.1f} wide, expected {:g} or more: under a wheel of "
                   "58 mm radius on dry sand grains of 2.5 instead of 3.5 mm radius changed the pull by 8 % of the load",
                   g.grains_long, g.grains_wide, kGrains));
-  to.add(g.depth_ratio < kDepth, "terrain.layers",
+  to.add(g.depth_ratio < kDeepEnough, "terrain.layers",
          fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or more: the "
                      "floor carries too; at 5 to 6 times a bed twice as deep gave 38 % more sinkage and 10 % less pull",
-                     g.depth_ratio, digits(1e3 * g.sinkage), kDepth));
-  to.add(g.beside && *g.beside < kBeside * width, "terrain.width",
+                     g.depth_ratio, digits(1e3 * g.sinkage), kDeepEnough));
+  to.add(g.beside && *g.beside < kBesideTread * width, "terrain.width",
          fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or terrain.sides "
                      "periodic: with 0.6 tread widths left, a bin half as wide again changed the pull by -4.5 ± 4.0 %",
-                     digits(g.beside.value_or(0.0)), digits(kBeside * width)));
+                     digits(g.beside.value_or(0.0)), digits(kBesideTread * width)));
   to.add(g.near_end > kNearEnd, "terrain.length",
          fmt::format("{} m are left ahead of the wheel at the end: in {:.0f} % of the averaging window the end wall "
                      "lies within the soil that fails in front of it (Prandtl), expected at most {:.0f} %",
@@ -247,10 +247,10 @@ std::vector<Bound> scale_bounds(const Scenario& s) {
                            digits(until), digits(w.lowering_needs)));
     if (const double nodes = s.terrain->nodes_under(tires[k].radius, tires[k].tread_width, w.load); !tires[k].deflects)
       bounds.add(
-          nodes < kNodes, "terrain.grid_spacing",
+          nodes < kNodesInContact, "terrain.grid_spacing",
           fmt::format("the contact is about {:.1f} nodes long, expected {:g} or more: with two nodes a wheel of 58 "
                       "mm rolled with 84 % more resistance than with ten",
-                      nodes, kNodes));
+                      nodes, kNodesInContact));
     if (!w.grains) continue;
     add_bin(*w.grains, tires[k].tread_width, bounds);
     add_rates(*w.grains, bounds);

@@ -13,7 +13,7 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kMostGyration = 100.0;  // radius of gyration of a body, m: as large as coordinates may be
+constexpr double kMostRadiusOfGyration = 100.0;  // radius of gyration of a body, m: as large as coordinates may be
 
 // No principal moment of inertia of a body is larger than the sum of the other two; flat bodies have equality.
 void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
@@ -24,10 +24,10 @@ void check_inertia(const JsonReader& reader, const Mat3& inertia, double mass) {
     reader.fail("inertia", fmt::format("has the principal moments {:.6g}, {:.6g}, {:.6g}, expected none "
                                        "larger than the sum of the other two",
                                        J.x(), J.y(), J.z()));
-  if (const double gyration = std::sqrt(0.5 * J.sum() / mass); gyration > kMostGyration)
+  if (const double gyration = std::sqrt(0.5 * J.sum() / mass); gyration > kMostRadiusOfGyration)
     reader.fail("inertia", fmt::format("gives a body of {} kg a radius of gyration of {:.3g} m, expected at "
                                        "most {:g} m",
-                                       number_text(mass), gyration, kMostGyration));
+                                       number_text(mass), gyration, kMostRadiusOfGyration));
 }
 
 void check_length(const JsonReader& reader, double shortest, double longest) {

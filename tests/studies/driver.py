@@ -219,13 +219,21 @@ def over_beds(values):
     return statistics.mean(values), half_interval(values)
 
 
-def subplots(*sizes, **more):
-    """As of pyplot, in the look of all plots."""
+def pyplot():
+    """In the look of all plots."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from furrow.plot import style  # noqa: F401
-    return plt.subplots(*sizes, **more)
+    return plt
+
+
+def subplots(*sizes, **more):
+    return pyplot().subplots(*sizes, **more)
+
+
+def subplot_mosaic(mosaic, **more):
+    return pyplot().subplot_mosaic(mosaic, **more)
 
 
 def save(figure, name, dpi=90):

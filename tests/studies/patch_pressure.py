@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Figs 6, 10, 11 and 17 of the 2016 report at its size: strain of the tire, pressure in the patch at the largest
-deflection and in steady motion, and the criterion of Wong for a rigid or flexible tire.
+"""Figs 6, 10, 11 and 17 of the 2016 report at its size: strain of the tire and velocity of the grains, pressure in the
+patch at the largest deflection and in steady motion, and the criterion of Wong for a rigid or flexible tire.
 
 usage: patch_pressure.py [--law mindlin|report] [--seed 1]
 
@@ -28,6 +28,7 @@ import provenance
 RIGS = {"mindlin": "drawbar_pull.json", "report": "drawbar_pull_tr.json"}
 COLUMNS = 90  # of the mesh, around
 STEP_OF_ANGLE = 2 * math.pi / COLUMNS
+CELL = 0.015  # m, over which the velocities of grains are averaged
 WIDTH, DIAMETER = 0.254, 2 * 0.4673  # m, of the tire
 
 
@@ -85,9 +86,23 @@ def pressure_on_plate():
                       if row["case"] == "layered_90x24_plate")["footprint_mean_pressure_Pa"])
 
 
-def draw(maps, law, strain):
-    figure, axes = driver.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
-    for axis, (title, values) in zip(axes, maps.items()):
+def grain_velocities(out, middle):
+    """(places, m, velocities, m/s) in the wheel's middle plane: means over cells of the way between the last frames."""
+    before, after = ((of["position"][()], float(of.attrs["time_s"])) for of in
+                     (h5py.File(path, "r") for path in sorted((out / "frames").glob("terrain_*.h5"))[-2:]))
+    place = 0.5 * (before[0] + after[0])
+    velocity = (after[0] - before[0]) / (after[1] - before[1])
+    near = (np.abs(place[:, 1]) < 2 * CELL) & (np.abs(place[:, 0] - middle) < 0.5)
+    cells = {}
+    for x, v in zip(place[near], velocity[near]):
+        cells.setdefault((x[0] // CELL, x[2] // CELL), []).append((x, v))
+    means = np.array([np.mean(of, axis=0) for of in cells.values()])
+    return means[:, 0], means[:, 1]
+
+
+def draw(maps, law, strain, grains):
+    figure, axes = driver.subplot_mosaic("abc;ddd", figsize=(11, 6), layout="constrained", height_ratios=(2, 1))
+    for axis, (title, values) in zip((axes["a"], axes["b"]), maps.items()):
         angles = sorted({a for a, _ in values if abs(a) <= 12})
         rows = sorted({r for _, r in values})
         image = np.array([[values.get((a, r), 0.0) / 1e3 for r in rows] for a in angles])
@@ -95,9 +110,14 @@ def draw(maps, law, strain):
         figure.colorbar(shown, ax=axis, label="pressure, kPa")
         driver.label(axis, "node across", "angle from the vertical, °", title)
     place, values = strain
-    shown = axes[2].scatter(place[:, 0], place[:, 2], c=100 * values, s=6, lw=0)
-    figure.colorbar(shown, ax=axes[2], label="largest principal strain, %")
-    driver.label(axes[2], "x, m", "z, m", "strain of the surface, right half", aspect="equal")
+    shown = axes["c"].scatter(place[:, 0], place[:, 2], c=100 * values, s=6, lw=0)
+    figure.colorbar(shown, ax=axes["c"], label="largest principal strain, %")
+    driver.label(axes["c"], "x, m", "z, m", "strain, right half", aspect="equal")
+    at, velocity = grains
+    shown = axes["d"].quiver(at[:, 0], at[:, 2], velocity[:, 0], velocity[:, 2], np.hypot(*velocity[:, ::2].T),
+                             cmap="viridis", angles="xy", scale_units="xy", scale=12, width=0.0015)
+    figure.colorbar(shown, ax=axes["d"], label="speed, m/s")
+    driver.label(axes["d"], "x, m", "z, m", "velocity of grains in the wheel's middle plane", aspect="equal")
     driver.save(figure, "patch_pressure" + ("" if law == "mindlin" else "_report"))
 
 
@@ -128,7 +148,8 @@ def main():
                       for when, values in maps.items() for (angle, row), pressure in sorted(values.items())
                       if abs(pressure) > 1e3], made)
         right = last.position[:-2, 1] >= np.mean(last.position[:-2, 1])
-        draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]))
+        draw(maps, arguments.law, (last.position[:-2][right], last.strain[:-2][right]),
+             grain_velocities(out, np.mean(last.position[:, 0])))
     load = driver.mean_of(summary["vertical_load_N"])
     pull = summary["drawbar_pull_N"]
     row = {"law": arguments.law, "seed": arguments.seed, "commit": made["commit"], "pull_N": pull["mean"],

@@ -133,8 +133,9 @@ def passes(seeds):
                      "passes": 3, "rest": 0.2}
             out = driver.kept(driver.RESULTS / "report_law_passes" / f"{case.replace(' ', '_')}_{seed}", "sweep",
                               scenario=study)
-            for number, folder in enumerate(sorted(out.glob("*/summary.json")), 1):
-                rows.append({"case": case, "seed": seed, "pass": number, **row_of(driver.summary(folder.parent))})
+            for run in provenance.read_table(out / "sweep.csv"):
+                rows.append({"case": case, "seed": seed, "pass": run["pass"],
+                             **row_of(driver.summary(out / run["folder"]))})
             driver.write("report_law_passes.csv", rows, made)
 
 

@@ -157,11 +157,11 @@ void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
                   g.grains_long, g.grains_wide, kGrains));
   to.add(g.depth_ratio < kDeepEnough, "terrain.layers",
          fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or more: the "
-                     "floor carries too; at 5 to 6 times a bed twice as deep gave 38 % more sinkage and 10 % less pull",
+                     "floor carries too; at 5 to 6 times a bed twice as deep gave 43 % more sinkage and 8 % less pull",
                      g.depth_ratio, digits(1e3 * g.sinkage), kDeepEnough));
   to.add(g.beside && *g.beside < kBesideTread * width, "terrain.width",
          fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or terrain.sides "
-                     "periodic: with 0.6 tread widths left, a bin half as wide again changed the pull by -4.5 ± 4.0 %",
+                     "periodic: with 0.6 tread widths left, a bin half as wide again changed the pull by -4.6 ± 5.2 %",
                      digits(g.beside.value_or(0.0)), digits(kBesideTread * width)));
   to.add(g.near_end > kNearEnd, "terrain.length",
          fmt::format("{} m are left ahead of the wheel at the end: in {:.0f} % of the averaging window the end wall "

@@ -114,7 +114,7 @@ class GpuTerrain final : public Terrain {
     s.floor_force = now_.floor_force;
     s.contacts = std::llround(now_.contacts);
     s.active = size();
-    s.list_rebuilds = rebuilds_before_ + now_.rebuilds;
+    s.list_rebuilds = now_.rebuilds;
     refinement_.report(s);
     e.potential = -mass * params_.gravity.dot(vec(now_.place));  // Σ m |g| h = −g·Σ m x
     e.elastic_normal = now_.elastic - energies_.state().stored.cohesion;
@@ -158,7 +158,6 @@ class GpuTerrain final : public Terrain {
     save_value(archive, "wall_impulse", wall_impulse_);
     save_value(archive, "surface_impulse", surface_impulse_);
     archive.put("floor_force", now_.floor_force);
-    archive.put("rebuilds", rebuilds_before_ + now_.rebuilds);
     refinement_.save(archive);
     energies_.save(archive);
     save_grains(grains_->motion(true), grains_->histories(), archive);
@@ -179,7 +178,6 @@ class GpuTerrain final : public Terrain {
     surface_work_ = archive.get_double("surface_work");
     restore_value(archive, "wall_impulse", wall_impulse_);
     restore_value(archive, "surface_impulse", surface_impulse_);
-    rebuilds_before_ = archive.get_int("rebuilds");
     refinement_.set_step(dt_);
     refinement_.restore(archive);
     energies_.restore(archive, 1);
@@ -213,7 +211,6 @@ class GpuTerrain final : public Terrain {
     grains_->move_surfaces(1.0);
     now_ = grains_->sums(false, dt_);
     now_.floor_force = archive.get_double("floor_force");
-    rebuilds_before_ -= now_.rebuilds;
   }
 
  private:
@@ -368,7 +365,6 @@ class GpuTerrain final : public Terrain {
   double last_overlap_ = 0.0, last_speed_ = 0.0;  // largest of the last step, m, m/s
   double surface_work_ = 0.0;                     // by tires on the grains, J
   Vec3 wall_impulse_ = Vec3::Zero(), surface_impulse_ = Vec3::Zero();  // on the grains, N s
-  std::int64_t rebuilds_before_ = 0;                                   // of lists, before the GPU's engine was made
 };
 
 }  // namespace

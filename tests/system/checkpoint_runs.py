@@ -41,6 +41,7 @@ def table(run):
 class CheckpointTest(SystemTest):
     """`whole` is the run that nothing disturbs."""
     SCENARIO = RUN
+    PROGRAM = FAULTY
 
     @classmethod
     def setUpClass(cls):
@@ -48,7 +49,7 @@ class CheckpointTest(SystemTest):
         cls.addClassCleanup(holder.cleanup)
         cls.whole = pathlib.Path(holder.name) / "whole"
         path = write_scenario(holder.name, cls.SCENARIO)
-        done = furrow("run", path, "--out", cls.whole, "--no-plots", cwd=holder.name, program=FAULTY)
+        done = furrow("run", path, "--out", cls.whole, "--no-plots", cwd=holder.name, program=cls.PROGRAM)
         assert done.returncode == 0, done.stderr
 
     def setUp(self):
@@ -58,7 +59,7 @@ class CheckpointTest(SystemTest):
         self.mark = self.folder / "fired"
 
     def program(self, *arguments, **expected):
-        done = self.furrow(*arguments, program=FAULTY, **expected)
+        done = self.furrow(*arguments, program=self.PROGRAM, **expected)
         self.no_process_left()
         return done
 
@@ -73,8 +74,8 @@ class CheckpointTest(SystemTest):
 
     def start_waiting(self, point, rank, count, run=None, env=(), flags=()):
         """A run that waits at the point until self.mark is removed."""
-        process = self.start("run", self.path, "--out", run or self.run_folder, "--no-plots", *flags, program=FAULTY,
-                             env={**self.fault(point, rank, count, "wait"), **dict(env)})
+        process = self.start("run", self.path, "--out", run or self.run_folder, "--no-plots", *flags,
+                             program=self.PROGRAM, env={**self.fault(point, rank, count, "wait"), **dict(env)})
         wait_for(lambda: self.mark.exists() or process.poll() is not None, 150, "the fault fires")
         self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
         return process

@@ -1,12 +1,12 @@
 #include "terrain/gpu/gpu_grains.hpp"
 
-#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "protocol/core/assert.hpp"
 #include "protocol/core/error.hpp"
+#include "terrain/dem/refinement/hard_contacts.hpp"
 #include "terrain/plugin_file.hpp"
 
 namespace furrow::terrain::gpu {
@@ -15,7 +15,7 @@ namespace {
 constexpr char kFile[] = "libfurrow_gpu.so";
 constexpr char kKey[] = "terrain.device";
 
-static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(dem::ContactCoefficients) == kCoefficients * sizeof(double));
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 /// The library's functions, or why there are none.
 struct Library {
@@ -90,12 +90,6 @@ Setup setup_of(const dem::SolverParams& p, int order) {
   return s;
 }
 
-/// The numbers of the coefficients, whichever law made them.
-struct Plain {
-  double at[kCoefficients];
-  explicit Plain(const dem::ContactCoefficients& c) { std::memcpy(at, static_cast<const void*>(&c), sizeof at); }
-};
-
 }  // namespace
 
 std::string gpu_library_problem() {
@@ -137,15 +131,13 @@ void GpuGrains::remember(const Histories& h) {
 }
 
 void GpuGrains::set_coefficients(const dem::SolverCoefficients& c) {
-  const Plain pair(c.pair), floor(c.floor), side(c.side);
-  call(api().coefficients, engine_.get(), pair.at, floor.at, side.at);
+  call(api().coefficients, engine_.get(), &c.pair, &c.floor, &c.side);
 }
 
 void GpuGrains::attach(const Surface& surface) { call(api().attach, engine_.get(), &surface); }
 
 void GpuGrains::set_surface_coefficients(int k, const dem::ContactCoefficients& c, bool rolls) {
-  const Plain plain(c);
-  call(api().surface_coefficients, engine_.get(), k, plain.at, static_cast<std::int32_t>(rolls));
+  call(api().surface_coefficients, engine_.get(), k, &c, static_cast<std::int32_t>(rolls));
 }
 
 void GpuGrains::set_surface_motion(int k, std::span<const Vec3> end, double duration, const FacetGrid& grid,
@@ -169,7 +161,7 @@ RunResult GpuGrains::run(const Run& run) {
 
 Hardest GpuGrains::hardest(double above, double ahead) {
   Hardest found{};
-  call(api().hardest, engine_.get(), above, ahead, &found);
+  call(api().hardest, engine_.get(), above, ahead, dem::kDeepestShare, &found);
   return found;
 }
 

@@ -9,10 +9,12 @@
 
 #include <cstdint>
 
+#include "terrain/dem/contact/laws.hpp"
+
 namespace furrow::terrain::gpu {
 
 /// Changes with this header; a library made for another number is refused.
-inline constexpr int kAbi = 1;
+inline constexpr int kAbi = 2;
 /// The library's only symbol: a function of type GetApi.
 inline constexpr char kApiSymbol[] = "furrow_gpu_api";
 
@@ -35,8 +37,6 @@ struct DeviceInfo {
   std::int64_t memory;           // bytes
   std::int32_t emulated;         // 1: the processor runs the kernels
 };
-
-inline constexpr int kCoefficients = 12;  // numbers of ContactCoefficients
 
 struct Setup {
   double length, width;  // of the bin, m
@@ -153,10 +153,12 @@ struct Api {
   /// Sets histories of touching grains, walls and surfaces. @pre grains were placed and surfaces attached
   Status (*remember)(Engine*, std::int64_t pairs, const Pair*, std::int64_t walls, const WallTouch*,
                      std::int64_t facets, const FacetTouch*, Why*);
-  Status (*coefficients)(Engine*, const double* pair, const double* floor, const double* side, Why*);
+  Status (*coefficients)(Engine*, const dem::ContactCoefficients* pair, const dem::ContactCoefficients* floor,
+                         const dem::ContactCoefficients* side, Why*);
 
   Status (*attach)(Engine*, const Surface*, Why*);
-  Status (*surface_coefficients)(Engine*, std::int32_t surface, const double* coefficients, std::int32_t rolls, Why*);
+  Status (*surface_coefficients)(Engine*, std::int32_t surface, const dem::ContactCoefficients*, std::int32_t rolls,
+                                 Why*);
   /// The coming interval, s: vertices move from their present positions to `end`.
   Status (*surface_motion)(Engine*, std::int32_t surface, const double (*end)[3], double duration, const FacetGrid*,
                            std::int32_t same_grid, Why*);
@@ -166,7 +168,8 @@ struct Api {
   Status (*surface_result)(Engine*, std::int32_t surface, double (*impulse)[3], SurfaceSums*, Why*);
 
   Status (*run)(Engine*, const Run*, RunResult*, Why*);
-  Status (*hardest)(Engine*, double above, double ahead, Hardest*, Why*);
+  /// @param deepest share of a diameter above which contacts are counted in Hardest::past
+  Status (*hardest)(Engine*, double above, double ahead, double deepest, Hardest*, Why*);
   /// @param losses 1: of the coming step of `dt`, s
   Status (*sums)(Engine*, std::int32_t losses, double dt, Sums*, Why*);
   /// Impulse of the walls on the grains since the last call, N s.

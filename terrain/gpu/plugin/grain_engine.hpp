@@ -17,33 +17,21 @@
 
 namespace furrow::terrain::gpu {
 
-/// The law's coefficients as plain numbers, and again under its own names.
-struct Numbers {
-  double at[kCoefficients] = {};
-  template <class Law, class S>
-  typename Law::template Coefficients<S> of() const {
-    typename Law::template Coefficients<S> c;
-    S numbers[sizeof c / sizeof(S)];
-    for (std::size_t k = 0; k < sizeof c / sizeof(S); ++k) numbers[k] = static_cast<S>(at[k]);
-    std::memcpy(static_cast<void*>(&c), numbers, sizeof c);
-    return c;
-  }
-};
-
 class GrainEngine {
  public:
   explicit GrainEngine(const Setup& setup);
 
   void place(i32 count, const double (*position)[3], const double (*velocity)[3], const double (*spin)[3]);
   void remember(i64 pairs, const Pair* pair, i64 walls, const WallTouch* wall, i64 facets, const FacetTouch* facet);
-  void set_coefficients(const double* pair, const double* floor, const double* side);
+  void set_coefficients(const dem::ContactCoefficients& pair, const dem::ContactCoefficients& floor,
+                        const dem::ContactCoefficients& side);
   void attach(const gpu::Surface& surface);
-  void set_surface_coefficients(int k, const double* numbers, bool rolls);
+  void set_surface_coefficients(int k, const dem::ContactCoefficients& c, bool rolls);
   void set_surface_motion(int k, const double (*end)[3], double duration, const FacetGrid& grid, bool same_grid);
   void move_surfaces(double share);
   void surface_result(int k, double (*impulse)[3], SurfaceSums& sums);
   RunResult run(const Run& run);
-  Hardest hardest(double above, double ahead);
+  Hardest hardest(double above, double ahead, double deepest);
   Sums sums(bool losses, double dt);
   void take_wall_impulse(double (&impulse)[3]);
   void motion(double (*position)[3], double (*velocity)[3], double (*spin)[3]);
@@ -84,7 +72,7 @@ class GrainEngine {
     bool rolls = false;
     double low[3] = {}, high[3] = {};                       // box of the coming interval, grown by a grain's radius, m
     double listed_low[3] = {1, 1, 1}, listed_high[3] = {};  // box for which grains near it were listed
-    Numbers coefficients;
+    dem::ContactCoefficients coefficients;
     std::vector<Vector> end_host;
     Buffer<i32[3]> triangle, neighbour;
     Buffer<std::uint8_t> boundary;
@@ -116,8 +104,12 @@ class GrainEngine {
   void launch_forces(double dt, double kick);
   Control read_control();
   void write_control();
+  /// Calls f(law, rolling) with the law itself and a std::bool_constant.
   template <class F>
-  void with_law(const F& f);
+  void with_law(const F& f) const {
+    dem::with_law(dem::LawKind{setup_.law}, setup_.rolling != 0, false,
+                  [&](auto law, auto rolling, auto) { f(law, rolling); });
+  }
   template <class Law>
   PairParams<Law> pair_params(double dt) const;
   template <class Law>
@@ -125,10 +117,9 @@ class GrainEngine {
   template <class Law>
   FacetParams<Law> facet_params(const TireSurface& s, double dt, double kick) const;
   double fastest_vertex() const;
-  template <class T>
-  std::vector<T> read(const Buffer<T>& from, std::size_t count) {
-    return from.get(device_, count);
-  }
+  /// Whether pairs have springs, and those that resist rolling.
+  bool has_springs() const { return dem::has_history(dem::LawKind{setup_.law}); }
+  bool has_rolls() const { return has_springs() && setup_.rolling != 0; }
 
   Setup setup_;
   dem::Bin bin_;
@@ -138,7 +129,7 @@ class GrainEngine {
   i64 max_slots_ = 0, rebuilds_ = 0;
   bool listed_ = false;
   double top_height_ = 0.0;  // of the grains when lists were made, m
-  Numbers pair_, floor_, side_;
+  dem::ContactCoefficients pair_, floor_, side_;
   Control control_{};  // copy on the host
   Buffer<Control> control_at_;
   State state_, spare_;

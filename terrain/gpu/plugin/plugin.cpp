@@ -46,12 +46,13 @@ constexpr Api kApi{
     .remember = [](Engine* e, std::int64_t pairs, const Pair* pair, std::int64_t walls, const WallTouch* wall,
                    std::int64_t facets, const FacetTouch* facet,
                    Why* why) { return guarded(why, [&] { e->remember(pairs, pair, walls, wall, facets, facet); }); },
-    .coefficients = [](Engine* e, const double* pair, const double* floor, const double* side,
-                       Why* why) { return guarded(why, [&] { e->set_coefficients(pair, floor, side); }); },
+    .coefficients = [](Engine* e, const dem::ContactCoefficients* pair, const dem::ContactCoefficients* floor,
+                       const dem::ContactCoefficients* side,
+                       Why* why) { return guarded(why, [&] { e->set_coefficients(*pair, *floor, *side); }); },
     .attach = [](Engine* e, const Surface* surface, Why* why) { return guarded(why, [&] { e->attach(*surface); }); },
     .surface_coefficients =
-        [](Engine* e, std::int32_t surface, const double* coefficients, std::int32_t rolls, Why* why) {
-          return guarded(why, [&] { e->set_surface_coefficients(surface, coefficients, rolls != 0); });
+        [](Engine* e, std::int32_t surface, const dem::ContactCoefficients* c, std::int32_t rolls, Why* why) {
+          return guarded(why, [&] { e->set_surface_coefficients(surface, *c, rolls != 0); });
         },
     .surface_motion =
         [](Engine* e, std::int32_t surface, const double (*end)[3], double duration, const FacetGrid* grid,
@@ -62,8 +63,8 @@ constexpr Api kApi{
                          Why* why) { return guarded(why, [&] { e->surface_result(surface, impulse, *sums); }); },
     .run = [](Engine* e, const Run* run, RunResult* result,
               Why* why) { return guarded(why, [&] { *result = e->run(*run); }); },
-    .hardest = [](Engine* e, double above, double ahead, Hardest* hardest,
-                  Why* why) { return guarded(why, [&] { *hardest = e->hardest(above, ahead); }); },
+    .hardest = [](Engine* e, double above, double ahead, double deepest, Hardest* hardest,
+                  Why* why) { return guarded(why, [&] { *hardest = e->hardest(above, ahead, deepest); }); },
     .sums = [](Engine* e, std::int32_t losses, double dt, Sums* sums,
                Why* why) { return guarded(why, [&] { *sums = e->sums(losses != 0, dt); }); },
     .wall_impulse =

@@ -327,7 +327,8 @@ struct Range {
 };
 
 struct MagicFormula {
-  bool version61 = false;  // of [MODEL] FITTYP 61 or 62; otherwise 5.2, with the pressure terms of PAC2002
+  bool version61 = false;         // of [MODEL] FITTYP 61 or 62; otherwise 5.2, with the pressure terms of PAC2002
+  bool friction_ellipse = false;  // of [MODEL] FE_METHOD 'YES': of combined slip, whatever coefficients there are
   Dimensions dimension;
   VerticalCoefficients vertical;
   TireInertia inertia;

@@ -137,7 +137,7 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
     odd.emplace_back(s.longitudinal == 0.0 ? "[LONGITUDINAL_COEFFICIENTS] PTX1" : "[LATERAL_COEFFICIENTS] PTY1, PTY2",
                      "of " + at + ": missing or 0: without a relaxation length a standing wheel creeps under a force");
   const bool along = handling::ellipse_along(t), across = handling::ellipse_across(t);
-  if (along || across)
+  if (!t.friction_ellipse && (along || across))
     odd.emplace_back(along && across ? "[LONGITUDINAL_COEFFICIENTS] RBX1, [LATERAL_COEFFICIENTS] RBY1"
                      : along         ? "[LONGITUDINAL_COEFFICIENTS] RBX1"
                                      : "[LATERAL_COEFFICIENTS] RBY1",

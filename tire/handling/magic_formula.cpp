@@ -143,7 +143,7 @@ double combined_longitudinal(const Terms& t, const Pure& x, const Pure& y) {
   const auto& p = t.tire.longitudinal;
   if (ellipse_along(t.tire)) {
     const Sliding slide(t, x, y);
-    return y.d > 0.0 ? x.force * on_ellipse(slide.along, slide.across, (x.force - x.lift) / y.d) : x.force;
+    return y.d != 0.0 ? x.force * on_ellipse(slide.along, slide.across, (x.force - x.lift) / y.d) : x.force;
   }
   const double gamma = t.lean(t.at.camber);
   const double b = (p.rbx1 + p.rbx3 * square(gamma)) * cos(atan(p.rbx2 * t.at.slip)) * t.tire.scaling.lxal;  // (4.E54)
@@ -165,7 +165,7 @@ Combined combined_lateral(const Terms& t, const Pure& x, const Pure& y) {
   Combined out;
   if (ellipse_across(t.tire)) {
     const Sliding slide(t, x, y);
-    if (x.d > 0.0) out.share = on_ellipse(slide.across, slide.along, (y.force - y.lift) / x.d);
+    if (x.d != 0.0) out.share = on_ellipse(slide.across, slide.along, (y.force - y.lift) / x.d);
   } else {
     const double b =
         (p.rby1 + p.rby4 * square(gamma)) * cos(atan(p.rby2 * (t.tan_alpha - p.rby3))) * l.lyka;  // (4.E62)
@@ -191,7 +191,7 @@ double aligning(const Terms& t, const Pure& x, const Pure& y, double fx, const C
   const auto equivalent = [&](double alpha) {  // (4.E77), (4.E78)
     return std::sqrt(square(alpha) + longitudinal_slip) * sign(alpha);
   };
-  const double alpha_t = equivalent(t.tan_alpha + q.qhz1 + q.qhz2 * t.dfz + (q.qhz3 + q.qhz4 * t.dfz) * gamma);
+  const double alpha_t = t.tan_alpha + q.qhz1 + q.qhz2 * t.dfz + (q.qhz3 + q.qhz4 * t.dfz) * gamma;  // (4.E34), (4.E35)
   const double bt = (q.qbz1 + q.qbz2 * t.dfz + q.qbz3 * square(t.dfz)) *
                     (1.0 + q.qbz4 * gamma + q.qbz5 * std::abs(gamma)) * stiffness;  // (4.E40)
   const double ct = q.qcz1;                                                         // (4.E41)
@@ -201,7 +201,7 @@ double aligning(const Terms& t, const Pure& x, const Pure& y, double fx, const C
   const double et = std::min(
       1.0, (q.qez1 + q.qez2 * t.dfz + q.qez3 * square(t.dfz)) *
                (1.0 + (q.qez4 + q.qez5 * gamma) * 2.0 / std::numbers::pi * atan(bt * ct * alpha_t)));  // (4.E44)
-  const double trail = dt * cos(curve(bt, ct, et, alpha_t)) * cos_alpha;                               // (4.E73)
+  const double trail = dt * cos(curve(bt, ct, et, equivalent(alpha_t))) * cos_alpha;                   // (4.E73)
 
   const double shift = y.shift + (y.stiffness != 0.0 ? y.lift / y.stiffness : 0.0);  // (4.E38)
   const double alpha_r = equivalent(t.tan_alpha + shift);
@@ -347,8 +347,12 @@ double pressure_change(const MagicFormula& tire) {
   return c.inflpres > 0.0 && c.nompres > 0.0 ? c.inflpres / (tire.scaling.lip * c.nompres) - 1.0 : 0.0;
 }
 
-bool ellipse_along(const MagicFormula& tire) { return tire.longitudinal.rbx1 == 0.0 || tire.longitudinal.rcx1 == 0.0; }
-bool ellipse_across(const MagicFormula& tire) { return tire.lateral.rby1 == 0.0 || tire.lateral.rcy1 == 0.0; }
+bool ellipse_along(const MagicFormula& tire) {
+  return tire.friction_ellipse || tire.longitudinal.rbx1 == 0.0 || tire.longitudinal.rcx1 == 0.0;
+}
+bool ellipse_across(const MagicFormula& tire) {
+  return tire.friction_ellipse || tire.lateral.rby1 == 0.0 || tire.lateral.rcy1 == 0.0;
+}
 
 double spring_force(const MagicFormula& tire, double deflection) {
   if (!(deflection > 0.0)) return 0.0;

@@ -292,6 +292,7 @@ void read_model(Sections& sections, MagicFormula& tire) {
     if (side != "LEFT" && side != "RIGHT" && side != "SYMMETRIC" && side != "UNKNOWN")
       throw model.wrong("TYRESIDE", fmt::format("is '{}', expected 'LEFT' or 'RIGHT'", excerpt(side)));
   }
+  tire.friction_ellipse = model.has("FE_METHOD") && upper(model.text("FE_METHOD")) == "YES";
   for (const auto& [key, plain] : {std::pair{"CONTACT_MODEL", "DEFAULT"}, {"BELT_DYNAMICS", "NO"}})
     if (model.has(key) && upper(model.text(key)) != plain) sections.leave("MODEL", key);
   tire.low_speed = model.has("VXLOW") ? model.positive("VXLOW") : tire.low_speed;
@@ -503,6 +504,7 @@ std::string tir_text(const MagicFormula& t, const std::vector<std::string>& comm
   else
     line("FITTYP", kWritten, "Magic Formula of MF-Tyre 5.2");
   line("USE_MODE", 14, "combined slip, with relaxation");
+  if (t.friction_ellipse) out += "FE_METHOD = 'YES'\n";
   line("VXLOW", t.low_speed, "m/s");
   if (t.reference_speed > 0.0) line("LONGVL", t.reference_speed, "m/s");
   out += "TYRESIDE = 'LEFT'\n";

@@ -137,13 +137,14 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     def with_slip(angle):
         return sgn(angle) * np.sqrt(angle**2 + ratio)
 
-    at = with_slip(a + t.qhz1 + t.qhz2 * df + gz * (t.qhz3 + t.qhz4 * df))
+    at0 = a + t.qhz1 + t.qhz2 * df + gz * (t.qhz3 + t.qhz4 * df)
+    at = with_slip(at0)
     ar = with_slip(a + SHy + SVy / Ky)
     Bt = t.lky / t.lmuy * (t.qbz1 + t.qbz2 * df + t.qbz3 * df**2) * (1 + t.qbz4 * gz + t.qbz5 * abs(gz))
     Ct = t.qcz1
     Dt = t.ltr * Fz * R0 / Fz0 * (t.qdz1 + t.qdz2 * df) * (1 + t.qdz3 * gz + t.qdz4 * gz**2) * (1 - t.ppz1 * dp)
     Et = one(1, (t.qez1 + t.qez2 * df + t.qez3 * df**2)
-             * (1 + (t.qez4 + t.qez5 * gz) * 2 / np.pi * np.arctan(Bt * Ct * at)))
+             * (1 + (t.qez4 + t.qez5 * gz) * 2 / np.pi * np.arctan(Bt * Ct * at0)))
     trail = cosine(at, Bt, Ct, Dt, Et) * np.cos(alpha)
     Br = t.qbz9 * t.lky / t.lmuy + t.qbz10 * By * Cy
     Dr = t.lmuy * R0 * Fz * (t.lres * (t.qdz6 + t.qdz7 * df) + t.lkzc * gz * (

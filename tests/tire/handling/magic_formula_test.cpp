@@ -120,7 +120,11 @@ TEST(MagicFormula, without_coefficients_of_combined_slip_it_keeps_within_the_fri
   t.lateral.rvy3 = 0.0;
   MagicFormula pure = t;
   pure.longitudinal.rbx1 = pure.lateral.rby1 = pure.lateral.rcy1 = 1e-300;
-  EXPECT_TRUE(ellipse_along(t) && ellipse_across(t));
+  MagicFormula told = symmetric_tire();  // by FE_METHOD, with a friction below 0, as some programs write it
+  told.friction_ellipse = true;
+  told.lateral.rvy3 = 0.0;
+  told.lateral.pdy1 *= -1.0, told.lateral.pdy2 *= -1.0;
+  EXPECT_TRUE(ellipse_along(t) && ellipse_across(t) && ellipse_along(told) && ellipse_across(told));
   EXPECT_FALSE(ellipse_along(pure) || ellipse_across(pure));
   for (const double load : kLoads) {
     const double df = load / 4000.0 - 1.0;
@@ -132,6 +136,8 @@ TEST(MagicFormula, without_coefficients_of_combined_slip_it_keeps_within_the_fri
         const HandlingForces f = evaluate(t, {.load = load, .slip = slip, .slip_angle = angle}),
                              x = evaluate(pure, {.load = load, .slip = slip}),
                              y = evaluate(pure, {.load = load, .slip_angle = angle});
+        EXPECT_DOUBLE_EQ(evaluate(told, {.load = load, .slip = slip, .slip_angle = angle}).fx, f.fx);
+        EXPECT_DOUBLE_EQ(evaluate(told, {.load = load, .slip = slip, .slip_angle = angle}).fy, f.fy);
         const double share = std::hypot(f.fx / dx, f.fy / dy);
         EXPECT_LE(share, 1.0 + 1e-12) << slip << " " << angle;
         most = std::max(most, share);
@@ -190,6 +196,30 @@ TEST(MagicFormula, version_6_1_depends_on_pressure_and_camber_as_its_equations_s
   const double slope =
       (evaluate(t, {.load = load, .camber = h}).fy - evaluate(t, {.load = load, .camber = -h}).fy) / (2.0 * h);
   EXPECT_NEAR(slope, load * (-0.9 - 0.25 * df) * (1.0 - 0.3 * dpi) * 1.1 * t.scaling.lgay, 1e-3);
+}
+
+/// Values of the Magic Formula Tyre Library, https://github.com/teasit/magic-formula-tyre-library, package
+/// magicformula.v61, run with Octave. It has α for tan α in F_y, and M_z without the camber of S_Hy and S_Vy.
+TEST(MagicFormula, version_6_1_gives_what_another_program_gives) {
+  MagicFormula t = later_tire();
+  t.scaling.lmux = t.scaling.lmuy = t.scaling.lgay = 1.0;
+  struct Value {
+    double load, slip, angle, camber, fx, fy, mz;
+  };
+  for (const Value& v : {Value{3000.0, 0.05, 0.02, 0.0, 2273.478648, -784.4771345, 27.12129468},
+                         {5000.0, -0.1, 0.05, 0.0, -4470.801767, -1951.309439, -28.1960481},
+                         {4000.0, 0.02, -0.08, 0.0, 1225.066468, 3032.345397, -58.58218942},
+                         {3000.0, 0.05, 0.02, 0.05, 2272.151409, -844.0465422, 0.0},
+                         {5000.0, -0.1, 0.05, -0.1, -4447.022818, -1457.79543, 0.0},
+                         {4000.0, 0.02, -0.08, 0.1, 1221.867462, 2760.447399, 0.0}}) {
+    const HandlingForces f =
+        evaluate(t, {.load = v.load, .slip = v.slip, .slip_angle = v.angle, .camber = v.camber, .speed = 10.0});
+    EXPECT_NEAR(f.fx, v.fx, 1e-8 * std::abs(v.fx)) << v.load;
+    EXPECT_NEAR(f.fy, v.fy, 2e-3 * std::abs(v.fy)) << v.load;
+    if (v.camber == 0.0) {
+      EXPECT_NEAR(f.mz, v.mz, 2e-3 * std::abs(v.mz)) << v.load;
+    }
+  }
 }
 
 TEST(MagicFormula, relaxation_of_6_1_is_slip_stiffness_over_that_of_the_carcass) {

@@ -39,9 +39,11 @@ TEST(TirFile, reads_back_what_it_wrote_bit_for_bit) {
   MagicFormula t = example_tire();
   t.longitudinal.pdx2 = -0.1 / 3.0;
   t.load.most = 1e4 / 7.0;
+  t.friction_ellipse = true;
   const std::string text = tir_text(t, {});
   EXPECT_EQ(tir_text(parse_tir(text, "a.tir"), {}), text);
   EXPECT_EQ(parse_tir(text, "a.tir").longitudinal.pdx2, t.longitudinal.pdx2);
+  EXPECT_TRUE(parse_tir(text, "a.tir").friction_ellipse);
 }
 
 /// Comments, quotes, line ends, names in small letters, and sections of other programs.

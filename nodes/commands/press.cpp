@@ -27,7 +27,7 @@ constexpr double kMostCamber = 0.7;  // rad, same as the rig's limit
 /// Options that are not given have the values of the scenario's section `press`.
 struct PressArguments {
   std::filesystem::path out;  // empty: a new folder under results/
-  bool overwrite = false;
+  bool overwrite = false, plots = true;
   std::optional<std::string> on;                    // plate | cleat | profile
   std::filesystem::path profile;                    // CSV; empty: none
   std::optional<double> deflection;                 // largest, m
@@ -151,7 +151,7 @@ ExitCode press(const scenario::Scenario& scenario, const PressArguments& argumen
     directory.discard();
     throw;
   }
-  make_report_or_warn(directory.path());
+  if (arguments.plots) make_report_or_warn(directory.path());
   if (ended.empty()) return ExitCode::done;
   print_error(fmt::format("the curve ends early: {}; what was found is in {}", ended, directory.path().string()));
   return ExitCode::physics;
@@ -177,6 +177,7 @@ Action add_press_options(CLI::App& command, Typed& typed) {
   command.add_option("--profile", arguments->profile,
                      "Read the ground's profile, seen from the axle, from this CSV file with columns x_m,z_m. It needs "
                      "--on profile and a flexible ring or planar tire.");
+  add_no_plots(command, arguments->plots);
   return [arguments, &typed] { return press(load(typed), *arguments); };
 }
 

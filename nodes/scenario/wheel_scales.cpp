@@ -278,7 +278,7 @@ std::vector<CouplingStep> coupling_steps(const Scenario& s) {
       take_spring(least, tire.vertical_stiffness, mass, "the bounce of its wheel on the tire's stiffness");
       take_spring(least, tire.grip_stiffness * tire.radius * tire.radius, inertia,
                   "the spin of its wheel on the tire's grip");
-      if (tire.grip_damping > 0.0)
+      if (tire.grip_damping > 0.0 && inertia > 0.0)  // else it is missing, and a run is refused
         take(least, inertia / (tire.grip_damping * tire.radius * tire.radius),
              "the spin of its wheel on a tire without relaxation length");
     }

@@ -47,6 +47,7 @@ class Package(SystemTest):
         self.assertEqual(run.scenario["rig"]["slip"], 0.4)
         self.assertEqual(run.number("drawbar_pull_N.mean"), run.summary["drawbar_pull_N"]["mean"])
         self.assertEqual(run.number("wheels.0.slip"), 0.4)
+        self.assertRaisesRegex(TypeError, "the key is 3, expected a text", run.number, 3)
         self.assertRaisesRegex(KeyError, "no key 'pull.mean'", run.number, "pull.mean")
         self.assertRaisesRegex(TypeError, "the key is 3, expected a text", run.number, 3)
         self.assertEqual(run.subjects, ["wheel0", "accounts"])

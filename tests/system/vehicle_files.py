@@ -103,6 +103,11 @@ class Unlikely(SystemTest):
                                                 "terrain": {"engine": "rigid"}})
                 self.furrow("validate", scenario, timeout=300, says=f"furrow: warning: {scenario}: key 'rig.vehicle': "
                             f"is {path}, whose {message.replace(': ', ' ', 1)}")
+        path = write_json(self.folder / "odd.json",
+                          with_keys(shipped("buggy.json"), {"axles[0].steering.left_travel": 0.05}))
+        self.furrow("validate", path, timeout=300, shows="full left turns the wheels of front", says=(
+            "key 'axles[0].steering.left_travel': turns the wheels ", " degrees to the right at full steering to the "
+            "left: the other sign?"))
         for path in DATA.glob("*.json"):
             if "schema" not in path.name:
                 # also where a scenario's name is similar

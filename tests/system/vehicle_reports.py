@@ -250,6 +250,7 @@ class Report(SystemTest):
         summary = read_json(folder / "summary.json")
         for wheel, name in zip(summary["wheels"], ("first_left", "first_right", "second_left", "second_right")):
             wheel["name"] = name
+        summary["subjects"] = {"vehicle": {"gear": 1.86, "shifting": 0.3, "engine_speed_rpm": 900.0}}
         write_json(folder / "summary.json", summary)
         told = json.loads(furrow("events", folder, "--json", cwd=self.folder).stdout)["events"]
         self.furrow("report", folder, timeout=600)
@@ -260,6 +261,9 @@ class Report(SystemTest):
                          [[f"{e['time_s']:.3f}", e["event"], e["of"], e["threshold"]] for e in told])
         self.assertIn("first right", {row[2] for row in events["rows"]})
         tables = [block for section in about["sections"] for block in section["blocks"] if block["type"] == "table"]
+        rows = [row[0] for table in tables for row in table["rows"]]
+        self.assertTrue(any("engine" in row for row in rows), rows)
+        self.assertFalse({"gear", "shifting"} & set(rows), rows)  # their means are no gear
         self.assertIn("second left", [row[0] for table in tables if table["columns"][0] == "wheel"
                                       for row in table["rows"]])
 

@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
@@ -228,7 +229,11 @@ TEST(Trim, every_shipped_vehicle_stands_near_its_drawn_position) {
       EXPECT_NEAR(wheel.travel, 0.0, 0.01) << name << " " << wheel.name;
       EXPECT_GT(wheel.load, 0.0) << name << " " << wheel.name;
     }
-    for (const vehicle::TrimMode& one : trim.modes) EXPECT_GT(one.frequency, 0.3) << name << " " << one.name;
+    std::set<std::string> names;
+    for (const vehicle::TrimMode& one : trim.modes) {
+      EXPECT_GT(one.frequency, 0.3) << name << " " << one.name;
+      EXPECT_TRUE(names.insert(one.name).second) << name << " " << one.name;
+    }
   }
   // Each wheel of the rover has the load of a laboratory's single wheel.
   Vehicle rover(shipped("rover.json"));

@@ -166,6 +166,22 @@ TEST(Scenario, a_load_far_beyond_what_the_tire_was_fitted_to_is_warned_of) {
   EXPECT_TRUE(holds(told("12000"), "key 'tire.file': carries 12000 N, but was fitted up to 6633 N")) << told("12000");
 }
 
+/// The spin of a wheel on its grip, and the bounce of a light one on empirical soil.
+TEST(Scenario, a_step_that_is_too_large_for_a_wheel_on_its_spring_is_warned_of) {
+  const testing::ScenarioFile grip(R"({"tire": {"file": "hmmwv_handling.json"}, "terrain": {"engine": "rigid"}})");
+  const testing::ScenarioFile bounce(R"({"rig": {"load": 20, "rim_mass": 0.3, "rim_spin_inertia": 0.001},
+      "tire": {"file": "rigid_drum.json", "rigid": true}, "terrain": {"engine": "scm", "material": "lete_sand.json"}})");
+  for (const auto& [file, what] : {std::pair{&grip, "the spin of its wheel on the tire's grip"},
+                                   {&bounce, "the bounce of its wheel on the ground's stiffness"}}) {
+    const auto told = [&](const char* step) {
+      return fmt::format("{}", fmt::join(file->load({{"run.step", step}}).warnings, "\n"));
+    };
+    EXPECT_FALSE(holds(told("1e-5"), "allows: the timing"));
+    EXPECT_TRUE(holds(told("1e-2"), std::string("s that ") + what + " allows: the timing of contact forces"))
+        << told("1e-2");
+  }
+}
+
 TEST(Scales, what_binds_the_wheel_of_a_laboratory_is_named_by_its_key) {
   const auto load = [](const std::vector<std::pair<std::string, std::string>>& settings) {
     return scenario::load_scenario(data_folder() / "rigs" / "small_wheel.json", settings);

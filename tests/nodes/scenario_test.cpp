@@ -170,7 +170,8 @@ TEST(Scenario, a_load_far_beyond_what_the_tire_was_fitted_to_is_warned_of) {
 TEST(Scenario, a_step_that_is_too_large_for_a_wheel_on_its_spring_is_warned_of) {
   const testing::ScenarioFile grip(R"({"tire": {"file": "hmmwv_handling.json"}, "terrain": {"engine": "rigid"}})");
   const testing::ScenarioFile bounce(R"({"rig": {"load": 20, "rim_mass": 0.3, "rim_spin_inertia": 0.001},
-      "tire": {"file": "rigid_drum.json", "rigid": true}, "terrain": {"engine": "scm", "material": "lete_sand.json"}})");
+      "tire": {"file": "rigid_drum.json", "rigid": true},
+      "terrain": {"engine": "scm", "material": "lete_sand.json"}})");
   for (const auto& [file, what] : {std::pair{&grip, "the spin of its wheel on the tire's grip"},
                                    {&bounce, "the bounce of its wheel on the ground's stiffness"}}) {
     const auto told = [&](const char* step) {

@@ -140,6 +140,8 @@ TEST_F(MapFile, three_kinds_hold_the_same_map) {
   const std::filesystem::path files[] = {
       put("grid.ASC",
           "ncols 3\nnrows 2\nxllcorner 9.5\nyllcenter 100\ncellsize 1\nNODATA_value -9999\n3 4.5 5\n0 1 2\n"),
+      put("marked.asc",
+          "\xEF\xBB\xBFncols 3\r\nnrows 2\r\nxllcenter 10\r\nyllcenter 100\r\ncellsize 1\r\n3 4.5 5\r\n0 1 2\r\n"),
       put("grid.csv", "x_m,y_m,z_m\n10,101,3\n11,101,4.5\n12,101,5\n10,100,0\n11,100,1\n12,100,2\n"),
       put("grid.crg",
           "$ROAD_CRG\nREFERENCE_LINE_START_U = 10\nREFERENCE_LINE_END_U = 12\nREFERENCE_LINE_INCREMENT = 1\n$\n"
@@ -199,6 +201,10 @@ TEST_F(MapFile, mistakes_are_refused_by_their_place) {
   for (const auto& [text, words] : tables) {
     const std::filesystem::path file = put("wrong.csv", text);
     expect_refused(ExitCode::bad_input, {words}, [&] { read_map(file, {}); });
+  }
+  for (const auto& [name, words] : {std::pair{"bump.obj", "is a mesh, expected heights"}, {"a.BMP", "is a picture"}}) {
+    const std::filesystem::path file = put(name, "o bump\n");
+    expect_refused(ExitCode::bad_input, {words}, [&] { read_road(file, {}); });
   }
   const std::filesystem::path grid = put("grid.asc", head + "1 2 3 4\n");
   expect_refused(ExitCode::bad_input, {"has no height at y = 3 m, expected terrain.profile_v from 0.5 to 1.5 m"},

@@ -109,6 +109,18 @@ std::string big_endian(const std::vector<Number>& values) {
   return bytes;
 }
 
+/// ASAM's handmade_straight_minimalist.crg is "completely equivalent" to handmade_straight.crg, with v from -1.5 m on.
+TEST_F(RoadFile, cuts_without_a_first_v_lie_evenly_about_the_reference_line) {
+  const std::string rows = "#:LRFI\n" + kCuts + "$$\n 0.0000000 0.0100000 0.0200000\n 0.0000000 0.0100000 0.0200000\n";
+  const auto cuts = [&](const std::string& v) {
+    return read_open_crg(put("road.crg", "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\n" + v +
+                                             "LONG_SECTION_V_INCREMENT = 0.5\n$\n$KD_DEFINITION\n" + rows))
+        .v;
+  };
+  EXPECT_EQ(cuts(""), (std::vector<double>{-0.5, 0.0, 0.5}));
+  EXPECT_EQ(cuts("LONG_SECTION_V_LEFT = 2\n"), (std::vector<double>{1.0, 1.5, 2.0}));
+}
+
 TEST_F(RoadFile, the_four_formats_hold_the_same_road) {
   const std::string text = kRoad + "$KD_Definition\n#:LRFI\n" + kCuts +
                            "$$$$ data\n 0.0000000 0.0100000 *missing*\n 0.0200000-0.0300000 0.0400000\r\n "

@@ -161,8 +161,10 @@ class Reader {
   void place_cuts() {
     if (cuts_.empty()) throw wrong("", "has no cut along the road, expected lines D:long section …");
     if (!placed_) {
-      const double right = needed("LONG_SECTION_V_RIGHT");
       const double apart = cuts_.size() > 1 ? needed("LONG_SECTION_V_INCREMENT") : 0.0;
+      const double across = static_cast<double>(cuts_.size() - 1) * apart;
+      // Without either end the cuts lie evenly about the reference line, as in ASAM's minimalist examples.
+      const double right = parameter("LONG_SECTION_V_RIGHT", parameter("LONG_SECTION_V_LEFT", 0.5 * across) - across);
       for (double& cut : cuts_) cut = right + (cut - 1.0) * apart;
     }
     const auto [right, left] = std::minmax_element(cuts_.begin(), cuts_.end());

@@ -64,8 +64,25 @@ std::shared_ptr<const RoadLine> line_of(const HeightMap& map, const std::vector<
   return line;
 }
 
+/// Refuses meshes and pictures, in which other programs keep terrains. @throws Error(bad_input)
+void refuse_meshes_and_pictures(const std::filesystem::path& file) {
+  for (const auto& [ending, kind] : {std::pair{".obj", "mesh"},
+                                     {".stl", "mesh"},
+                                     {".ply", "mesh"},
+                                     {".bmp", "picture"},
+                                     {".png", "picture"},
+                                     {".tif", "picture"},
+                                     {".tiff", "picture"}})
+    if (has_ending(file, ending))
+      throw input_error(file.string(), "",
+                        fmt::format("is a {}, expected heights in CSV, a grid in ASCII after ESRI (.asc) or a road in "
+                                    "OpenCRG (.crg)",
+                                    kind));
+}
+
 /// Rows of a CSV file as the nodes of a grid; none if it is a profile.
 std::optional<HeightMap> read_csv_map(const std::filesystem::path& file) {
+  refuse_meshes_and_pictures(file);
   const CsvFile csv(file, "heights in CSV with the columns x_m, z_m and, of a grid, y_m", {"x_m", "z_m", "y_m"});
   if (!csv.has("y_m")) return std::nullopt;
   std::map<double, std::size_t> x, y;  // number of each, in order
@@ -91,7 +108,9 @@ std::optional<HeightMap> read_csv_map(const std::filesystem::path& file) {
 class AsciiGrid {
  public:
   explicit AsciiGrid(const std::filesystem::path& file)
-      : name_(file.string()), text_(read_whole_file(file, kMostBytes)), rest_(text_) {}
+      : name_(file.string()), text_(read_whole_file(file, kMostBytes)), rest_(text_) {
+    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);  // a byte-order mark, which editors write
+  }
 
   HeightMap read() {
     read_header();

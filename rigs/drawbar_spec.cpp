@@ -80,6 +80,15 @@ class DrawbarSpec final : public RigSpec {
     return make_rig_row(std::move(rigs));
   }
 
+  std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
+    const DrawbarRigOptions& rig = places_.front().rig;
+    if (rig.mode != "fixed_angular_speed" || rig.speed == DrawbarRigOptions().speed) return {};
+    return {{context_.key("speed"),
+             fmt::format("is {} m/s and is not used in mode fixed_angular_speed, where the carriage moves at "
+                         "angular_speed · R · (1 − slip): another rig.mode?",
+                         number_text(rig.speed))}};
+  }
+
   void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
                    std::span<const double> margins) override {
     FURROW_ASSERT(margins.size() == places_.size(), margins.size(), places_.size());

@@ -142,6 +142,7 @@ std::vector<std::string> complete(json& document, const std::string& file, const
   if (!document.contains("tire") && !document.contains("tires"))
     throw input_error(file, "tire", "is missing, expected an object { } with the tire's file");
   std::vector<std::string> set_aside = set_aside_keys(document, schema, file, settings);
+  if (const std::string partial = partial_soil_warning(document, file); !partial.empty()) set_aside.push_back(partial);
   if (const json& terrain = document.at("terrain"); terrain.contains(kFriction)) friction = terrain[kFriction];
   schema.fill_defaults(document);
   schema.normalize(document);

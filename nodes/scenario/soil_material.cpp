@@ -147,4 +147,23 @@ std::string other_grains_warning(const json& completed, const std::filesystem::p
       .what();
 }
 
+std::string partial_soil_warning(const json& document, const std::filesystem::path& scenario) {
+  const json& terrain = document.at("terrain");
+  if (terrain.value("engine", "") != "scm") return {};
+  const std::optional<SoilFile> soil = soil_of(terrain, scenario);
+  std::vector<std::string> given, open;
+  for (const char* key : {"bekker_k_c", "bekker_k_phi", "bekker_n", "mohr_cohesion", "mohr_friction_angle", "janosi_k"})
+    ((soil ? soil->values : terrain).contains(key) ? given : open).push_back(key);
+  if (given.empty() || open.empty()) return {};
+  const std::string others = fmt::format("{}", fmt::join(open, ", "));
+  if (soil)
+    return input_error(scenario.string(), std::string("terrain.") + kSoilKey,
+                       "is '{}', which has {} but not {}: these are the scenario's or the defaults, of another soil",
+                       terrain[kSoilKey].get<std::string>(), fmt::join(given, ", "), others)
+        .what();
+  return input_error(scenario.string(), "terrain." + given.front(),
+                     "is given, but not {}: these are the defaults, of another soil", others)
+      .what();
+}
+
 }  // namespace furrow::scenario

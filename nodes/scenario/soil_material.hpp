@@ -31,4 +31,9 @@ void fill_cone_index(nlohmann::json& completed, const std::filesystem::path& sce
 /// measurements; empty otherwise. `completed`: the scenario with its defaults.
 std::string other_grains_warning(const nlohmann::json& completed, const std::filesystem::path& scenario);
 
+/// Returns a warning if engine scm takes some results of plate and shear tests from the named soil, or without one from
+/// the scenario, but not all: the others would be those of another soil. Empty otherwise. `document`: the scenario
+/// without defaults.
+std::string partial_soil_warning(const nlohmann::json& document, const std::filesystem::path& scenario);
+
 }  // namespace furrow::scenario

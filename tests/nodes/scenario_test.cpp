@@ -351,8 +351,38 @@ TEST(Scenario, mistakes_in_a_soil_file_are_named_with_that_file) {
   EXPECT_EQ(complaint(R"({"format_version": 1})"), ": key 'terrain': is missing, expected an object { }");
 }
 
+/// The keys that are left out would be those of LETE sand, or of the scenario's own soil.
+TEST(Scenario, a_soil_with_a_part_of_the_tests_of_empirical_soil_is_warned_of) {
+  const auto told = [](const std::string& own, const std::string& soil) {
+    const testing::ScenarioFile part(R"({"format_version": 1, "terrain": )" + soil + "}");
+    const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"engine": "scm")" + own +
+                                     "}}");
+    const std::string name = soil.empty() ? "null" : '"' + part.path().string() + '"';
+    return fmt::format("{}", fmt::join(file.load({{"terrain.material", name}}).warnings, "\n"));
+  };
+  const std::string plate = R"("bekker_k_c": 16.5e3, "bekker_k_phi": 811e3, "bekker_n": 0.73)",
+                    shear = R"("mohr_cohesion": 1720, "mohr_friction_angle": 29, "janosi_k": 0.025)";
+  const std::string open = "but not mohr_cohesion, mohr_friction_angle, janosi_k: these are the ";
+  EXPECT_TRUE(holds(told("", "{" + plate + "}"), open + "scenario's or the defaults, of another soil"));
+  EXPECT_TRUE(holds(told(", " + plate, ""), "key 'terrain.bekker_k_c': is given, " + open + "defaults"));
+  EXPECT_EQ(told("", "{" + plate + ", " + shear + "}"), "");
+  EXPECT_EQ(told(", " + plate + ", " + shear, ""), "");
+  EXPECT_EQ(told("", ""), "");
+}
+
+TEST_F(Smallest, a_speed_in_the_mode_of_an_imposed_spin_is_warned_of) {
+  const auto told = [&](const char* mode, const char* speed) {
+    const std::string quoted = '"' + std::string(mode) + '"';
+    return fmt::format("{}", fmt::join(file_.load({{"rig.mode", quoted}, {"rig.speed", speed}}).warnings, "\n"));
+  };
+  EXPECT_TRUE(holds(told("fixed_angular_speed", "3"), "'rig.speed': is 3 m/s and is not used"));
+  EXPECT_FALSE(holds(told("fixed_speed", "3"), "not used"));
+}
+
 TEST(Scenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
-  const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"rolling_friction": 0.2, "bekker_n": 0.5}})");
+  const testing::ScenarioFile soil(R"({"format_version": 1, "terrain": {"rolling_friction": 0.2, "bekker_n": 0.5,
+      "bekker_k_c": 16.5e3, "bekker_k_phi": 811e3, "mohr_cohesion": 1720, "mohr_friction_angle": 29,
+      "janosi_k": 0.025}})");
   const testing::ScenarioFile grains(testing::kSmallest);
   const std::string name = '"' + soil.path().string() + '"';
   for (const std::string engine : {"dem", "scm"}) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,11 +25,28 @@ using nlohmann::json;
 constexpr int kFacets = 96, kRows = 7;                      // of the surface
 constexpr double kLeastNominal = 0.01, kMostNominal = 0.3;  // deflection under FNOMIN, of the radius
 constexpr double kMostFactor = 5.0;
-constexpr double kTreadFriction = 0.9;  // of ContactMaterial, which only rigid tires use
+constexpr double kLeastPeak = 0.05, kMostPeak = 5.0;  // grip under FNOMIN
+constexpr double kTreadFriction = 0.9;                // of ContactMaterial, which only rigid tires use
 
 /// @throws Error(bad_input)
 void require_inertia(const HandlingFile& file) {
   if (!file.lacking.empty()) throw input_error(file.path, file.lacking_key, file.lacking);
+}
+
+/// Whether a coefficient of the inflation pressure is not 0.
+bool feels_pressure(const handling::MagicFormula& t) {
+  bool feels = false;
+  const auto look = [&](double value, const Field& field) {
+    const std::string_view name = field.name;
+    feels |= value != 0.0 && (name.starts_with("PP") || name == "PFZ1" || name == "QSY8");
+  };
+  visit_fields(t.longitudinal, look);
+  visit_fields(t.overturning, look);
+  visit_fields(t.lateral, look);
+  visit_fields(t.rolling, look);
+  visit_fields(t.aligning, look);
+  visit_fields(t.vertical, look);
+  return feels;
 }
 
 class HandlingSpec final : public TireSpec {
@@ -80,7 +98,7 @@ TireDescription HandlingSpec::describe() const {
   d.memory = 1e6;
   d.saved_bytes = 1e4;
   d.follows_rim = true;
-  if (t.conditions.nompres > 0.0) d.takes = {"pressure"};
+  if (t.conditions.nompres > 0.0 && feels_pressure(t)) d.takes = {"pressure"};
   const double slip_stiffness = std::abs(handling::evaluate(t, {.load = t.vertical.fnomin}).slip_stiffness);
   d.vertical_stiffness = handling::spring_stiffness(t, t.vertical.fnomin);
   d.contact_length = handling::contact_length(t);
@@ -133,6 +151,10 @@ std::vector<std::pair<std::string, std::string>> HandlingSpec::unlikely_values()
       odd.emplace_back(std::string("[SCALING_COEFFICIENTS] ") + field.name,
                        fmt::format("of {} is {:g}, usual are 0 to 2: it is a factor, not per cent", at, value));
   });
+  for (const auto& [key, peak] : {std::pair{"[LONGITUDINAL_COEFFICIENTS] PDX1", t.longitudinal.pdx1 * t.scaling.lmux},
+                                  {"[LATERAL_COEFFICIENTS] PDY1", t.lateral.pdy1 * t.scaling.lmuy}})
+    if (std::abs(peak) < kLeastPeak || std::abs(peak) > kMostPeak)
+      odd.emplace_back(key, fmt::format("of {} makes a grip of {:g} under FNOMIN, usual are 0.3 to 3", at, peak));
   if (const auto s = handling::relaxation_lengths(t, t.vertical.fnomin, 0.0); s.longitudinal == 0.0 || s.lateral == 0.0)
     odd.emplace_back(s.longitudinal == 0.0 ? "[LONGITUDINAL_COEFFICIENTS] PTX1" : "[LATERAL_COEFFICIENTS] PTY1, PTY2",
                      "of " + at + ": missing or 0: without a relaxation length a standing wheel creeps under a force");
@@ -175,8 +197,8 @@ HandlingFile read_handling_file(const json& document, const std::string& path) {
     if (value == 0.0) value = in_tir;
     if (value > 0.0 || !f.lacking.empty()) return;
     f.lacking_key = is_tir(path) ? fmt::format("[INERTIA] {}", name) : key;
-    f.lacking = is_tir(path) ? "is missing, expected the tire's mass and inertia, or a tire file in JSON of the "
-                               "model handling that names this file and says them"
+    f.lacking = is_tir(path) ? "is missing, expected the tire's mass and inertia there, or a tire file in JSON of the "
+                               "model handling with the keys tir, mass, spin_inertia and diametral_inertia"
                              : fmt::format("is missing, expected a number above 0 here or {} in [INERTIA] of {}", name,
                                            f.tir.string());
   };

@@ -458,6 +458,10 @@ MagicFormula parse_tir(const std::string& text, const std::string& name) {
   read_section(sections, "LATERAL_COEFFICIENTS", true, t.lateral, {"PCY1", "PDY1", "PKY1", "PKY2"});
   read_section(sections, "ROLLING_COEFFICIENTS", false, t.rolling);
   read_section(sections, "ALIGNING_COEFFICIENTS", false, t.aligning);
+  for (const auto& [section, what] :
+       {std::pair{"ROLLING_COEFFICIENTS", "the rolling resistance"}, {"ALIGNING_COEFFICIENTS", "the aligning moment"}})
+    if (!sections.has(section))
+      t.remarks.emplace_back(fmt::format("[{}]", section), fmt::format("is missing: {} is 0", what));
   if (sections.has("TURNSLIP_COEFFICIENTS")) SectionReader(sections, "TURNSLIP_COEFFICIENTS").finish();
   sections.refuse_missing();
   t.load_curve = read_curve(sections);

@@ -467,6 +467,11 @@ TEST(HandlingFile, takes_the_scenarios_pressure_where_its_coefficients_have_one)
   options.file = written(t);
   EXPECT_TRUE(idle_keys(*read_tire(options)).empty());
   EXPECT_NEAR(read_tire(options)->describe().vertical_stiffness, 2.2e5 * (1.0 + 0.8 * 0.25), 1e-6);
+  MagicFormula without = t;
+  without.vertical.pfz1 = 0.0;
+  options.file = written(without);
+  EXPECT_EQ(idle_keys(*read_tire(options)), std::vector<std::string>{"pressure"}) << "no coefficient has an effect";
+  options.file = written(t);
   options.pressure.knots.push_back({1.0, 200e3});
   expect_refused(ExitCode::bad_input, {"key 'tire.pressure'", "one pressure"}, [&] { read_tire(options); });
 }
@@ -501,6 +506,9 @@ TEST(HandlingFile, unlikely_values_are_told_by_section_and_key) {
   t = example_tire();
   t.slip.most = 0.0;
   EXPECT_TRUE(holds(told(t), "[LONG_SLIP_RANGE] KPUMAX of ")) << told(t);
+  t = example_tire();
+  t.lateral.pdy1 = 105.0;  // per cent; LMUY is 0.95
+  EXPECT_TRUE(holds(told(t), "makes a grip of 99.75 under FNOMIN")) << told(t);
 }
 
 TEST(HandlingFile, wrong_files_are_refused_by_key) {

@@ -207,6 +207,8 @@ TEST(TirFile, reads_the_names_of_pac2002_and_a_later_version_s_curve) {
 TEST(TirFile, coefficients_that_are_left_out_are_none_and_factors_one) {
   const MagicFormula t = parse_tir(without("ALIGNING_COEFFICIENTS"), "a.tir");
   EXPECT_EQ(t.aligning.qbz1, 0.0);
+  EXPECT_EQ(remarks(without("ALIGNING_COEFFICIENTS")),
+            "[ALIGNING_COEFFICIENTS] is missing: the aligning moment is 0\n");
   std::string text = whole();
   const std::size_t at = text.find("[SCALING_COEFFICIENTS]");
   text.erase(at, text.find("\n[", at) + 1 - at);

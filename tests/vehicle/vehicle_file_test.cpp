@@ -278,6 +278,8 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
       {"hmmwv.json", s + "/shock/compression", 1e6, "axles[0].suspension.shock.compression",
        "is 1e6 N s/m, which alone takes about 0.00242 s to bring the whole vehicle of 2423 kg to rest"},
       {"hmmwv.json", s + "/shock/rebound", 22.46, "axles[0].suspension.shock.rebound", "takes about 108 s"},
+      {"hmmwv.json", s + "/spring/free_length", 340, "axles[0].suspension.spring.free_length",
+       "is 340 m, but the spring is drawn 0."},
       {"hmmwv.json", s + "/spindle/toe_deg", 44.9, "axles[0].suspension.spindle.toe_deg",
        "is 44.9 degrees, usual is up to 10 in magnitude"},
       {"hmmwv.json", s + "/upright/inertia", {1e6, 1e6, 1e6}, "", ""},  // refused
@@ -357,6 +359,12 @@ TEST(VehicleFile, gears_and_drives_that_are_hardly_meant_are_named) {
               for (vehicle::GearSpec& gear : line.gears) gear.ratio = 1.0 / gear.ratio;
             }),
             "driveline.gears");
+  // Without a converter; the mark in rad/s.
+  EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) {
+              line.gearbox->in = line.engine->shaft;
+              line.gearbox->up_rpm = 200, line.gearbox->down_rpm = 60;
+            }),
+            "driveline.gearbox.up_rpm");
   // 2400 rpm in one gear are 2400 × ratio / next ratio in the next one.
   EXPECT_EQ(odd_key([](vehicle::DrivelineSpec& line) { line.gearbox->down_rpm = 0.99 * line.gearbox->up_rpm; }),
             "driveline.gearbox.down_rpm");

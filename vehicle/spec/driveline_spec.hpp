@@ -27,16 +27,18 @@ void visit_fields(FieldsOf<ShaftSpec> auto& s, auto&& visit) {
 struct EngineSpec {
   static constexpr SchemaName kSchema{"engine", "An engine from its torque map."};
   std::string shaft;
-  Points torque;                 // at full throttle, N m against rpm
-  Points losses;                 // N m against rpm
+  Points torque;                 // that full throttle adds, N m against rpm
+  Points losses;                 // with the throttle closed, N m against rpm
   double idle_rpm = 0.0;         // below which the governor opens the throttle
   double idle_band_rpm = 100.0;  // over which it opens fully
 };
 void visit_fields(FieldsOf<EngineSpec> auto& s, auto&& visit) {
   using namespace allowed;
   visit(s.shaft, needed("shaft", "", not_empty(), "Shaft that is the engine's crankshaft."));
-  visit(s.torque, needed("torque", "N m", keys::kTable, "Torque at full throttle: pairs of rpm and N m."));
-  visit(s.losses, needed("losses", "N m", keys::kTable, "Pairs of rpm and N m, against the speed."));
+  visit(s.torque,
+        needed("torque", "N m", keys::kTable, "Torque that full throttle adds to the losses: pairs of rpm and N m."));
+  visit(s.losses, needed("losses", "N m", keys::kTable,
+                         "Torque with the throttle closed, against the speed: pairs of rpm and N m."));
   visit(s.idle_rpm, needed("idle_rpm", "rpm", from(0, 1e6),
                            "Speed below which the governor opens the throttle; at most the last speed of torque."));
   visit(s.idle_band_rpm, key("idle_band_rpm", "rpm", above(0).to(1e6),

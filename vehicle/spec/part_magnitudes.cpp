@@ -24,6 +24,7 @@ constexpr double kLeastBrake = 0.002,
 constexpr double kMostShaft = 0.1;        // of a shaft: inertia over mass, m²
 constexpr double kMostWheelAngle = 10.0;  // camber and toe, degrees
 constexpr double kLeastLock = 2.0;        // of a Pitman arm, degrees
+constexpr double kMostStretch = 5.0;      // of a spring: free length over that drawn, or the inverse
 
 using Oddities = std::vector<std::pair<std::string, std::string>>;
 
@@ -73,6 +74,12 @@ class PartMagnitudes {
       damping(key, "compression", part.compression);
       damping(key, "rebound", part.rebound);
     }
+    if constexpr (std::is_same_v<T, SpringSpec>)
+      if (const double drawn = (part.end - part.chassis).norm();
+          part.free_length > kMostStretch * drawn || part.free_length < drawn / kMostStretch)
+        add(key, "free_length",
+            fmt::format("is {} m, but the spring is drawn {} m long: another unit?", number_text(part.free_length),
+                        digits(drawn)));
     if constexpr (std::is_same_v<T, SpindleSpec>) {
       wheel_angle(key, "camber_deg", part.camber_deg);
       wheel_angle(key, "toe_deg", part.toe_deg);

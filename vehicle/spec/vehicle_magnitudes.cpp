@@ -76,6 +76,11 @@ std::vector<std::pair<std::string, std::string>> unlikely_drives(const Driveline
                                    "does not hold its idle speed",
                                    digits(full), number_text(engine.idle_rpm), digits(full + lost)));
   }
+  if (line.engine && line.gearbox && line.gearbox->in == line.engine->shaft && line.gearbox->ratios.size() > 1 &&
+      line.gearbox->up_rpm <= line.engine->idle_rpm)
+    odd.emplace_back("gearbox.up_rpm",
+                     fmt::format("is {}, and the engine idles at {} rpm: it will never stay in a lower gear",
+                                 number_text(line.gearbox->up_rpm), number_text(line.engine->idle_rpm)));
   const auto& clutch = line.clutch;
   const auto& converter = line.converter;
   if (clutch && converter &&

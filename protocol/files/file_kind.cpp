@@ -59,7 +59,7 @@ std::string part_of_chrono(const Json& document) {
       std::find(std::begin(kChronoTires), std::end(kChronoTires), name) != std::end(kChronoTires))
     return {};
   if (!type.empty() || !name.empty())
-    return "a " + (type.empty() ? "file" : type) + (name.empty() ? "" : " (" + name + ")");
+    return (type == "Engine" ? "an " : "a ") + (type.empty() ? "file" : type) + (name.empty() ? "" : " (" + name + ")");
   for (const char* ours : {"rig", "tire", "terrain", "run", "scenario", "chassis", "template", "model"})
     if (document.contains(ours)) return {};
   for (const auto& [key, value] : document.items())

@@ -74,6 +74,8 @@ TEST(FileKind, files_of_project_chrono_are_named_for_what_they_are) {
   EXPECT_EQ(refused(R"({"Type": "Suspension", "Template": "DoubleWishbone"})", FileKind::tire),
             "x.json: is a Suspension (DoubleWishbone) of Project Chrono, expected a tire: of its tires the templates "
             "ANCFTire, ReissnerTire and RigidTire are read, and the tire property file (.tir) that a Pac02Tire names");
+  EXPECT_TRUE(holds(refused(R"({"Type": "Engine", "Template": "EngineSimple"})", FileKind::tire),
+                    "is an Engine (EngineSimple) of Project Chrono"));
   EXPECT_TRUE(holds(refused(R"({"Granular material": {"Density": 2000}})", FileKind::scenario),
                     "is a file with the key 'Granular material' of Project Chrono"));
   const char* const ancf = R"({"Name": "x", "Type": "Tire", "Template": "ANCFTire"})";

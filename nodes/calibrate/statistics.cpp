@@ -37,26 +37,32 @@ Confidence confidence(std::span<const Parameter> parameters, const Eigen::Vector
   c.freedom = static_cast<int>(residuals.size()) - static_cast<int>(free.size());
   FURROW_ASSERT(c.freedom > 0 || known_errors, c.freedom);
   c.deviation = known_errors ? 1.0 : residuals.norm() / std::sqrt(c.freedom);
+  const double t = known_errors ? kNormal : student_t(c.freedom);
+  const auto half_width = [&](const Eigen::VectorXd& w, Eigen::Index i) {
+    return w[i] <= kDegenerate * w[0] ? std::numeric_limits<double>::infinity() : t * c.deviation / w[i];
+  };
+  // A valley may end at bounds, so that parameters there count here.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> whole(jacobian, Eigen::ComputeThinV);
+  for (Eigen::Index i = 0; i < whole.singularValues().size(); ++i) {
+    const double w = whole.singularValues()[i];
+    // A fit without residuals has no σ̂: the singular values are then those of J.
+    c.singular_values.push_back(c.deviation > 0.0 ? w / c.deviation : w);
+    const double half = half_width(whole.singularValues(), i);
+    if (half < kWide) continue;
+    const Eigen::VectorXd v = whole.matrixV().col(i);
+    Eigen::Index lead = 0;
+    v.cwiseAbs().maxCoeff(&lead);
+    const Eigen::VectorXd direction = std::copysign(1.0, v[lead]) * v;
+    c.undetermined.push_back({{direction.begin(), direction.end()}, half});
+  }
   if (free.empty()) return c;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian(Eigen::all, free), Eigen::ComputeThinV);
   const Eigen::VectorXd& w = svd.singularValues();
-  const double t = known_errors ? kNormal : student_t(c.freedom);
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(free.size()));
   for (Eigen::Index i = 0; i < w.size(); ++i) {
-    // A fit without residuals has no σ̂: the singular values are then those of J.
-    c.singular_values.push_back(c.deviation > 0.0 ? w[i] / c.deviation : w[i]);
     const Eigen::VectorXd v = svd.matrixV().col(i);
-    const bool degenerate = w[i] <= kDegenerate * w[0];
-    const double half = degenerate ? std::numeric_limits<double>::infinity() : t * c.deviation / w[i];
-    if (half >= kWide) {
-      Eigen::Index lead = 0;
-      v.cwiseAbs().maxCoeff(&lead);
-      Eigen::VectorXd direction = Eigen::VectorXd::Zero(all);
-      direction(free) = std::copysign(1.0, v[lead]) * v;
-      c.undetermined.push_back({{direction.begin(), direction.end()}, half});
-    }
     // Parameters with no part but round-off in a degenerate direction keep their error.
-    if (degenerate)
+    if (std::isinf(half_width(w, i)))
       variance += (v.array().abs() > kDegenerate).select(std::numeric_limits<double>::infinity(), 0.0 * v.array());
     else
       variance += c.deviation * c.deviation / (w[i] * w[i]) * v.array().square();

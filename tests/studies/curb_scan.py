@@ -35,7 +35,7 @@ def main():
                     "rig.speed": speed, "tire.file": str(file), "run.end": end, "run.average_from": end - 0.3,
                     "output.frame_interval": 0})]
                 out = folder / f"{name.replace(' ', '_')}_{speed:g}_{viscosity}"
-                if driver.stale_because(words, out) and (finished or not driver.run_case(out.name, words, out)):
+                if not driver.done_run(words, out, finished):
                     continue
                 figures = {what: (mine, simple) for what, _, mine, simple in Passage(name, out).figures()}
                 mine = {what: of[0] for what, of in figures.items()}

@@ -86,6 +86,13 @@ def run_case(name, words, out, made_at=None):
     return True
 
 
+def done_run(words, out, finished_only=False):
+    """`out`, run unless this program has made it of this scenario. None where the run failed or `finished_only` forbids
+    it."""
+    stale = stale_because(words, out)
+    return None if stale and (finished_only or not run_case(out.name, words, out)) else out
+
+
 def finished_case(name, words, out):
     """`out`, run unless this program has made it of this scenario."""
     if stale_because(words, out) and not run_case(name, words, out):
@@ -146,6 +153,15 @@ def value_of(value, path):
 def mean_of(value):
     """Of a figure that may have its error beside it."""
     return value["mean"] if isinstance(value, dict) else value
+
+
+def drawbar_row(summary, figures):
+    """Whether the pull is steady, its standard error, and figures {column: key}, those of columns *_mm in mm."""
+    row = {"steady": int(summary["drawbar_pull_N"]["steady"]), "sem_N": summary["drawbar_pull_N"]["sem"]}
+    for column, key in figures.items():
+        value = mean_of(summary[key])
+        row[column] = value * 1e3 if column.endswith("_mm") and value is not None else value
+    return row
 
 
 def columns(file):

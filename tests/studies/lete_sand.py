@@ -43,10 +43,7 @@ REGRESSIONS = ("wes_sand", "mason", "brixius_bias", "brixius_radial", "wismer_lu
 
 
 def row_of(summary, seed):
-    row = {"seed": seed, "steady": int(summary["drawbar_pull_N"]["steady"]), "sem_N": summary["drawbar_pull_N"]["sem"]}
-    for column, key in FIGURES.items():
-        value = driver.mean_of(summary[key])
-        row[column] = value * 1e3 if column.endswith("_mm") and value is not None else value
+    row = {"seed": seed, **driver.drawbar_row(summary, FIGURES)}
     for name in REGRESSIONS if summary.get("regressions") else ():
         of = summary["regressions"][name]
         row |= {f"{name}_gross_N": of["gross_N"], f"{name}_net_N": of["net_N"]}
@@ -82,10 +79,8 @@ def table(name, label, cases, seeds, finished, paired):
                 continue
             words = [RIG, *driver.settings(ALWAYS, changed, {"run.seed": seed})]
             out = driver.RESULTS / "lete_sand" / f"{label}_{case}_{seed}".replace(" ", "_").replace("/", "_")
-            stale = driver.stale_because(words, out)
-            if stale and (finished or not driver.run_case(out.name, words, out)):
-                continue
-            rows[case].append(row_of(driver.summary(out), seed))
+            if driver.done_run(words, out, finished):
+                rows[case].append(row_of(driver.summary(out), seed))
         kept = {case: mine for case, mine in rows.items() if mine}
         means = [{label: case, **pooled(mine)} for case, mine in kept.items()]
         if paired and "shipped" in kept:

@@ -79,14 +79,6 @@ def shear():
                 driver.write("report_law_shear.csv", rows, made)
 
 
-def row_of(summary):
-    row = {"steady": int(summary["drawbar_pull_N"]["steady"]), "sem_N": summary["drawbar_pull_N"]["sem"]}
-    for column, key in FIGURES.items():
-        value = driver.mean_of(summary[key])
-        row[column] = value * 1e3 if column.endswith("_mm") and value is not None else value
-    return row
-
-
 def slope(points):
     """Of a straight line through (x, y)."""
     n, x, y = len(points), sum(x for x, _ in points), sum(y for _, y in points)
@@ -97,8 +89,7 @@ def run_of(part, case, seed, finished, *changed):
     """The summary of a run of the rig; None where it has failed or must not run."""
     words = [RIG, *driver.settings(FAST, *changed, {"run.seed": seed})]
     out = driver.RESULTS / part / f"{case}_{seed}".replace(" ", "_").replace("/", "_")
-    stale = driver.stale_because(words, out)
-    return None if stale and (finished or not driver.run_case(out.name, words, out)) else driver.summary(out)
+    return driver.summary(out) if driver.done_run(words, out, finished) else None
 
 
 def rig(seeds, finished):
@@ -107,7 +98,8 @@ def rig(seeds, finished):
         for case, changed in CASES.items():
             if summary := run_of("report_law", case, seed, finished, LAW, changed):
                 rows.append({"case": case, "seed": seed, "slip": changed.get("rig.slip", 0.3),
-                             "cohesion_kPa": changed.get("terrain.cohesion", 80e3) / 1e3, **row_of(summary)})
+                             "cohesion_kPa": changed.get("terrain.cohesion", 80e3) / 1e3,
+                             **driver.drawbar_row(summary, FIGURES)})
                 driver.write("report_law.csv", rows, made)
     trends = (("Fig. 8: pull, N for each unit of slip", "slip ", "slip", "pull_N"),
               ("Fig. 16: tractive effort, N for each kPa", "cohesion ", "cohesion_kPa", "gross_N"),
@@ -135,7 +127,7 @@ def passes(seeds):
                               scenario=study)
             for run in provenance.read_table(out / "sweep.csv"):
                 rows.append({"case": case, "seed": seed, "pass": run["pass"],
-                             **row_of(driver.summary(out / run["folder"]))})
+                             **driver.drawbar_row(driver.summary(out / run["folder"]), FIGURES)})
             driver.write("report_law_passes.csv", rows, made)
 
 
@@ -146,7 +138,7 @@ def factors(seeds, finished):
             for slip in (0.3,) if "kPa" in case else (0.1, 0.7):
                 summary = run_of("report_law_factors", f"{case} {slip:g}", seed, finished, changed, {"rig.slip": slip})
                 if summary:
-                    rows.append({"case": case, "slip": slip, "seed": seed, **row_of(summary)})
+                    rows.append({"case": case, "slip": slip, "seed": seed, **driver.drawbar_row(summary, FIGURES)})
                     driver.write("report_law_factors.csv", rows, made)
 
 

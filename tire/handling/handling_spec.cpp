@@ -36,16 +36,10 @@ void require_inertia(const HandlingFile& file) {
 /// Whether a coefficient of the inflation pressure is not 0.
 bool feels_pressure(const handling::MagicFormula& t) {
   bool feels = false;
-  const auto look = [&](double value, const Field& field) {
+  handling::visit_coefficients(t, [&](double value, const Field& field) {
     const std::string_view name = field.name;
     feels |= value != 0.0 && (name.starts_with("PP") || name == "PFZ1" || name == "QSY8");
-  };
-  visit_fields(t.longitudinal, look);
-  visit_fields(t.overturning, look);
-  visit_fields(t.lateral, look);
-  visit_fields(t.rolling, look);
-  visit_fields(t.aligning, look);
-  visit_fields(t.vertical, look);
+  });
   return feels;
 }
 

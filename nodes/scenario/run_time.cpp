@@ -15,6 +15,7 @@
 #include "terrain/dem/beds/bed_preparation.hpp"
 #include "terrain/dem/beds/bed_settling.hpp"
 #include "terrain/dem/beds/bed_tiling.hpp"
+#include "terrain/dem/solver_setup.hpp"
 #include "terrain/liggghts/rank_cost.hpp"
 
 namespace furrow::scenario {
@@ -134,7 +135,8 @@ RunTime run_time(const Scenario& s, const MachineSpeed& machine) {
     const double settled = settling(o);
     t.bed_is_kept = settled == 0.0;
     t.bed = settled * kSettled * grain / std::clamp(o.settle_threads, 1, t.cores);
-    if (o.activity && !s.terrain->describe().core_per_rank) t.awake = awake_share(s, tires, o);
+    if (terrain::dem::solver_params(o).activity && !s.terrain->describe().core_per_rank)
+      t.awake = awake_share(s, tires, o);
     const GrainLoads loads = grain_loads(s);
     t.refined = loads.refined;
     const double steps = s.terrain_substeps * loads.parts;

@@ -196,7 +196,7 @@ double aligning(const Terms& t, const Pure& x, const Pure& y, double fx, const C
                     (1.0 + q.qbz4 * gamma + q.qbz5 * std::abs(gamma)) * stiffness;  // (4.E40)
   const double ct = q.qcz1;                                                         // (4.E41)
   const double dt = load * (q.qdz1 + q.qdz2 * t.dfz) * t.pressure(-q.ppz1, 0.0) *
-                    (1.0 + q.qdz3 * gamma + q.qdz4 * square(gamma)) * (t.radius / t.tire.vertical.fnomin) *
+                    (1.0 + q.qdz3 * gamma + q.qdz4 * square(gamma)) * (t.radius / t.nominal) *
                     l.ltr;  // (4.E42), (4.E43)
   const double et = std::min(
       1.0, (q.qez1 + q.qez2 * t.dfz + q.qez3 * square(t.dfz)) *
@@ -211,9 +211,8 @@ double aligning(const Terms& t, const Pure& x, const Pure& y, double fx, const C
   const double dr =
       load * ((q.qdz6 + q.qdz7 * t.dfz) * l.lres + by_camber * gamma * l.lkzc) * t.radius * l.lmuy;  // (4.E47)
   const double residual = dr * cos(atan(br * alpha_r)) * cos_alpha;                                  // (4.E75), C_r = 1
-  const double arm = t.radius *
-                     (q.ssz1 + q.ssz2 * side.force / t.tire.vertical.fnomin + (q.ssz3 + q.ssz4 * t.dfz) * gamma) *
-                     l.ls;                                                                               // (4.E76)
+  const double arm =
+      t.radius * (q.ssz1 + q.ssz2 * side.force / t.nominal + (q.ssz3 + q.ssz4 * t.dfz) * gamma) * l.ls;  // (4.E76)
   const double pulled = t.tire.version61 ? side.share * lateral(t, 0.0).force : side.force - side.lift;  // (4.E74)
   return -trail * pulled + residual + arm * fx;  // (4.E71), (4.E72)
 }

@@ -18,8 +18,6 @@
 //   - μ = (p_D1 + p_D2 df_z)(1 − p_D3 γ²);
 //   - M_x and M_y are linear in F_y, γ and F_x, of M_y (4.E70) with QSY3, QSY4 of the forward speed;
 //   - the trail's force is F_y − S_Vyκ with its camber, in place of that without.
-// In both versions D_t and the arm of F_x are in proportion to R_0/F_z0, as MF-Tyre computes them, and not to the
-// book's R_0/F'_z0: programs that follow the book have another M_z where LFZO is not 1.
 // PAC2002 [4] is 5.2 with the terms of dp_i = p/p_0 − 1, which are those of the book, and with QSX4 to QSX11 and QSY5
 // to QSY8; there M_y is in proportion to F_z (F_z/F_z0)^QSY7.
 //

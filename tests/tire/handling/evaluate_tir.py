@@ -142,7 +142,7 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     ar = with_slip(a + SHy + SVy / Ky)
     Bt = t.lky / t.lmuy * (t.qbz1 + t.qbz2 * df + t.qbz3 * df**2) * (1 + t.qbz4 * gz + t.qbz5 * abs(gz))
     Ct = t.qcz1
-    Dt = t.ltr * Fz * R0 / Fz0 * (t.qdz1 + t.qdz2 * df) * (1 + t.qdz3 * gz + t.qdz4 * gz**2) * (1 - t.ppz1 * dp)
+    Dt = t.ltr * Fz * R0 / Fz0s * (t.qdz1 + t.qdz2 * df) * (1 + t.qdz3 * gz + t.qdz4 * gz**2) * (1 - t.ppz1 * dp)
     Et = one(1, (t.qez1 + t.qez2 * df + t.qez3 * df**2)
              * (1 + (t.qez4 + t.qez5 * gz) * 2 / np.pi * np.arctan(Bt * Ct * at0)))
     trail = cosine(at, Bt, Ct, Dt, Et) * np.cos(alpha)
@@ -150,7 +150,7 @@ def evaluate(t, Fz, kappa, alpha, gamma, Vx):
     Dr = t.lmuy * R0 * Fz * (t.lres * (t.qdz6 + t.qdz7 * df) + t.lkzc * gz * (
         (t.qdz8 + t.qdz9 * df) * (1 + t.ppz2 * dp) + (t.qdz10 + t.qdz11 * df) * abs(gz)))
     Mzr = Dr * np.cos(alpha) / np.sqrt(1 + (Br * ar) ** 2)
-    arm = t.ls * R0 * (t.ssz1 + t.ssz2 * Fy / Fz0 + gz * (t.ssz3 + t.ssz4 * df))
+    arm = t.ls * R0 * (t.ssz1 + t.ssz2 * Fy / Fz0s + gz * (t.ssz3 + t.ssz4 * df))
     Mz = Mzr - trail * (np.maximum(Gy, 0) * sideways(0.0)[0] if later else Fy - SVk) + arm * Fx
 
     nz, ny = Fz / Fz0, Fy / Fz0

@@ -41,7 +41,7 @@ using terrain::dem::DemOptions;
 using terrain::soil::Measured, terrain::soil::SoilOptions, terrain::soil::SoilParameters, terrain::soil::SoilResults;
 
 constexpr double kDegree = std::numbers::pi / 180.0;  // rad
-/// Lower limit of the shear cell's K, in diameters of a grain; all soils of terrain/README.md are above it (0.5 to
+/// Lower limit of the shear cell's K, in diameters of a grain; all soils of scripts/docs/soils.md are above it (0.5 to
 /// 1.2).
 constexpr double kLeastK = 0.45;
 constexpr int kMostSeeds = 100;

@@ -34,7 +34,7 @@ void visit_fields(FieldsOf<ContactSums> auto& s, auto&& visit) {
 /// Energy of a terrain by its form, and its losses by mechanism, each integrated on its own: no entry is computed as
 /// the difference of others. In J, cumulative since the run began unless marked "now". The residual
 ///   residual = Δ stored() + losses() − surface_work − wall_work
-/// is the error of the step (terrain/README.md, Accounts).
+/// is the error of the step (scripts/docs/terrain_models.md, Accounts).
 struct TerrainEnergies {
   double kinetic = 0.0;             // ½ m v², now
   double rotational = 0.0;          // ½ I ω², now

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Contact properties that the file does not give, from the HMMWV tire file (see tire/README.md).
+/// Contact properties that the file does not give, from the HMMWV tire file (scripts/docs/tire_models.md).
 constexpr double kYoungModulus = 2.47e7;  // Pa
 constexpr double kPoissonRatio = 0.45;
 constexpr double kRestitution = 0.2;

@@ -13,7 +13,7 @@ namespace furrow {
 /// that it does not set stays "not a number", and the tire's rank refuses it and names it. With the works of the rim
 /// and of the terrain on the tire, the formulas leave the residual
 ///   residual = rim work + terrain work − Δ(kinetic + elastic + pressure + potential) − losses()
-/// (tire/README.md, Accounts).
+/// (scripts/docs/tire_models.md, Accounts).
 struct TireDiagnostics {
   static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   double kinetic_energy = kMissing;                // J, now

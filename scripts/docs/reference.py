@@ -271,7 +271,7 @@ def main():
                                 "[A new tire from a drawing](../tire/HOWTO.md) shows where the numbers come from.",
                                 Schema(root / "tire/data/tire.schema.json")),
         "vehicle_files": file_page("Vehicle files", "Every key of a vehicle file, made from its schema. "
-                                   "[Vehicles](../vehicle/README.md#vehicle-files) explains how the parts fit "
+                                   "[Vehicles](../vehicle_models.md#vehicle-files) explains how the parts fit "
                                    "together.",
                                    Schema(root / "vehicle/data/vehicle.schema.json")),
     }

@@ -5,9 +5,9 @@ method. Writes planar_paper.csv beside this script.
 usage: planar_paper.py [curb] [car]
 
 curb  rigs/curb.json beside the standalone wheel with the same masses (tests/tire/verification/planar_curb.csv). The
-      elastic disc has half of the mass of 150 kg, and the viscosity that a moving rim needs (tire/README.md); the
-      rim has the other half. off_the_standalone is the rms difference of the centre's height from 1.2 m before the
-      edge to 2 m behind it, over the curb's height.
+      elastic disc has half of the mass of 150 kg, and the viscosity that a moving rim needs
+      (scripts/docs/tire_models.md); the rim has the other half. off_the_standalone is the rms difference of the
+      centre's height from 1.2 m before the edge to 2 m behind it, over the curb's height.
 car   the HMMWV on the planar tires of cleat_roll.py, let down on level ground, driven off at 1 s, coasting from
       2.5 s: means over the last second beside the weight of vehicle and tires, and the front axle's load at rest.
 """

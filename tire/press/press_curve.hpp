@@ -1,7 +1,7 @@
 // The force of an inflated tire at rest on flat ground against its deflection, for a vehicle at rest.
 //
 // Pressing takes seconds, so the curve is kept in the user's cache (press/) for each tire file and each set of a
-// scenario's changes. It is as exact as the mesh: see README.md, "Static pressing".
+// scenario's changes. It is as exact as the mesh: see scripts/docs/tire_models.md, "Static pressing".
 #pragma once
 
 #include <optional>

@@ -11,8 +11,8 @@ namespace furrow::output {
 namespace {
 
 // Bounds: the energy residual as a share of the turnover, plus the error of sampled losses in standard errors; the
-// residual of momentum as a share of the largest impulse, plus the estimated impulse on sleeping grains (README.md,
-// Accounts).
+// residual of momentum as a share of the largest impulse, plus the estimated impulse on sleeping grains
+// (scripts/docs/results.md, Accounts).
 constexpr double kEnergyShare = 0.03, kSampleErrors = 3.0;
 constexpr double kMomentumShare = 1e-6;
 

@@ -1,6 +1,6 @@
 // Momentum and energy of a whole run: what each part has, received and lost, each from its own state, impulses and
 // mechanisms. No entry is the difference of others, so a residual reveals a wrong entry. Signs, mechanisms and bounds:
-// nodes/output/README.md, Accounts.
+// scripts/docs/results.md, Accounts.
 #pragma once
 
 #include <span>

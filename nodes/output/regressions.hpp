@@ -1,7 +1,7 @@
 // Traction of a wheel by published regressions, from the soil's cone index, to compare with a run's results.
 //
 // W load, b overall width, d diameter, h section height, δ deflection, CI cone index, s slip from the regression's own
-// zero. Sources of each regression and their reliability: nodes/output/README.md, "Regressions".
+// zero. Sources of each regression and their reliability: scripts/docs/results.md, "Regressions".
 //   [Brixius 1987]   Traction prediction equations for bias ply tires, ASAE Paper 87-1622
 //   [Al-Hamed 1994]  Al-Hamed, Grisso, Zoz, Von Bargen: Tractor performance spreadsheet for radial tires, Computers and
 //                    Electronics in Agriculture 10

@@ -100,7 +100,7 @@ class Schema:
 def section_pages(schema):
     """The page of scenario keys: one table for every section."""
     text = ("# Scenario keys\n\nEvery key of a scenario, made from its schema. SI units, angles in radians. `furrow "
-            "explain KEY` prints the same. [Writing a scenario](../rigs/README.md#writing-one) explains how the "
+            "explain KEY` prints the same. [Writing a scenario](../scenarios.md) explains how the "
             "sections fit together.\n")
     plain = []
     for name, entry in schema.content["properties"].items():
@@ -183,7 +183,7 @@ def without_unit(text, unit):
 
 def columns_page(root):
     text = ("# Result columns\n\nThe columns of the time series, made from the lists of fields in the sources. "
-            "`results.h5` holds the same tables. [Signs](../rigs/README.md#signs) defines axes and signs; `columns` of "
+            "`results.h5` holds the same tables. [Signs](../results.md#signs) defines axes and signs; `columns` of "
             "`summary.json` has the mean of every column over the averaging window, or the last value of a sum.\n")
     for path, struct, heading, where in TABLES:
         rows = [[code(name), cell(unit), kind, cell(without_unit(meaning, unit))]
@@ -247,8 +247,7 @@ tire_files
 vehicle_files
 ```
 
-See also [the files of a run](../rigs/README.md#running), [accounts and errors](../nodes/output/README.md) and
-[study files](../nodes/study/README.md).
+See also [the files of a run, accounts and errors](../results.md) and [study files](../nodes/study/README.md).
 """
 
 

@@ -51,7 +51,7 @@ class Package(SystemTest):
         self.assertFalse((usr / "include").exists(), "the libraries are no part of it")
         self.assertEqual(list(usr.rglob("libfurrow_liggghts*")), [],
                          "what links LIGGGHTS is under the GPL and a component of its own")
-        for name in ("furrow/rigs/README.md", "furrow/nodes/output/README.md",
+        for name in ("furrow/rigs/README.md", "furrow/scripts/docs/results.md",
                      "furrow/GLOSSARY.md", "man/man1/furrow.1", "bash-completion/completions/furrow",
                      "furrow/scripts/python/furrow/page/bundle/LICENSES.txt"):
             self.assertTrue((usr / "share" / name).is_file(), name)

@@ -183,7 +183,7 @@ def regressions_table(run):
     return [{"type": "fold", "title": "Published regressions of traction at this cone index", "blocks": [
         blocks.table(["regression", "gross, N", "resistance, N", "net, N", ""], rows,
                      note=f"At a cone index of {digits(1e-3 * found['cone_index_Pa'])} kPa. Formulas, sources and "
-                          "ranges: nodes/output/README.md, \"Regressions\".")]}]
+                          "ranges: scripts/docs/results.md, \"Regressions\".")]}]
 
 
 def expected_table(run):

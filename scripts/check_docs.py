@@ -11,9 +11,10 @@ of CONTRIBUTING.md at most five; what a step names in parentheses is to be read,
 A commit that a page or a table names is in the history, where the checkout has all of it. What is taken for one: words
 of seven or eight hexadecimal digits, both letters and numbers among them.
 
-The lists of shipped scenarios, studies and calibrations leave out none. Every CSV file under tests/, every JSON file of
-results under tests/studies, tests/benchmarks and tests/peers, and what a soil file says was measured, names commit,
-compiler, processor and command of its making (tests/studies/provenance.py), and some page names the file.
+The gallery leaves out none of the shipped scenarios, studies and calibrations. Every CSV file under tests/,
+every JSON file of results under tests/studies, tests/benchmarks and tests/peers, and what a soil file says was
+measured, names commit, compiler, processor and command of its making (tests/studies/provenance.py), and some page names
+the file.
 
 usage: scripts/check_docs.py [--root FOLDER] [PAGE ...]
 Prints every mistake as PAGE:LINE and exits with 1 if there is one. Without arguments it reads all pages.
@@ -37,7 +38,7 @@ TOP = {"nodes", "protocol", "tire", "terrain", "vehicle", "rigs", "tests", "scri
 PATH = re.compile(r"([\w.<>*{},-]+(?:/[\w.<>*{},-]+)+/?)(?::(\d+))?$")
 SOURCE = r"[\w-]+(?:/[\w-]+)*\.(?:cpp|hpp|py|sh)"
 GENERATED = {"cpu_features.hpp"}  # while the program is built
-LISTS = ("rigs/README.md", "scripts/docs/gallery.md")  # of all that rigs/ ships
+LISTS = ("scripts/docs/gallery.md",)  # of all that rigs/ ships
 HEADLINE = "rigs/drawbar_pull_small.json"
 STATED = (("drawbar_pull", 1.0, "N"), ("sinkage", 1e3, "mm"), ("rut_depth", 1e3, "mm"))  # keys of its `expected`
 

@@ -164,10 +164,11 @@ class Docs(Check):
                                 "tests/a.csv:1: names commit 1a2b3c4d, which is not in the history",
                                 "tests/a.csv:1: names commit 1a2b3c4e, which is not in the history"])
 
-    def test_shipped_scenarios_that_the_lists_leave_out(self):
+    def test_shipped_scenarios_that_the_gallery_leaves_out(self):
         files = {"rigs__a_dot_json": "{}", "rigs__scenario_dot_schema_dot_json": "{}"}
-        self.assertEqual(self.told(rigs__README_dot_md="`a.json`", **files), "")
-        self.assertIn("rigs/README.md:1: does not list rigs/a.json", self.told(rigs__README_dot_md="a page", **files))
+        self.assertEqual(self.told(scripts__docs__gallery_dot_md="`a.json`", **files), "")
+        self.assertIn("scripts/docs/gallery.md:1: does not list rigs/a.json",
+                      self.told(scripts__docs__gallery_dot_md="a page", **files))
 
 
 class Prose(Check):

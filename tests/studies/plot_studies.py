@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Charts of the studies' CSV files, beside them: rigid_ground.png, budget.png, lete_sand.png."""
+"""Charts of the studies' CSV files, beside them: rigid_ground.png, budget.png, lete_sand.png, report_law.png."""
 import re
 
 import driver
@@ -88,7 +88,47 @@ def lete_sand():
     driver.save(figure, "lete_sand", 110)
 
 
-CHARTS = {"rigid_ground": rigid_ground, "budget": budget, "lete_sand": lete_sand}
+def report_law():
+    """Figs 8, 13, 14 to 16 and 20 of the 2016 report with its own contact law on the small rig; 95 % over beds. Open:
+    not all beds are steady."""
+    def table(name):
+        return provenance.read_table(driver.HERE / f"report_law{name}.csv")
+
+    def points(axes, rows, x, y, label, **look):
+        places = sorted({float(row[x]) for row in rows})
+        means = [driver.over_beds([float(row[y]) for row in rows if float(row[x]) == place]) for place in places]
+        steady = all(int(row["steady"]) for row in rows)
+        axes.errorbar(places, [mean for mean, _ in means], [half for _, half in means], marker="o", capsize=3,
+                      label=label, mfc=None if steady else "white", **look)
+
+    rows = table("")
+    figure, panels = driver.subplots(1, 4, figsize=(13, 3.6), layout="constrained")
+    slips = [row for row in rows if row["case"].startswith("slip") and float(row["slip"]) < 1.0]
+    points(panels[0], slips, "slip", "pull_N", None)
+    driver.label(panels[0], "slip", "drawbar pull, N", "Fig. 8", 0)
+    at_slip = [row for row in rows if row["case"].startswith("cohesion") or row["case"] == "slip 0.3"]
+    for name, label in (("gross_N", "tractive effort"), ("resistance_N", "resistance"), ("pull_N", "net force")):
+        points(panels[1], at_slip, "cohesion_kPa", name, label)
+    driver.label(panels[1], "cohesion, kPa", "force, N", "Figs 14 to 16, slip 0.3")
+    over_time = table("_resistance")
+    for name in over_time[0]:
+        if name.startswith("resistance_"):
+            panels[2].plot([float(row["time_s"]) for row in over_time], [float(row[name]) for row in over_time],
+                           label=name.split("_")[1] + " kPa")
+    driver.label(panels[2], "time, s", "resistance, N", "Fig. 13, slip 0.3")
+    passes = [row for row in table("_passes") if row["case"] == "cohesion 80 kPa"]
+    points(panels[3], passes, "pass", "pull_N", "drawbar pull", color="C0")
+    sinkage = panels[3].twinx()
+    points(sinkage, passes, "pass", "sinkage_mm", "sinkage", color="C1")
+    sinkage.set(ylim=(0, None))
+    sinkage.set_ylabel("sinkage, mm", color="C1")
+    panels[3].set(xticks=(1, 2, 3), ylim=(0, None))
+    driver.label(panels[3], "pass", "drawbar pull, N", "Fig. 20, slip 0.3", 0)
+    panels[3].yaxis.label.set_color("C0")
+    driver.save(figure, "report_law", 100)
+
+
+CHARTS = {"rigid_ground": rigid_ground, "budget": budget, "lete_sand": lete_sand, "report_law": report_law}
 
 
 def main():

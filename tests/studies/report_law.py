@@ -5,7 +5,8 @@ usage: report_law.py [shear] [rig] [passes] [factors] [--seeds 1 2 …] [--finis
 
 `shear`: direct shear at 0.05 to 4 m/s with the report's law at three steps, and with `mindlin`, three beds each;
 writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the report's rim speed of 4 m/s on a bed of
-6 m over slip and cohesion; writes report_law.csv, a row for each bed, and report_law_slopes.csv. `passes`: three passes
+6 m over slip and cohesion; writes report_law.csv, a row for each bed, report_law_slopes.csv, and
+report_law_resistance.csv, the resistance against time at four cohesions (Fig. 13). `passes`: three passes
 in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig. 8, one change at a time from the rig's
 runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. Its small steps run on the first bed alone.
 
@@ -40,6 +41,8 @@ SMALL_STEPS = {f"step {step * 1e6:g} µs": LAW | {"run.step": step} for step in 
     "step 6 µs, 100 kPa": LAW | {"run.step": 6e-6, "terrain.cohesion": 100e3}}
 FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
            "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m"}
+OVER_TIME = {40: "cohesion 40 kPa", 60: "cohesion 60 kPa", 80: "slip 0.3", 100: "cohesion 100 kPa"}  # kPa: case
+MEAN = 0.05  # s, of a point over time
 # law, settings, step (s), cohesions (Pa), speeds (m/s)
 SHEAR = (("hertz_tanh", LAW, 60e-6, (40e3, 80e3), (0.05, 0.2, 1.0, 4.0)),
          ("hertz_tanh", LAW, 20e-6, (80e3,), (0.2, 1.0, 4.0)),
@@ -115,6 +118,27 @@ def rig(seeds, finished):
         mean, half = driver.over_beds(values)
         slopes.append({"trend": trend, "beds": len(values), "points": most, "slope": mean, "half_of_95_%": half})
     driver.write("report_law_slopes.csv", slopes, made)
+    resistance(seeds, finished, made)
+
+
+def resistance(seeds, finished, made):
+    """Means of MEAN seconds over beds: touch-down, and whether the end is steady."""
+    import numpy
+    rows = {}
+    for kpa, case in OVER_TIME.items():
+        of_bed = []
+        for seed in seeds:
+            folder = driver.RESULTS / "report_law" / f"{case}_{seed}".replace(" ", "_")
+            if run_of("report_law", case, seed, finished, LAW, CASES[case]):
+                series = driver.series(folder)
+                place = (series["time_s"] / MEAN).astype(int)
+                of_bed.append([series["terrain_resistance_N"][place == k].mean() for k in range(place[-1])])
+        for k, values in enumerate(zip(*of_bed)):
+            mean, half = driver.over_beds([float(value) for value in values])
+            rows.setdefault(k, {"time_s": (k + 0.5) * MEAN}).update(
+                {f"resistance_{kpa}_kPa_N": mean, f"half_{kpa}_kPa_N": half})
+    if rows:
+        driver.write("report_law_resistance.csv", rows.values(), made)
 
 
 def passes(seeds):

@@ -196,12 +196,14 @@ Resorted Strips::rebuild(Grains& grains, int from, int to, int threads) {
     find_parts(strips_[s]);
   }
   const std::span<const Strip> old(old_.data(), lists);
-  if (options_.single) {
-    carry_history<float>(old, lists_from, range, threads);
-  } else {
-    carry_history<double>(old, lists_from, range, threads);
+  if (options_.history) {
+    if (options_.single) {
+      carry_history<float>(old, lists_from, range, threads);
+    } else {
+      carry_history<double>(old, lists_from, range, threads);
+    }
+    carry_walls(old, lists_from, range);
   }
-  carry_walls(old, lists_from, range);
   mark_stale(old, lists_from, range);
   resorted_ += static_cast<std::int64_t>(range.order.size());
   return range;

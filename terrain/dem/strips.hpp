@@ -59,9 +59,10 @@ struct Strip {
   std::int32_t pairs = 0;
   // Per pair, kQuad times the grain counted from `first`; j may continue into the next strip.
   std::vector<std::uint32_t> i, j;
-  std::vector<std::uint8_t> touching;  // bit p % 8 of entry p / 8: pair p touched in the last step
-  PairHistory<float> single;           // used with precision mixed
-  PairHistory<double> full;            // used with precision double
+  // Bit p % 8 of entry p / 8: pair p touched in the last step. Without history it is lost when the list is made again.
+  std::vector<std::uint8_t> touching;
+  PairHistory<float> single;  // used with precision mixed
+  PairHistory<double> full;   // used with precision double
   std::vector<WallContact> walls;
   double travel = 0.0;                           // bound on the displacement of its grains since it was sorted, m
   double x_min = 0.0, x_max = 0.0, z_max = 0.0;  // of the centres when sorted, m

@@ -86,7 +86,7 @@ void Strips::carry_history(std::span<const Strip> old, int old_from, const Resor
       if (!found.strip) continue;
       strip.touching[p / kFloatLanes] |= static_cast<std::uint8_t>(1 << p % kFloatLanes);
       const PairHistory<Real>& then = found.strip->template history<Real>();
-      if (options_.history) now.tangential[p] = turned(then.tangential[found.pair], found.reversed);
+      now.tangential[p] = turned(then.tangential[found.pair], found.reversed);
       if (!now.rolling.empty()) now.rolling[p] = turned(then.rolling[found.pair], found.reversed);
     }
   }

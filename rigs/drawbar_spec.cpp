@@ -81,12 +81,28 @@ class DrawbarSpec final : public RigSpec {
   }
 
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
-    const DrawbarRigOptions& rig = places_.front().rig;
-    if (rig.mode != "fixed_angular_speed" || rig.speed == DrawbarRigOptions().speed) return {};
-    return {{context_.key("speed"),
-             fmt::format("is {} m/s and is not used in mode fixed_angular_speed, where the carriage moves at "
-                         "angular_speed · R · (1 − slip): another rig.mode?",
-                         number_text(rig.speed))}};
+    const DrawbarRigOptions usual;
+    const std::string& mode = places_.front().rig.mode;
+    const bool free = mode == "free_rolling";  // a study may state slip 0 for it
+    std::vector<std::pair<std::string, std::string>> odd;
+    const auto unused = [&](const char* key, const char* unit, double DrawbarRigOptions::*value, const char* what) {
+      const auto stated = [&](double given) { return given != usual.*value && !(free && given == 0.0); };
+      std::size_t k = 0;
+      while (k < places_.size() && !stated(places_[k].rig.*value)) ++k;
+      if (k == places_.size()) return;
+      odd.emplace_back(context_.key((same(value) ? "" : wheel_key(k)) + key),
+                       fmt::format("is {}{} and is not used in mode {}, where {}: another rig.mode?",
+                                   number_text(places_[k].rig.*value), unit, mode, what));
+    };
+    const char* const moves = "the carriage moves at angular_speed · R · (1 − slip)";
+    const char* const turns = "the wheel turns at speed / (R · (1 − slip))";
+    const char* const rolls = "the carriage moves at speed and the ground turns the wheel";
+    if (free) unused("slip", "", &DrawbarRigOptions::slip, rolls);
+    if (mode == "fixed_angular_speed")
+      unused("speed", " m/s", &DrawbarRigOptions::speed, moves);
+    else
+      unused("angular_speed", " rad/s", &DrawbarRigOptions::angular_speed, free ? rolls : turns);
+    return odd;
   }
 
   void fill_starts(std::span<const WheelSize> tires, double duration, std::optional<double> length,
@@ -145,8 +161,12 @@ class DrawbarSpec final : public RigSpec {
 
   void fill(json& section, const char* key, double DrawbarRigOptions::*value) const {
     const double first = places_.front().rig.*value;
-    const auto same = [&](const Place& place) { return place.rig.*value == first; };
-    if (first >= 0.0 && std::all_of(places_.begin(), places_.end(), same)) section[key] = first;
+    if (first >= 0.0 && same(value)) section[key] = first;
+  }
+
+  bool same(double DrawbarRigOptions::*value) const {
+    const double first = places_.front().rig.*value;
+    return std::ranges::all_of(places_, [&](const Place& place) { return place.rig.*value == first; });
   }
 
   /// Prefix of the keys of wheel k within the section.

@@ -65,6 +65,26 @@ TEST(Rigs, full_slip_at_an_imposed_speed_is_refused_with_its_key) {
             "test.json: key 'rig.wheels.1.slip': is 1");
 }
 
+TEST(Rigs, keys_that_a_mode_does_not_use_are_warned_of) {
+  const auto warnings = [](const json& section) {
+    std::string all;
+    for (const auto& [key, what] : rigs::read_rig(section, kContext)->unlikely_values()) all += key + " " + what + "\n";
+    return all;
+  };
+  EXPECT_EQ(warnings({{"mode", "fixed_speed"}, {"slip", 0.1}, {"speed", 2.0}}), "");
+  EXPECT_EQ(warnings({{"mode", "fixed_angular_speed"}, {"slip", 0.1}, {"angular_speed", 2.0}}), "");
+  EXPECT_EQ(warnings({{"mode", "free_rolling"}, {"slip", 0.0}, {"speed", 2.0}}), "");
+  EXPECT_TRUE(
+      holds(warnings({{"mode", "fixed_speed"}, {"angular_speed", 2.0}}),
+            "rig.angular_speed is 2 rad/s and is not used in mode fixed_speed, where the wheel turns at speed"));
+  const std::string rolling = warnings({{"mode", "free_rolling"}, {"slip", 0.1}, {"angular_speed", 2.0}});
+  EXPECT_TRUE(
+      holds(rolling, "rig.slip is 0.1 and is not used in mode free_rolling, where the carriage moves at speed"));
+  EXPECT_TRUE(holds(rolling, "rig.angular_speed is 2 rad/s and is not used in mode free_rolling"));
+  EXPECT_TRUE(holds(warnings({{"mode", "free_rolling"}, {"wheels", {{{"lateral", 0.4}}, {{"slip", 0.2}}}}}),
+                    "rig.wheels.1.slip is 0.2 and is not used"));
+}
+
 TEST(Rigs, entries_of_wheels_take_from_the_rig_what_they_leave_out) {
   const auto rig =
       mounted_rig({{"slip", 0.1},

@@ -99,7 +99,12 @@ std::vector<vehicle::StandingTire> standing_tires(const vehicle::VehicleSpec& sp
                                                   const ProgressCall& progress) {
   FURROW_ASSERT(tires.size() == 2 * spec.axles.size(), tires.size(), spec.axles.size());
   double mass = vehicle::mass_without_tires(spec);
-  for (const auto& tire : tires) mass += tire->describe().mass.mass;
+  std::vector<double> radii;
+  for (const auto& tire : tires) {
+    mass += tire->describe().mass.mass;
+    radii.push_back(tire->describe().radius);
+  }
+  vehicle::check_height(spec, radii);
   const double load = kMore * mass * kStandardGravity / static_cast<double>(tires.size());
   for (const auto& tire : tires)
     vehicle::check_load(spec, mass, tire->options().file.filename().string(), tire::hopeless_load(tire->describe()));

@@ -189,6 +189,7 @@ void VehicleRigSpec::mount(std::span<const MountedTire> tires) {
     plan_.tire_width = std::max(plan_.tire_width, tire.width);
   }
   attempt([&] {
+    vehicle::check_height(plan_.vehicle, radii);
     vehicle::Vehicle car(plan_.vehicle, plan_.gravity);
     for (std::size_t k = 0; k < tires.size(); ++k)
       car.add_tire_mass(static_cast<int>(k), {tires[k].mass, Mat3::Zero()});

@@ -26,6 +26,7 @@ WRONG = {
         ("axles[0].wheel.tire", "… loose_sand.json", "… loose_sand.json"),
         ("driveline.wheels[3]", ..., "… key 'driveline.differentials[2].outputs': 'rear right' drives nothing, "
          "expected a shaft that a wheel, a gear or a differential"),
+        ("chassis.center_of_mass", [0.1, 0, -0.7], "has z = -0.7 m, expected a place above the ground"),
         ("name", 3, "is 3, expected a text"),
         ("chassis.mass", "heavy", "is 'heavy', expected a number"),
         ("name", "", "is empty, expected a name"),

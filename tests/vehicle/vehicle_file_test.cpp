@@ -8,6 +8,7 @@
 #include "tests/vehicle/schema_check.hpp"
 #include "tests/vehicle/shipped.hpp"
 #include "vehicle/analysis/vehicle_page.hpp"
+#include "vehicle/spec/part_magnitudes.hpp"
 #include "vehicle/spec/read_vehicle.hpp"
 #include "vehicle/spec/vehicle_magnitudes.hpp"
 
@@ -326,6 +327,16 @@ TEST(VehicleFile, parts_that_are_hardly_meant_are_named_with_what_they_would_do)
   const auto odd = vehicle::unlikely_values(spec, vehicle::mass_without_tires(spec));
   ASSERT_EQ(odd.size(), 1U);
   EXPECT_EQ(odd[0].first, "axles[0].right.brake.torque");
+}
+
+TEST(VehicleFile, a_chassis_whose_centre_of_mass_lies_below_the_ground_is_refused) {
+  vehicle::VehicleSpec spec = shipped("hmmwv.json");
+  const std::vector<double> radii(4, 0.4673);
+  vehicle::check_height(spec, radii);
+  spec.chassis.center_of_mass.z() = -0.7;
+  expect_refused(ExitCode::bad_input,
+                 {"key 'chassis.center_of_mass': has z = -0.7 m, expected a place above the ground"},
+                 [&] { vehicle::check_height(spec, radii); });
 }
 
 TEST(VehicleFile, a_clutch_beside_the_converter_is_named) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -191,6 +192,19 @@ void check_load(const VehicleSpec& spec, double mass, const std::string& tire, d
       fmt::format("is {} kg: on {} wheels each tire would carry {:.3g} N, and no tire of the size of '{}' carries "
                   "{:.3g} N; expected a body of less than about {:.2g} kg",
                   number_text(body), wheels, load, tire, most, body * most / load));
+}
+
+void check_height(const VehicleSpec& spec, std::span<const double> radii) {
+  FURROW_ASSERT(radii.size() == 2 * spec.axles.size(), radii.size(), spec.axles.size());
+  double ground = std::numeric_limits<double>::infinity();  // the deepest of the tires, in the vehicle's frame, m
+  for (std::size_t k = 0; k < radii.size(); ++k)
+    ground = std::min(ground, spindle_of(spec.axles[k / 2].corners[k % 2].suspension).center.z() - radii[k]);
+  const double height = spec.chassis.center_of_mass.z();
+  if (!(height > ground))
+    throw input_error(spec.file, "chassis.center_of_mass",
+                      fmt::format("has z = {} m, expected a place above the ground, which is at z = {} m under the "
+                                  "drawn wheels: z points up",
+                                  number_text(height), digits(ground)));
 }
 
 Oddities unlikely_parts(const VehicleSpec& spec, double mass) {

@@ -2,6 +2,7 @@
 // Each is compared with the mass and the size of the whole vehicle.
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,11 @@ std::pair<std::string, double> heaviest_body(const VehicleSpec& spec);
 /// @param mass of the whole vehicle, kg @param most load that the tire cannot carry, N
 /// @throws Error(bad_input)
 void check_load(const VehicleSpec& spec, double mass, const std::string& tire, double most);
+
+/// Refuses a chassis whose centre of mass is not above the ground on which the tires stand.
+/// @param radii of the tires, m
+/// @throws Error(bad_input)
+void check_height(const VehicleSpec& spec, std::span<const double> radii);
 
 /// Largest distance between the centres of two wheels, m.
 double size_of(const VehicleSpec& spec);

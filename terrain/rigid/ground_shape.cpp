@@ -28,6 +28,18 @@ UnevenPart GroundShape::uneven() const {
   return part;
 }
 
+std::string GroundShape::range() const {
+  if (map) {
+    const auto [low, high] = std::ranges::minmax(map->z);
+    return fmt::format(", heights from {:.4g} to {:.4g} m over {:.5g} m by {:.4g} m", low, high,
+                       map->x.back() - map->x.front(), map->y.back() - map->y.front());
+  }
+  if (profile.empty()) return "";
+  const auto [low, high] = std::ranges::minmax(profile, {}, [](const auto& point) { return point[1]; });
+  return fmt::format(", heights from {:.4g} to {:.4g} m over {:.5g} m", low[1], high[1],
+                     profile.back()[0] - profile.front()[0]);
+}
+
 std::vector<std::pair<std::string, std::string>> GroundShape::remarks() const {
   std::vector<std::pair<std::string, std::string>> found;
   if (map && map->turn > kStraight)

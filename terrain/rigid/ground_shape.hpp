@@ -22,6 +22,8 @@ struct GroundShape {
 
   bool given() const { return map || !profile.empty(); }
   UnevenPart uneven() const;
+  /// For people: ", heights from -0.02 to 0.05 m over 120 m"; empty where none is given. Looks at every height.
+  std::string range() const;
   /// What of a file is not as it says, or not likely, for TerrainDescription. Looks at every height.
   std::vector<std::pair<std::string, std::string>> remarks() const;
   /// Empty where none is given.

@@ -44,7 +44,7 @@ class GroundSpec final : public TerrainSpec {
     d.remarks = options_.remarks;
     return d;
   }
-  TerrainEstimate estimate(const TerrainContext&) const override {
+  TerrainEstimate estimate(const TerrainContext& context) const override {
     TerrainEstimate e;
     e.text = !options_.road_class.empty() ? fmt::format("rigid road of class {} (ISO 8608), {:g} m long",
                                                         options_.road_class, options_.road_length)
@@ -52,6 +52,7 @@ class GroundSpec final : public TerrainSpec {
                  ? fmt::format("rigid height map of {} by {} nodes", options_.map->x.size(), options_.map->y.size())
              : options_.profile.empty() ? "rigid plane z = 0"
                                         : fmt::format("rigid profile of {} points", options_.profile.size());
+    e.text += GroundShape{profile(context), options_.map}.range();
     e.stable_reason = "no grains";
     return e;
   }

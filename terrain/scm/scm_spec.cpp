@@ -76,7 +76,8 @@ class ScmSpec final : public TerrainSpec {
     check_scm_options(options_);
     const auto nodes = static_cast<double>(scm_nodes(options_));
     TerrainEstimate e;
-    e.text = fmt::format("grid of {:.0f} nodes, {:g} mm apart", nodes, 1e3 * options_.grid_spacing);
+    e.text =
+        fmt::format("grid of {:.0f} nodes, {:g} mm apart", nodes, 1e3 * options_.grid_spacing) + options_.shape.range();
     e.stable_reason = "no grains";
     e.memory_bytes = (kMemoryPerNode + (options_.shape.given() ? sizeof(double) : 0)) * nodes;
     e.frame_bytes = kFrameBytes * nodes;

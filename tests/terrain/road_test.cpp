@@ -186,6 +186,14 @@ TEST_F(RoadFile, a_reference_line_that_turns_is_laid_straight_and_said_to_turn) 
   EXPECT_TRUE(read_shape(road("$ROAD_CRG_MODS\nSCALE_CURVATURE = 0\n$\n"), {}, true).remarks().empty());
 }
 
+TEST_F(RoadFile, heights_and_lengths_are_printed) {
+  EXPECT_EQ(GroundShape().range(), "");
+  EXPECT_EQ(read_shape(put("road.csv", "x_m,z_m\n1,0\n2,0.25\n21,-0.5\n"), {}, true).range(),
+            ", heights from -0.5 to 0.25 m over 20 m");
+  const GroundShape map = read_shape(put("road.csv", "x_m,y_m,z_m\n0,0,0\n0,1,0\n3,0,0\n3,1,0.5\n"), {}, true);
+  EXPECT_EQ(map.range(), ", heights from 0 to 0.5 m over 3 m by 1 m");
+}
+
 TEST_F(RoadFile, heights_in_millimetres_are_said_to_step) {
   const auto told = [&](const std::string& rows) {
     const auto remarks = read_shape(put("road.csv", rows), {}, true).remarks();

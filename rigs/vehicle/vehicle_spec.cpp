@@ -131,6 +131,7 @@ class VehicleRigSpec final : public RigSpec {
   double mass_ = 0.0;                                       // without tires, kg
   std::vector<std::pair<std::string, std::string>> stops_;  // stops on which springs rest
   std::optional<double> length_;                            // of the bin, m
+  double duration_ = 0.0;                                   // of the run, s
   vehicle::DriverCar driven_;                               // the driver's data of the vehicle, if there is a driver
 };
 
@@ -301,6 +302,9 @@ std::vector<std::pair<std::string, std::string>> VehicleRigSpec::unlikely_values
                      fmt::format("is missing, and so the brakes hold the vehicle, but {} has no brakes: it may "
                                  "roll",
                                  plan_.vehicle.name));
+  if (plan_.driver)
+    for (const auto& [key, what] : vehicle::unlikely_values(*plan_.driver, duration_))
+      odd.emplace_back(context_.key("driver"), fmt::format("its key '{}': {}", key, what));
   if (plan_.driver && plan_.driver->path)
     for (const std::string& what : oddities_of_path()) odd.emplace_back(context_.key("driver"), what);
   return odd;
@@ -343,6 +347,7 @@ void VehicleRigSpec::fill_starts(std::span<const WheelSize> tires, double durati
                                  std::span<const double> margins) {
   FURROW_ASSERT(margins.size() == wheels_.size(), margins.size(), wheels_.size());
   length_ = length;
+  duration_ = duration;
   if (start_given || !length) return;
   const bool forward = std::cos(plan_.options.heading) >= 0.0;
   double start = forward ? 0.0 : *length;

@@ -308,6 +308,15 @@ TEST(VehicleScenario, pedals_and_steering_without_effect_are_refused) {
             "steering");
 }
 
+TEST(VehicleScenario, times_of_a_driver_in_milliseconds_are_warned_of) {
+  json document = hmmwv();
+  document["rig"]["driver"] = {{"inputs", {{"throttle", {{0, 0}, {5000, 1}}}}}};
+  const scenario::Scenario s = load(document, {{"tire.rigid", "true"}});
+  EXPECT_TRUE(std::ranges::any_of(s.warnings, [](const std::string& text) {
+    return text.find("key 'rig.driver': its key 'inputs.throttle': 5000 s is unusually large") != std::string::npos;
+  }));
+}
+
 /// Such paths are followed as well as possible, which is rarely intended.
 TEST(VehicleScenario, paths_that_the_vehicle_cannot_follow_are_warned_of) {
   const auto warning = [](const json& path) {

@@ -12,6 +12,7 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_text.hpp"
 #include "protocol/files/key_schema.hpp"
+#include "protocol/files/nearest_words.hpp"
 #include "vehicle/driver/driver.hpp"
 #include "vehicle/driver/read_points.hpp"
 #include "vehicle/spec/spec_reader.hpp"
@@ -24,8 +25,11 @@ void check_spec(const PathSteeringSpec&, const JsonReader&) {}
 namespace {
 
 constexpr int kFormatVersion = 1;
-constexpr double kLeastSpacing = 1e-3;   // of waypoints, m
-constexpr double kSharpestTurn = 120.0;  // at a waypoint, degrees
+constexpr double kShortDrive = 0.02, kLongDrive = 300.0,
+                 kMostRuns = 100.0;           // usual last times of a table: s, s, durations of the run
+constexpr double kSlow = 0.01, kFast = 40.0;  // usual largest speeds, m/s
+constexpr double kLeastSpacing = 1e-3;        // of waypoints, m
+constexpr double kSharpestTurn = 120.0;       // at a waypoint, degrees
 
 constexpr PointRule kThrottle{"time_s", "throttle", 0.0, 1.0, "a number from 0 to 1"};
 constexpr PointRule kBrake{"time_s", "brake", 0.0, 1.0, "a number from 0 to 1"};
@@ -206,6 +210,24 @@ DriverSpec read_driver(const nlohmann::json& document, const std::string& file, 
   if (reader.given("path")) spec.path = read_path(reader.child("path"));
   check_parts(spec, reader);
   return spec;
+}
+
+std::vector<std::pair<std::string, std::string>> unlikely_values(const DriverSpec& spec, double duration) {
+  std::vector<std::pair<std::string, std::string>> odd;
+  const auto look = [&](const std::string& key, double value, double low, double high, const char* unit) {
+    if (std::string text = unusual_text(value, low, high, unit); !text.empty()) odd.emplace_back(key, std::move(text));
+  };
+  const double longest = std::max(kLongDrive, kMostRuns * duration);
+  const auto times = [&](const std::string& key, const DriverPoints& points) {
+    if (!points.empty()) look(key, points.back().first, kShortDrive, longest, "s");
+  };
+  for (const auto& [rule, points] : kInputs) times(std::string("inputs.") + rule->second, spec.inputs.*points);
+  if (!spec.speed) return odd;
+  times("speed.target", spec.speed->target);
+  double fastest = 0.0;
+  for (const auto& [time, speed] : spec.speed->target) fastest = std::max(fastest, speed);
+  look("speed.target", fastest, kSlow, kFast, "m/s");
+  return odd;
 }
 
 nlohmann::ordered_json driver_schema() {

@@ -178,6 +178,21 @@ TEST_F(DriverFile, in_csv_that_is_wrong_is_refused_by_line) {
   for (const auto& [text, message] : cases) expect_refused(write("inputs.csv", text), message);
 }
 
+TEST_F(DriverFile, times_in_milliseconds_and_speeds_in_kilometres_an_hour_are_named_with_a_guess) {
+  const auto odd = [&](const std::string& sections, double duration) {
+    std::string all;
+    for (const auto& [key, what] : unlikely_values(read(sections), duration)) all += key + ": " + what + "\n";
+    return all;
+  };
+  EXPECT_EQ(odd(R"(, "inputs": {"throttle": [[0, 0], [5000, 1]], "brake": 0})", 6.0),
+            "inputs.throttle: 5000 s is unusually large, usual is 0.02 to 600 s: did you mean 5 (ms)?\n");
+  EXPECT_EQ(
+      odd(R"(, "speed": {"target": [[0, 0], [2, 80], [3, 70]]})", 6.0),
+      "speed.target: 80 m/s is unusually large, usual is 0.01 to 40 m/s: did you mean 22.22 (km/h) or 0.08 (mm/s)?\n");
+  EXPECT_EQ(odd(R"(, "inputs": {"steering": [[0, 0], [1800, 0.1]]}, "speed": {"target": [[0, 0], [1800, 30]]})", 20.0),
+            "");
+}
+
 TEST(DriverSchema, lists_the_tracks_that_there_are) {
   const json schema = driver_schema();
   int found = 0;

@@ -103,6 +103,7 @@ class RigNode : public Node {
       for (int k = 0; k < wheels; ++k) rig_->observe(k, tires_[k].lowest_point, setup_.mean_height[k]);
       measure(header, terrain);
     }
+    if (header.step > 0) watch_depth(header);
     if (header.step > 0) watch_lag(terrain);
     if (header.step == 1 && results_) results_->begun();
     const bool line = header.step > 0 && series_steps_ > 0 && header.step % series_steps_ == 0;
@@ -245,12 +246,12 @@ class RigNode : public Node {
   }
 
   void make_tables() {
-    const bool level = scenario_.terrain->describe().uneven_key.empty();
+    level_ = scenario_.terrain->describe().uneven_key.empty();
     const std::vector<rigs::Subject> subjects = rig_->subjects();
     for (int k = 0; k < static_cast<int>(subjects.size()); ++k) {
       std::optional<output::SeriesBuilder> wheel;
       if (k < rig_->wheel_count())
-        wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step, level);
+        wheel.emplace(cards_[1 + k].tire_radius, setup_.mean_height[k], scenario_.run.step, level_);
       series_.emplace_back(subjects[k], std::move(wheel));
     }
     for (int k = 0; k < rig_->wheel_count(); ++k)
@@ -278,6 +279,20 @@ class RigNode : public Node {
                        *rig_, k);
       else
         series_[k].add(header.time, *rig_, k);
+  }
+
+  /// Of level ground; elsewhere its height under the wheel is not known here.
+  /// @throws Error(physics) if a tire lies wholly below the ground as it was, where no model of the ground holds
+  void watch_depth(const StepHeader& header) const {
+    if (!level_) return;
+    for (int k = 0; k < rig_->wheel_count(); ++k) {
+      const double sinkage = setup_.mean_height[k] - tires_[k].lowest_point, most = 2.0 * cards_[1 + k].tire_radius;
+      if (sinkage > most)
+        throw physics_error(
+            "{} has sunk in by {:.4g} m{}, expected less than its diameter of {:.4g} m: the ground "
+            "does not bear its load, or it spins itself in; take less load or slip, or stronger soil",
+            scenario::wheel_name(scenario::describe_rig(scenario_), k), sinkage, when(header), most);
+    }
   }
 
   /// @throws Error(physics) if late forces affect the result, unless run.on_lag lets the run continue
@@ -351,6 +366,7 @@ class RigNode : public Node {
   std::vector<output::SubjectSeries> series_;  // in the order of rig_->subjects()
   std::vector<output::LagWatch> lag_;          // of each wheel
   bool lag_told_ = false;
+  bool level_ = true;                         // the ground, as it was
   std::optional<output::Accounts> accounts_;  // once the tables are made
   std::unique_ptr<output::Results> results_;
   std::vector<double> last_;    // line of wheel 0

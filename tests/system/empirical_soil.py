@@ -39,8 +39,12 @@ class EmpiricalSoil(SystemTest):
 
     def test_a_wheel_that_no_ground_bears_is_warned_of(self):
         _, told = self.run_of("soft", "--set", "terrain.bekker_k_phi=1e4", "--set", "terrain.bekker_k_c=0",
-                              "--set", "run.end=0.8", "--set", "run.average_from=0.7", "--set", "terrain.length=3.5")
+                              "--set", "run.end=0.6", "--set", "run.average_from=0.5", "--set", "terrain.length=3.5")
         self.assertRegex(told, r"WARNING: the wheel has sunk in by \S+ radii: the ground does not bear its load")
+        path = write_scenario(self.folder, WHEEL)
+        self.furrow("run", path, "--no-plots", "--set", "terrain.bekker_k_phi=1e4", "--set", "terrain.bekker_k_c=0",
+                    "--set", "run.end=0.8", "--set", "run.average_from=0.7", "--set", "terrain.length=3.5", code=3,
+                    says=("wheel 0 has sunk in by 0.9", ", expected less than its diameter of 0.934"))
         _, told = self.run_of("usual")
         self.assertNotIn("WARNING", told)
 

@@ -265,7 +265,7 @@ class RigNode : public Node {
   void keep_accounts(const StepHeader& header, const TerrainReport& terrain) {
     const rigs::RigAccounts rig = rig_->accounts();
     if (const char* missing = first_missing(rig))
-      throw physics_error("rig: its {} is not finite, or the rig '{}' does not say it", missing, rig_->kind());
+      throw physics_error("rig: its {} is not finite, or the rig '{}' does not give it", missing, rig_->kind());
     std::vector<RimState> rims;
     for (int k = 0; k < rig_->wheel_count(); ++k) rims.push_back(rig_->rim(k));
     accounts_->add({header.time, tires_, rims, terrain, rig, rig_->report(0).gravity});

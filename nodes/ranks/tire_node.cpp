@@ -226,7 +226,7 @@ class TireNode : public Node {
   void describe_state() {
     report_.diagnostics = tire_->diagnostics();
     if (const char* missing = first_missing(report_.diagnostics))
-      throw physics_error("{}: its {} is not finite, or its model {} does not say it",
+      throw physics_error("{}: its {} is not finite, or its model {} does not give it",
                           to_string(Address{Role::tire, index_}), missing, kind_);
     const tire::NamedValues figures = tire_->figures();
     report_.newton_iterations = static_cast<std::int64_t>(figures.of("newton_iterations"));

@@ -43,7 +43,7 @@ constexpr PointRule kGear{"time_s",
                           gear_request::automatic,
                           true};
 constexpr PointRule kLock{"time_s", "lock", 0.0, 1.0, "0 (open) or 1 (locked)", nullptr, 0.0, true};
-constexpr PointRule kSpeed{"time_s", "speed_m_s", 0.0, 100.0, "a speed from 0 to 100"};
+constexpr PointRule kSpeed{"time_s", "speed_m_s", 0.0, 100.0, "a speed from 0 to 100 m/s"};
 constexpr PointRule kWaypoint{"x_m", "y_m", -keys::kMostLength, keys::kMostLength, "at most 1e6"};
 
 constexpr const char* kSeriesSchema =

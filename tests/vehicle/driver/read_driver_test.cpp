@@ -116,7 +116,7 @@ TEST_F(DriverFile, that_is_wrong_is_refused_by_key) {
       {R"(, "inputs": {"brake": 1}, "speed": {"target": 4})", "key 'inputs': gives brake beside 'speed'"},
       {R"(, "inputs": {"steering": 1}, "path": {"kind": "straight", "length": 4})", "gives steering beside 'path'"},
       {R"(, "speed": {})", "key 'speed.target': is missing"},
-      {R"(, "speed": {"target": -1})", "key 'speed.target': speed_m_s is -1, expected a speed from 0 to 100"},
+      {R"(, "speed": {"target": -1})", "key 'speed.target': speed_m_s is -1, expected a speed from 0 to 100 m/s"},
       {R"(, "speed": {"target": 5, "integral": -1})",
        "key 'speed.integral': is -1 1/m, expected a number, 0 or more 1/m"},
       {R"(, "speed": {"target": 5, "hysteresis": 2})", "key 'speed.hysteresis': is 2, expected a number, 0 to 1"},

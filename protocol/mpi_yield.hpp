@@ -1,9 +1,9 @@
 // Whether a rank that waits inside Open MPI leaves its core to others.
 //
-// Ranks wait for each other in collective calls while they are set up and while they end. If there are more ranks than
-// cores, a rank that spins there takes time from the one that it waits for (figures in scripts/docs/coupling.md). During
-// a run the opposite holds: a rank sleeps between its looks for messages, and one that yields on a busy machine waits
-// until all others have had their time.
+// Ranks wait for each other in collective calls while they are set up and while they end. If there are more ranks
+// than cores, a rank that spins there takes time from the one that it waits for (scripts/docs/coupling.md has the
+// figures). During a run the opposite holds: a rank sleeps between its looks for messages, and one that yields on a
+// busy machine waits until all others have had their time.
 //
 // Open MPI decides this once, when it begins, by OMPI_MCA_mpi_yield_when_idle. The function that changes it later is
 // not part of MPI, so it is looked up in the loaded libraries; without it ranks never yield. A value that is set

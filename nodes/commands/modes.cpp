@@ -95,7 +95,7 @@ void warn_of_unstable(const tire::ModesResults& results) {
   if (first == results.modes.end()) return;
   print_warning(
       "this tire is not stable at rest from order {} on, as computed: {} of {} frequencies are negative, "
-      "growth rates over 2π of wrinkles; see tire/README.md, \"Natural frequencies\"",
+      "growth rates over 2π of wrinkles; see scripts/docs/tire_models.md, \"Natural frequencies\"",
       first->order, std::ranges::count_if(results.modes, unstable), results.modes.size());
 }
 

@@ -112,8 +112,8 @@ std::string not_reached(const tire::PressOptions& options, const tire::PressResu
         options.obstacle.position != 0.0 ? ", or move the cleat nearer to the middle (--cleat-position)" : "");
   return fmt::format(
       "the load of {:g} N was not reached: the largest force is {:.4g} N; no stiffness is given, and the footprint is "
-      "that of this force; press further (--deflection) or ask for less (--load); see tire/README.md, \"Static "
-      "pressing\"",
+      "that of this force; press further (--deflection) or ask for less (--load); see "
+      "scripts/docs/tire_models.md, \"Static pressing\"",
       options.load, results.at_load.force);
 }
 
@@ -142,7 +142,7 @@ ExitCode press(const scenario::Scenario& scenario, const PressArguments& argumen
     tire::write_press_tables(directory.path(), results);
     write_whole_file(directory.path() / "summary.json", summary.dump(2) + "\n");
     if (const std::string caution = tire::press_caution(results); !caution.empty())
-      print_warning(caution + "; see summary.json and tire/README.md, \"Static pressing\"");
+      print_warning(caution + "; see summary.json and scripts/docs/tire_models.md, \"Static pressing\"");
     ended = results.ended;
     if (summary["deflection_m"].is_null()) print_warning(not_reached(options, results));
     launch::say(result_line(summary));

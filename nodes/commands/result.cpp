@@ -66,7 +66,7 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
     if (reasons.empty()) text += "furrow: the pull is not steady\n";
     for (const json& reason : reasons) text += "furrow: the pull is not steady: " + reason.get<std::string>() + "\n";
     text +=
-        "furrow: another stretch of the run may give another mean (rigs/README.md, \"Steady or not\")\n"
+        "furrow: another stretch of the run may give another mean (scripts/docs/results.md, \"Steady or not\")\n"
         "furrow: average over more of it: set a later run.end";
     const bool ends = json::parse(scenario.completed)["terrain"].contains("length");  // hard ground has none
     text += ends ? " and a longer terrain.length\n" : "\n";
@@ -127,14 +127,14 @@ std::string accounts_line(const json& summary) {
     text += fmt::format(
         "furrow: WARNING: the account of energy does not close: {:.3g} J are left over, expected at most {:.3g} J "
         "(terrain {:.3g}, tires {:.3g}, rig {:.3g} J); halve run.step and compare, or report it "
-        "(nodes/output/README.md, \"Accounts\")\n",
+        "(scripts/docs/results.md, \"Accounts\")\n",
         number_at(energy, "residual"), number_at(energy, "bound"), number_at(parts, "terrain"),
         number_at(parts, "tires"), number_at(parts, "rig"));
   }
   if (!momentum.value("closes", false))
     text +=
         "furrow: WARNING: the account of momentum does not close: see accounts.momentum of summary.json, and report it "
-        "(nodes/output/README.md, \"Accounts\")\n";
+        "(scripts/docs/results.md, \"Accounts\")\n";
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -70,6 +71,7 @@ struct Scales {
   double first = 0.0, last = 0.0;    // axles, x, m
   double across = 0.0;               // of the outermost point of any wheel, |y|, m
   bool meshed = false;               // the tire is a shell with a mesh that the scenario may set
+  nlohmann::json soil;               // values of the soil's file by key, empty without one
   // On the soil; first guesses until a bed was described.
   double pressure = kPressure;  // under the wheel that presses most, Pa
   double sinkage = 0.0;         // of the wheel with the largest sinkage, m
@@ -100,16 +102,15 @@ Scales scales_of(const Scenario& s) {
 }
 
 /// A tire whose file holds for hard ground gets that; a soil file without properties of grains is empirical soil.
-Ground ground_of(const StarterOptions& o, const std::filesystem::path& file, const Scenario& s) {
+Ground ground_of(const nlohmann::json& soil, const Scenario& s) {
   const bool hard = s.has_own_contact();
-  if (hard && !o.soil.empty())
+  if (hard && !soil.empty())
     throw input_error("command line", "--soil",
                       "is given, expected none: the file of '{}' holds for hard ground; with --rigid the tires "
                       "keep their shape and roll on soil",
                       s.tires.front()->options().file.filename().string());
   if (hard) return Ground::hard;
-  if (o.soil.empty()) return Ground::grains;
-  const nlohmann::json soil = read_soil_material(find_file(o.soil, "terrain.material", file));
+  if (soil.empty()) return Ground::grains;
   for (const auto& [key, value] : soil.items())
     if (std::ranges::count(terrain::engines_of_key(key), terrain::CommonOptions().engine) > 0) return Ground::grains;
   return Ground::empirical;
@@ -200,12 +201,14 @@ Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
   }
   // The contact of a vehicle's wheel has the same size, but the bed is many times as long and wide.
   const double coarse = o.vehicle.empty() ? 1.0 : 2.0;
-  terrain["radius"] = rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross));
+  const double radius = s.soil.value(
+      "radius", rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross)));
+  if (!s.soil.contains("radius")) terrain["radius"] = radius;
   // Scales with the pressure of the small rig: stiffer grains need shorter steps, softer ones overlap more.
-  terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));
+  if (!s.soil.contains("young_modulus"))
+    terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));
   terrain["layers"] =
-      std::clamp(static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * terrain["radius"].get<double>()))), kLayers,
-                 kMostLayers);
+      std::clamp(static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * radius))), kLayers, kMostLayers);
   terrain["length"] = length;
   terrain["width"] = width;
   return terrain;
@@ -308,7 +311,9 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   document["terrain"]["engine"] = "rigid";
   const Scenario first = checked(file, document);
-  const Ground ground = ground_of(o, file, first);
+  nlohmann::json soil = nlohmann::json::object();
+  if (!o.soil.empty()) soil = read_soil_material(find_file(o.soil, "terrain.material", file));
+  const Ground ground = ground_of(soil, first);
   scales = scales_of(first);
   document["description"] = std::string(o.vehicle.empty() ? "A wheel on " : "A vehicle on ") +
                             (ground == Ground::hard ? "hard ground." : "soil.");
@@ -316,6 +321,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   scales = scales_of(checked(file, document));  // the mesh decides the width of the tread
   scales.ground = ground;
+  scales.soil = std::move(soil);
   const double travel = o.vehicle.empty()
                             ? (1.0 - slip_of(scales)) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;

@@ -163,6 +163,8 @@ class Commands(SystemTest):
                 report = json.loads(self.output("validate", f"{name}.json", "--json"))
                 self.assertEqual(report["warnings"], [])
                 self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
+        self.output("new", "fitted", "--soil", "grains_lete_sand.json")
+        self.assertNotIn('"young_modulus"', (self.folder / "fitted.json").read_text(), "the soil gives it")
         self.furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", code=2,
                     says="--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard "
                     "ground; with --rigid")

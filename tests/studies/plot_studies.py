@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Charts of the studies' CSV files, beside them: rigid_ground.png, budget.png, lete_sand.png, report_law.png."""
+"""Charts of the studies' CSV files, beside them: rigid_ground.png, budget.png, slip.png, lete_sand.png,
+report_law.png."""
 import re
 
 import driver
@@ -73,6 +74,10 @@ def lete_sand():
         axes.errorbar(list(old), [float(row[f"{of_old}_N"]) / LOAD for row in old.values()], capsize=3, marker="s",
                       yerr=[float(row[f"{of_old}_N_half_95"]) / LOAD for row in old.values()], color="C1", ls="none",
                       label="the report's soil, bed 113 mm deep")
+        for slip, row in old.items():
+            if int(row["not_steady"]) > 0.25 * int(row["beds"]):
+                axes.plot(slip, float(row[f"{of_old}_N"]) / LOAD, marker="s", mfc="white", mec="C1", ls="none",
+                          zorder=5)
         for k, (name, text) in enumerate(names.items()):
             key = f"{name}_{'net' if what == 'pull' else 'gross'}_N"
             points = [(slip, float(row[key]) / LOAD) for slip, row in zip(slips, means) if row.get(key)]
@@ -86,6 +91,18 @@ def lete_sand():
         driver.label(axes, "slip, of the undeformed radius", title)
     figure.tight_layout()
     driver.save(figure, "lete_sand", 110)
+
+
+def slip():
+    """Drawbar pull against slip on two cohesions, one bed each, ± one standard error."""
+    rows = provenance.read_table(driver.HERE / "slip.csv")
+    figure, axes = driver.subplots(figsize=(6.4, 4.0))
+    for cohesion in sorted({float(row["terrain.cohesion"]) for row in rows}):
+        line = [[float(row[name]) for name in ("rig.slip", "drawbar_pull_N.mean", "drawbar_pull_N.sem")]
+                for row in rows if float(row["terrain.cohesion"]) == cohesion]
+        axes.errorbar(*zip(*sorted(line)), marker="o", capsize=3, label=f"cohesion {cohesion / 1e3:g} kPa")
+    driver.label(axes, "slip", "drawbar pull, N", "One bed each, ± one standard error", 10)
+    driver.save(figure, "slip", 110)
 
 
 def report_law():
@@ -128,7 +145,8 @@ def report_law():
     driver.save(figure, "report_law", 100)
 
 
-CHARTS = {"rigid_ground": rigid_ground, "budget": budget, "lete_sand": lete_sand, "report_law": report_law}
+CHARTS = {"rigid_ground": rigid_ground, "budget": budget, "slip": slip, "lete_sand": lete_sand,
+          "report_law": report_law}
 
 
 def main():

@@ -117,6 +117,7 @@ def main():
          "at_bound": p["at_bound"] or ""}
         for name, (_, result) in fits.items() for key, p in result["parameters"].items()], made)
     rows = []
+    colour = {name: f"C{k}" for k, name in enumerate(SETS)}
     figure, charts = driver.subplots(1, 3, figsize=(14, 4.4))
     for load, chart in zip(LOADS, charts[1:]):
         x, shell = centre_line(plates[load])
@@ -124,7 +125,7 @@ def main():
         lines = {"shell_Pa": shell}
         for name in ("paper", "paper, exact places", "Furrow's"):
             ring = pressed(*fits[name], load)
-            chart.plot(1e3 * ring["x_m"], 1e-3 * ring["pressure_Pa"], label=name)
+            chart.plot(1e3 * ring["x_m"], 1e-3 * ring["pressure_Pa"], color=colour[name], label=name)
             key = {"paper": "radial_Pa", "paper, exact places": "exact_Pa", "Furrow's": "furrow_Pa"}[name]
             lines[key] = np.interp(x, ring["x_m"], ring["pressure_Pa"], left=0.0, right=0.0)
         driver.label(chart, "along, mm", "pressure, kPa", f"centre line under {1e-3 * load:.3g} kN", 8, ylim=(0, None))
@@ -136,7 +137,7 @@ def main():
                                    for row in provenance.read_table(folder / "fit.csv") if row["target"] == cleat]).T
         if name == "paper":
             charts[0].plot(1e3 * x, 1e-3 * shell, "ko", ms=3.5, label="shell")
-        charts[0].plot(1e3 * x, 1e-3 * ring, label=name)
+        charts[0].plot(1e3 * x, 1e-3 * ring, color=colour[name], label=name)
     driver.label(charts[0], "deflection, mm", "force, kN", "cleat of 51 mm, fitted", 8)
     driver.save(figure, "ring_paper")
 

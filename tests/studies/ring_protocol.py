@@ -69,10 +69,9 @@ def write_pressure(result, made):
 
 def draw(shell, ring):
     from furrow.plot.calibrate import Calibration
-    from furrow.plot.soil import COLOURS
     figure, (curves, pressure) = driver.subplots(1, 2, figsize=(11, 4.6))
     for k, target in enumerate(Calibration(RESULTS / "ring_protocol").targets()):
-        look = {"color": COLOURS[k % len(COLOURS)]}
+        look = {"color": f"C{k}"}
         curves.plot(1e3 * target["x"], 1e-3 * target["data"], "o" if k < 5 else "s", ms=3.5, **look)
         curves.plot(1e3 * target["x"], 1e-3 * target["model"], "--" if target["held_out"] else "-",
                     label=target["what"], **look)

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 /// Contact properties that the file does not give, from the HMMWV tire file (scripts/docs/tire_models.md).
-constexpr double kYoungModulus = 2.47e7;  // Pa
+constexpr double kRubberModulus = 2.47e7;  // Pa
 constexpr double kPoissonRatio = 0.45;
 constexpr double kRestitution = 0.2;
 constexpr double kNormalStiffness = 2.0e6;  // N/m^1.5
@@ -83,7 +83,7 @@ ContactBlock read_chrono_contact(JsonReader reader) {
   ContactBlock c;
   c.friction = reader.not_negative("Coefficient of Friction");
   c.restitution = reader.not_negative_or("Coefficient of Restitution", kRestitution);
-  c.young_modulus = kYoungModulus;
+  c.young_modulus = kRubberModulus;
   c.poisson_ratio = kPoissonRatio;
   c.normal_stiffness = kNormalStiffness;
   c.normal_damping = kNormalDamping;

@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,6 +25,7 @@
 #include "nodes/scenario/soil_material.hpp"
 #include "nodes/study/study.hpp"
 #include "protocol/core/clock.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/csv_file.hpp"
 #include "protocol/files/data_files.hpp"
@@ -40,7 +40,6 @@ using scenario::Settings;
 using terrain::dem::DemOptions;
 using terrain::soil::Measured, terrain::soil::SoilOptions, terrain::soil::SoilParameters, terrain::soil::SoilResults;
 
-constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 /// Lower limit of the shear cell's K, in diameters of a grain; all soils of scripts/docs/soils.md are above it (0.5 to
 /// 1.2).
 constexpr double kLeastK = 0.45;

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "nodes/calibrate/kinds.hpp"
 #include "nodes/calibrate/optimum.hpp"
 #include "nodes/scenario/soil_material.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/files/csv_file.hpp"
@@ -33,7 +33,6 @@ namespace {
 using nlohmann::json;
 using terrain::scm::ScmOptions;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNoSlip = 1e9;  // friction of the shear box on the soil: it never slips
 
 const auto kRules = std::to_array<ParameterRule>({

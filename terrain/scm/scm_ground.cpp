@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/key_schema.hpp"
 #include "terrain/scm/scm_contact.hpp"
@@ -21,7 +21,6 @@ namespace {
 constexpr double kMaxStartDepth = 5e-3;
 constexpr double kMostNodes = 1e8;
 constexpr double kLeastAcross = 4.0;  // nodes under the width of a surface: fewer give a fifth of error and more
-constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 /// One attached surface and the buffers of its substeps.
 struct SoilSurface {

@@ -1,11 +1,11 @@
 #include "terrain/soil/soil_estimate.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/core/error.hpp"
 #include "protocol/files/digits.hpp"
 #include "protocol/files/json_reader.hpp"
@@ -20,7 +20,6 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFormatVersion = 1;
-constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 /// A number that the theory needs, above zero or any.
 double number(JsonReader& reader, const std::string& key, bool positive = false) {

@@ -1,8 +1,8 @@
+#include "protocol/core/constants.hpp"
 #include "terrain/soil/soil_output.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr double kDegree = std::numbers::pi / 180.0;  // rad
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 

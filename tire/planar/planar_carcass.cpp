@@ -16,7 +16,7 @@ namespace furrow::tire {
 namespace {
 
 constexpr int kStepsBetweenChecks = 500;  // of the step's limit in the present shape
-constexpr int kMostSteps = 1000;          // in one step of the scenario
+constexpr int kMostSubsteps = 1000;       // in one step of the scenario
 constexpr double kLeastRadius = 1.02;     // of outer nodes, in radii of the rim
 
 /// The tire, with an elastic disc the wheel, with a node at the top, like the vertices of cylinder().
@@ -119,12 +119,12 @@ void PlanarCarcass::hold(double h, double angle) {
 
 Outcome PlanarCarcass::parts(double h, int& count) {
   if (since_check_ >= kStepsBetweenChecks) limit_ = step_limit(), since_check_ = 0;
-  count = static_cast<int>(std::ceil(std::min(h / (share_ * limit_), 2.0 * kMostSteps)));
-  if (h <= kMostSteps * share_ * limit_) return {};
+  count = static_cast<int>(std::ceil(std::min(h / (share_ * limit_), 2.0 * kMostSubsteps)));
+  if (h <= kMostSubsteps * share_ * limit_) return {};
   return Outcome::failure("is pressed too thin for its explicit steps",
                           fmt::format("stable steps are below {:.3g} s, more than {} of them in {:.3g} s: "
                                       "try a smaller run.step, a stiffer tire or a coarser mesh",
-                                      share_ * limit_, kMostSteps, h));
+                                      share_ * limit_, kMostSubsteps, h));
 }
 
 Outcome PlanarCarcass::step(double h, const PlaneRimStep& rim, const PlanarField& load, PlanarPoint gravity,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kForceTolerance = 1e-11;  // of the force that moves a segment by the radius
 constexpr double kEnough = 4.0;            // round-offs of an entry of the gradient
-constexpr double kStall = 32.0;            // round-offs of an entry, if a step gains nothing
+constexpr double kGainsNothing = 32.0;     // round-offs of an entry, if a step gains nothing
 constexpr double kGapTolerance = 1e-12;    // of the radius
 constexpr double kLongestStep = 0.3;       // of the radius
 constexpr int kFullSteps = 12;             // from then on steps are halved
@@ -44,7 +44,7 @@ RingReport RingSolver::solve(const AxlePlace& axle) {
     if (report.crowded) break;
     const double smallest = kForceTolerance * ring_.radius() * std::abs(ring_.slope(0.0));
     const double enough = smallest + kEnough * ring_.rounding(q_);
-    const double force_tolerance = smallest + kStall * ring_.rounding(q_);
+    const double force_tolerance = smallest + kGainsNothing * ring_.rounding(q_);
     const double gap_tolerance = kGapTolerance * ring_.radius();
     report.residuals[report.steps] = report.residual = free_residual();
     judge(report);

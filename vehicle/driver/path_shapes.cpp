@@ -1,10 +1,10 @@
 #include "vehicle/driver/path_shapes.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/Geometry>
 
+#include "protocol/core/constants.hpp"
 #include "vehicle/driver/lane_change.hpp"
 
 namespace furrow::vehicle {
@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kArc = 0.05;   // angle of a circle's pieces at most, rad
 constexpr int kGapPieces = 64;  // between two lanes
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 using Knots = std::vector<PathPoint>;
 

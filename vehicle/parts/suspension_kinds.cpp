@@ -1,15 +1,14 @@
 #include "vehicle/parts/suspension_kinds.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "protocol/core/assert.hpp"
+#include "protocol/core/constants.hpp"
 #include "vehicle/multibody/strut_laws.hpp"
 
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// x along the hinge, forward; z normal to the plane of the arm, upward.
 Mat3 arm_axes(const ArmSpec& arm) {

@@ -29,8 +29,6 @@ constexpr double kMinWall = 0.8;      // radii between a centre and a wall
 constexpr double kMaxFall = 100.0;    // largest radii from a grain's centre to the next one below
 constexpr std::size_t kMaxGrains = 500'000'000;
 
-Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
-
 struct Lattice {
   int nx = 0, ny = 0;
   double dx = 0.0, dy = 0.0;  // m

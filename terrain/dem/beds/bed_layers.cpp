@@ -12,9 +12,9 @@ namespace furrow::terrain::dem {
 namespace {
 
 constexpr const char* kPlacing = "placing the grains";
-constexpr std::size_t kCheckEvery = 1024;  // samples
-constexpr int kTries = 30;                 // candidates around a sample before it is retired [Bridson 2007]
-constexpr double kDiskCoverage = 0.491;    // share of the area covered by discs of the spacing's diameter, measured
+constexpr std::size_t kTellEvery = 1024;  // samples
+constexpr int kTries = 30;                // candidates around a sample before it is retired [Bridson 2007]
+constexpr double kDiskCoverage = 0.491;   // share of the area covered by discs of the spacing's diameter, measured
 
 class Uniform {
  public:
@@ -143,7 +143,7 @@ std::vector<Quad> bed_layers(const Bin& bin, double radius, int layers, std::uin
     tell(kPlacing, share);
     std::size_t samples_made = 0;
     const auto each = [&] {
-      if (++samples_made % kCheckEvery == 0) tell(kPlacing, share);
+      if (++samples_made % kTellEvery == 0) tell(kPlacing, share);
     };
     std::vector<Quad> samples =
         poisson_layer(bin, radius, seed * 1000003ULL + static_cast<std::uint64_t>(layer), each, around);

@@ -17,8 +17,6 @@ namespace {
 
 constexpr const char* kJoining = "joining the pieces of the bed";
 
-Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
-
 /// Grains of one column from x = `from` − band to x = `to` + band, before its seams are made.
 struct Column {
   double from = 0.0, to = 0.0;  // m
@@ -137,6 +135,8 @@ void join(Column& before, Column& after, double overlap, const DemOptions& o, co
 }
 
 }  // namespace
+
+Bin bin_of(const DemOptions& o) { return {o.length, o.width, o.periodic_x, o.periodic_y()}; }
 
 Tiling tiling_of(const DemOptions& o) {
   Tiling tiling{1, 1, o.length, o.width};

@@ -18,10 +18,14 @@
 #include <vector>
 
 #include "protocol/core/progress_call.hpp"
+#include "terrain/dem/bin.hpp"
 #include "terrain/dem/dem_options.hpp"
 #include "terrain/dem/quad.hpp"
 
 namespace furrow::terrain::dem {
+
+/// The bin of a bed.
+Bin bin_of(const DemOptions& options);
 
 inline constexpr double kSeamBand = 10.0;    // largest radii by which packings overlap on either side
 inline constexpr double kLeastPiece = 40.0;  // least side of a piece in largest radii

@@ -14,7 +14,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 constexpr double kBrixiusDepth = 0.15;           // depth down to which the mean cone index is taken, m

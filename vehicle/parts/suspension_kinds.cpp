@@ -9,7 +9,6 @@
 namespace furrow::vehicle {
 namespace {
 
-
 /// x along the hinge, forward; z normal to the plane of the arm, upward.
 Mat3 arm_axes(const ArmSpec& arm) {
   const Vec3 x = (arm.chassis_front - arm.chassis_back).normalized();

@@ -6,7 +6,6 @@
 #include <initializer_list>
 #include <optional>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -71,7 +70,6 @@ struct Scales {
   double first = 0.0, last = 0.0;    // axles, x, m
   double across = 0.0;               // of the outermost point of any wheel, |y|, m
   bool meshed = false;               // the tire is a shell with a mesh that the scenario may set
-  nlohmann::json soil;               // values of the soil's file by key, empty without one
   // On the soil; first guesses until a bed was described.
   double pressure = kPressure;  // under the wheel that presses most, Pa
   double sinkage = 0.0;         // of the wheel with the largest sinkage, m
@@ -102,15 +100,15 @@ Scales scales_of(const Scenario& s) {
 }
 
 /// A tire whose file holds for hard ground gets that; a soil file without properties of grains is empirical soil.
-Ground ground_of(const nlohmann::json& soil, const Scenario& s) {
+Ground ground_of(const StarterOptions& o, const nlohmann::json& soil, const Scenario& s) {
   const bool hard = s.has_own_contact();
-  if (hard && !soil.empty())
+  if (hard && !o.soil.empty())
     throw input_error("command line", "--soil",
                       "is given, expected none: the file of '{}' holds for hard ground; with --rigid the tires "
                       "keep their shape and roll on soil",
                       s.tires.front()->options().file.filename().string());
   if (hard) return Ground::hard;
-  if (soil.empty()) return Ground::grains;
+  if (o.soil.empty()) return Ground::grains;
   for (const auto& [key, value] : soil.items())
     if (std::ranges::count(terrain::engines_of_key(key), terrain::CommonOptions().engine) > 0) return Ground::grains;
   return Ground::empirical;
@@ -181,7 +179,8 @@ Json tire_section(const StarterOptions& o, const Scales& s) {
   return tire;
 }
 
-Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
+/// `soil`: the values of its file; the scenario has its own where that gives none.
+Json terrain_section(const StarterOptions& o, const nlohmann::json& soil, const Scales& s, double travel) {
   Json terrain;
   const double length = rounded(1.02 * (travel + s.first - s.last + (kAhead + kBehind) * s.largest + s.near_wall));
   const double width = rounded(1.02 * 2.0 * (s.across + std::max(kBeside * s.radius, 0.55 * s.tread)));
@@ -201,14 +200,13 @@ Json terrain_section(const StarterOptions& o, const Scales& s, double travel) {
   }
   // The contact of a vehicle's wheel has the same size, but the bed is many times as long and wide.
   const double coarse = o.vehicle.empty() ? 1.0 : 2.0;
-  const double radius = s.soil.value(
-      "radius", rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross)));
-  if (!s.soil.contains("radius")) terrain["radius"] = radius;
+  terrain["radius"] = rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross));
   // Scales with the pressure of the small rig: stiffer grains need shorter steps, softer ones overlap more.
-  if (!s.soil.contains("young_modulus"))
+  if (!soil.contains("young_modulus"))
     terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));
   terrain["layers"] =
-      std::clamp(static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * radius))), kLayers, kMostLayers);
+      std::clamp(static_cast<int>(std::ceil(kDepth * s.sinkage / (s.layer * terrain["radius"].get<double>()))), kLayers,
+                 kMostLayers);
   terrain["length"] = length;
   terrain["width"] = width;
   return terrain;
@@ -311,9 +309,9 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   document["terrain"]["engine"] = "rigid";
   const Scenario first = checked(file, document);
-  nlohmann::json soil = nlohmann::json::object();
+  nlohmann::json soil;
   if (!o.soil.empty()) soil = read_soil_material(find_file(o.soil, "terrain.material", file));
-  const Ground ground = ground_of(soil, first);
+  const Ground ground = ground_of(o, soil, first);
   scales = scales_of(first);
   document["description"] = std::string(o.vehicle.empty() ? "A wheel on " : "A vehicle on ") +
                             (ground == Ground::hard ? "hard ground." : "soil.");
@@ -321,13 +319,12 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   scales = scales_of(checked(file, document));  // the mesh decides the width of the tread
   scales.ground = ground;
-  scales.soil = std::move(soil);
   const double travel = o.vehicle.empty()
                             ? (1.0 - slip_of(scales)) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;
   for (int pass = 0; pass < 2; ++pass) {  // the sinkage on the first bed decides the depth of the second
     document["rig"] = rig_section(o, scales);
-    document["terrain"] = terrain_section(o, scales, travel);
+    document["terrain"] = terrain_section(o, soil, scales, travel);
     document["run"] = run_section(o, scales);
     if (pass == 0) add_soil(scales, checked(file, document));
   }

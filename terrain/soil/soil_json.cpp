@@ -1,4 +1,3 @@
-#include "protocol/core/constants.hpp"
 #include "terrain/soil/soil_output.hpp"
 
 #include <algorithm>
@@ -6,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/core/constants.hpp"
 #include "protocol/files/fields_json.hpp"
 #include "terrain/dem/grain_sizes.hpp"
 

@@ -8,6 +8,11 @@ import provenance
 from soil_theory import LOAD
 
 
+def opened(axes, x, y, marker, colour):
+    """An open marker over the point of what is not steady."""
+    axes.plot(x, y, marker=marker, mfc="white", mec=colour, ls="none", zorder=5)
+
+
 def rigid_ground():
     """Drawbar pull over load against slip on hard ground."""
     lines, unsteady = {}, []
@@ -25,7 +30,7 @@ def rigid_ground():
     axes.axhline(0.9, color="0.8", zorder=0)
     axes.annotate("friction 0.9", (0.5, 0.9), (0, 4), textcoords="offset points", ha="right", va="bottom", color="0.5")
     for point in unsteady:
-        axes.plot(*point, marker="o", mfc="white", mec="black", ls="none", zorder=5)
+        opened(axes, *point, "o", "black")
     driver.label(axes, "slip", "drawbar pull / load", "Hard ground, 4.6 kN, 200 kPa"
                  + (" (open: not steady)" if unsteady else ""), 10)
     driver.save(figure, "rigid_ground", 110)
@@ -70,14 +75,13 @@ def lete_sand():
                       yerr=[float(row[f"{what}_N_half"] or 0.0) / LOAD for row in means], label="LETE sand")
         for slip, row in zip(slips, means):
             if int(row["steady"]) < 0.75 * int(row["beds"]):
-                axes.plot(slip, float(row[f"{what}_N"]) / LOAD, marker="o", mfc="white", mec="C0", ls="none", zorder=5)
+                opened(axes, slip, float(row[f"{what}_N"]) / LOAD, "o", "C0")
         axes.errorbar(list(old), [float(row[f"{of_old}_N"]) / LOAD for row in old.values()], capsize=3, marker="s",
                       yerr=[float(row[f"{of_old}_N_half_95"]) / LOAD for row in old.values()], color="C1", ls="none",
                       label="the report's soil, bed 113 mm deep")
         for slip, row in old.items():
             if int(row["not_steady"]) > 0.25 * int(row["beds"]):
-                axes.plot(slip, float(row[f"{of_old}_N"]) / LOAD, marker="s", mfc="white", mec="C1", ls="none",
-                          zorder=5)
+                opened(axes, slip, float(row[f"{of_old}_N"]) / LOAD, "s", "C1")
         for k, (name, text) in enumerate(names.items()):
             key = f"{name}_{'net' if what == 'pull' else 'gross'}_N"
             points = [(slip, float(row[key]) / LOAD) for slip, row in zip(slips, means) if row.get(key)]

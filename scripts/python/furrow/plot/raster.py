@@ -146,18 +146,22 @@ class Buffers:
         if side >= LARGEST_STAMP:
             wide = int(np.max(np.minimum(x.max(1) + 1.0, camera.width) - left)) + 1
             high = int(np.max(np.minimum(y.max(1) + 1.0, camera.height) - above)) + 1
-        down, across = np.mgrid[:high, :wide].reshape(2, -1)
-        px, py = left[:, None] + across, above[:, None] + down
         area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
         dx, dy = np.roll(x, -2, 1) - np.roll(x, -1, 1), np.roll(y, -2, 1) - np.roll(y, -1, 1)
         x1, y1 = np.roll(x, -1, 1), np.roll(y, -1, 1)
-        weight = [((py + 0.5 - y1[:, k, None]) * dx[:, k, None] - (px + 0.5 - x1[:, k, None]) * dy[:, k, None])
-                  / area[:, None] for k in range(3)]
-        inside = (np.min(weight, axis=0) >= 0.0) & (px < camera.width) & (py < camera.height)
-        which, _ = np.nonzero(inside)
-        if not len(which):
+        # A weight is linear in the pixel: the difference of a part of its row and a part of its column.
+        by_row = ((above[:, None] + 0.5 - y1)[:, :, None] + np.arange(high)) * (dx / area[:, None])[:, :, None]
+        by_column = ((left[:, None] + 0.5 - x1)[:, :, None] + np.arange(wide)) * (dy / area[:, None])[:, :, None]
+        inside = by_row[:, 0, :, None] >= by_column[:, 0, None]
+        for k in (1, 2):
+            inside &= by_row[:, k, :, None] >= by_column[:, k, None]
+        which, down, across = np.nonzero(inside)
+        px, py = left[which] + across, above[which] + down
+        on_picture = (px < camera.width) & (py < camera.height)
+        if not on_picture.any():
             return None
-        return (which, px[inside], py[inside], np.stack([w[inside] for w in weight], 1),
+        which, down, across = which[on_picture], down[on_picture], across[on_picture]
+        return (which, px[on_picture], py[on_picture], by_row[which, :, down] - by_column[which, :, across],
                 np.hypot(dx, dy) / np.abs(area[:, None]))
 
 
@@ -165,10 +169,8 @@ def box_blur(image, half):
     """Mean over a square of 2 half + 1 pixels, edges repeated."""
     for axis in (0, 1):
         padded = np.pad(image, [(half + 1, half) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
-        total = np.cumsum(padded, axis)
-        n = image.shape[axis]
-        image = (np.take(total, range(2 * half + 1, 2 * half + 1 + n), axis)
-                 - np.take(total, range(n), axis)) / (2 * half + 1)
+        total, n = np.cumsum(padded, axis).swapaxes(0, axis), image.shape[axis]
+        image = ((total[2 * half + 1:] - total[:n]) / (2 * half + 1)).swapaxes(0, axis)
     return image
 
 
@@ -205,14 +207,16 @@ def shade(buffers, light_direction, light_share, hidden, background):
     """The picture, (height, width, 3) sRGB 0…1. `light_direction` points to the light."""
     camera = buffers.camera
     seen = np.isfinite(buffers.depth)
-    normal = buffers.normal / np.maximum(np.linalg.norm(buffers.normal, axis=1, keepdims=True), 1e-9)
+    normal = buffers.normal[seen]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
+    light_share = np.broadcast_to(light_share, seen.shape)[seen]
     lambert = np.clip(normal @ light_direction, 0.0, 1.0) * light_share
     sky = 0.5 + 0.5 * normal[:, 2]
-    ambient = (0.20 + 0.30 * sky) * (1.0 - 0.85 * hidden)
+    ambient = (0.20 + 0.30 * sky) * (1.0 - 0.85 * hidden[seen])
     half = light_direction - camera.forward
     half /= np.linalg.norm(half)
-    specular = buffers.gloss * np.clip(normal @ half, 0.0, 1.0) ** 30 * light_share
-    linear = buffers.colour * (ambient + 0.85 * lambert)[:, None] + specular[:, None]
-    image = np.clip(linear, 0.0, 1.0) ** (1.0 / 2.2)
-    image[~seen] = background.reshape(-1, 3)[~seen]
+    specular = buffers.gloss[seen] * np.clip(normal @ half, 0.0, 1.0) ** 30 * light_share
+    linear = buffers.colour[seen] * (ambient + 0.85 * lambert)[:, None] + specular[:, None]
+    image = background.reshape(-1, 3).copy()
+    image[seen] = np.clip(linear, 0.0, 1.0).astype(np.float32) ** np.float32(1.0 / 2.2)
     return image.reshape(camera.height, camera.width, 3)

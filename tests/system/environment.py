@@ -324,8 +324,8 @@ class Names(EnvironmentTest):
         for module in ("json", "matplotlib", "h5py"):
             (evil / f"{module}.py").write_text("raise SystemExit('the user's own code ran')")
             shutil.copy(evil / f"{module}.py", self.folder)
-        for env in ({"PYTHONPATH": str(evil)}, {"PYTHONHOME": "/nowhere"}, {"PYTHONSTARTUP": str(evil / "json.py")}):
-            self.furrow("report", "out", env=env, lacks="Python")
+        self.furrow("report", "out", lacks="Python", env={"PYTHONPATH": str(evil), "PYTHONHOME": "/nowhere",
+                                                          "PYTHONSTARTUP": str(evil / "json.py")})
 
 
 class Output(EnvironmentTest):

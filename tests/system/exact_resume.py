@@ -26,9 +26,10 @@ HARD_GROUND = {"engine": "rigid", "ground_stiffness": 2e7, "ground_shear_stiffne
 
 
 class Exact:
-    """Frames and checkpoints fall on the same steps. `LOADED`: that the terrain pushes at the frame of this number."""
+    """Frames and checkpoints fall on the same steps. `LOADED`: that the terrain pushes at the frame of this number.
+    Every kind of rank is killed on grains; elsewhere the rank that has something of its own to save."""
     WHEELS = 1
-    KILLED = None  # ranks, all if None
+    KILLED = (1,)  # ranks
     LOADED = 4
 
     def test_the_terrain_pushes_in_the_frames_of_the_checkpoints(self):
@@ -44,9 +45,9 @@ class Exact:
                 self.cut_to(step)
                 self.continues()
 
-    def test_after_kill_of_each_rank(self):
+    def test_after_kill_of_a_rank(self):
         interval = steps(self.whole)[0]
-        for rank in self.KILLED or range(self.WHEELS + 2):
+        for rank in self.KILLED:
             with self.subTest(rank=rank):
                 self.afresh()
                 self.run_with_fault("step", rank, interval * self.LOADED + 7, "kill")
@@ -63,6 +64,7 @@ class Exact:
 
 class RigidTireOnGrains(Exact, CheckpointTest):
     SCENARIO = kept("rigid")
+    KILLED = (0, 1, 2)
     LOADED = 7
 
 
@@ -75,7 +77,6 @@ class FlexibleRing(Exact, CheckpointTest):
     SCENARIO = run_of(0.1, rig={"touchdown_damping": 0}, checkpoint={"interval": 0.01, "keep": 1000},
                       tire={"file": "hmmwv_ring.json", "rigid": False, "elements_circumference": 60,
                             "pressure": [[0, 200e3], [0.08, 120e3]]})
-    KILLED = (1,)
     LOADED = 7
 
 
@@ -87,6 +88,7 @@ class ContactTangents(Exact, CheckpointTest):
 class SeveralWheels(Exact, CheckpointTest):
     SCENARIO = kept("wheels")
     WHEELS = 2
+    KILLED = (2, 3)
     LOADED = 6
 
 
@@ -100,6 +102,7 @@ class EmpiricalSoil(Exact, CheckpointTest):
         "terrain": {"engine": "scm", "material": "dry_sand.json", "length": 1.4, "width": 0.5, "grid_spacing": 0.02},
         "run": {**QUICK["run"], "end": 0.06, "average_from": 0.02},
     }
+    KILLED = (2,)
 
 
 class Vehicle(Exact, CheckpointTest):
@@ -113,11 +116,11 @@ class Vehicle(Exact, CheckpointTest):
         "terrain": HARD_GROUND,
     }
     WHEELS = 4
-    KILLED = (0, 1, 4, 5)  # rig, a front and a rear tire, terrain
+    KILLED = (0, 4)  # rig and a rear tire
     LOADED = 5
 
-    def test_after_a_stop_of_each_kind_of_rank(self):
-        for rank, name in ((0, "rig"), (1, "tire 0"), (4, "tire 3"), (5, "terrain")):
+    def test_after_a_stop_of_a_rank(self):
+        for rank, name in ((0, "rig"), (5, "terrain")):
             with self.subTest(name):
                 self.afresh()
                 self.run_with_fault("step", rank, 257, "stop", flags=["--set", "run.peer_timeout=5"],
@@ -141,6 +144,7 @@ def on_a_curb(rig, **tire):
 
 class QuarterCar(Exact, CheckpointTest):
     SCENARIO = on_a_curb({"type": "quarter_car", "body_mass": 400}, rigid=True, elements_circumference=40)
+    KILLED = (0,)
     LOADED = 6
 
 
@@ -149,6 +153,7 @@ class HalfCar(Exact, CheckpointTest):
     SCENARIO = on_a_curb({"type": "half_car", "body_mass": 800, "wheelbase": 1.5, "front_share": 0.6},
                          rigid=True, elements_circumference=40)
     WHEELS = 2
+    KILLED = (0,)
     LOADED = 6
 
 
@@ -156,6 +161,7 @@ class CleatStand(Exact, CheckpointTest):
     """The stop takes hold of the axle between two checkpoints."""
     SCENARIO = on_a_curb({"type": "cleat_stand", "carrier_mass": 400, "hold_axle_from": 0.045},
                          rigid=True, elements_circumference=40)
+    KILLED = (0,)
     LOADED = 6
 
 

@@ -110,8 +110,8 @@ def slip():
 
 
 def report_law():
-    """Figs 8, 13, 14 to 16 and 20 of the 2016 report with its own contact law on the small rig; 95 % over beds. Open:
-    not all beds are steady."""
+    """Figs 8, 13, 14 to 16 and 20 of the 2016 report with its own contact law on the small rig; 95 % over beds. Steps
+    of 60 µs, the other two of one bed. Open: not all beds are steady."""
     def table(name):
         return provenance.read_table(driver.HERE / f"report_law{name}.csv")
 
@@ -124,12 +124,17 @@ def report_law():
 
     rows = table("")
     figure, panels = driver.subplots(1, 4, figsize=(13, 3.6), layout="constrained")
-    slips = [row for row in rows if row["case"].startswith("slip") and float(row["slip"]) < 1.0]
-    points(panels[0], slips, "slip", "pull_N", None)
+    small = table("_small_steps")
+    of_step = {60: rows} | {step: [row for row in small if float(row["step_us"]) == step] for step in (20, 6)}
+    for (step, found), line in zip(of_step.items(), ("-", "--", ":")):
+        slips = [row for row in found if row["case"].startswith("slip") and float(row["slip"]) < 1.0]
+        points(panels[0], slips, "slip", "pull_N", f"{step} µs", color="C0", linestyle=line)
+        at_slip = [row for row in found if row["case"].startswith("cohesion") or row["case"] == "slip 0.3"]
+        for k, (name, label) in enumerate((("gross_N", "tractive effort"), ("resistance_N", "resistance"),
+                                           ("pull_N", "net force"))):
+            points(panels[1], at_slip, "cohesion_kPa", name, label if step == 60 else None, color=f"C{k}",
+                   linestyle=line)
     driver.label(panels[0], "slip", "drawbar pull, N", "Fig. 8", 0)
-    at_slip = [row for row in rows if row["case"].startswith("cohesion") or row["case"] == "slip 0.3"]
-    for name, label in (("gross_N", "tractive effort"), ("resistance_N", "resistance"), ("pull_N", "net force")):
-        points(panels[1], at_slip, "cohesion_kPa", name, label)
     driver.label(panels[1], "cohesion, kPa", "force, N", "Figs 14 to 16, slip 0.3")
     over_time = table("_resistance")
     for name in over_time[0]:

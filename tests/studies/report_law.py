@@ -1,14 +1,15 @@
 #!/usr/bin/python3
 """The contact law of the 2016 report on the small rig: does it turn the trends of its Figs 8, 16 and 20?
 
-usage: report_law.py [shear] [rig] [passes] [factors] [--seeds 1 2 …] [--finished]
+usage: report_law.py [shear] [rig] [passes] [factors] [small_steps] [--seeds 1 2 …] [--finished]
 
 `shear`: direct shear at 0.05 to 4 m/s with the report's law at three steps, and with `mindlin`, three beds each;
 writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the report's rim speed of 4 m/s on a bed of
 6 m over slip and cohesion; writes report_law.csv, a row for each bed, report_law_slopes.csv, and
 report_law_resistance.csv, the resistance against time at four cohesions (Fig. 13). `passes`: three passes
 in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig. 8, one change at a time from the rig's
-runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. Its small steps run on the first bed alone.
+runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. `small_steps`: the rig at steps of 6 and 20 µs on the
+first bed, for the law as it is printed; writes report_law_small_steps.csv.
 
 Expected, written down before the first run: a trend agrees with the report's if the 95 % interval of the slope over
 beds excludes zero with the report's sign: pull grows with slip (Fig. 8), tractive effort falls with cohesion (Fig. 16),
@@ -36,9 +37,8 @@ FACTORS = {
     "speed 2 m/s, c = 10 s/m": LAW | SLOW | DOUBLE, "impulse limit": LAW | {"terrain.friction_impulse_limit": True},
     "stiffness of 1e8 Pa": LAW | STIFF, "mindlin": {}, "mindlin, speed 2 m/s": SLOW,
     "mindlin, stiffness of 1e6 N/m^1.5": {"terrain.young_modulus": 1.93e7}}
-SMALL_STEPS = {f"step {step * 1e6:g} µs": LAW | {"run.step": step} for step in (20e-6, 6e-6)} | {
-    "step 6 µs, 40 kPa": LAW | {"run.step": 6e-6, "terrain.cohesion": 40e3},
-    "step 6 µs, 100 kPa": LAW | {"run.step": 6e-6, "terrain.cohesion": 100e3}}
+SMALL_STEPS = (6e-6, 20e-6)  # s
+SMALL_STEP_CASES = ("slip 0.1", "slip 0.9", "slip 0.5", "cohesion 40 kPa", "cohesion 100 kPa", "slip 0.3")
 FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
            "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m"}
 OVER_TIME = {40: "cohesion 40 kPa", 60: "cohesion 60 kPa", 80: "slip 0.3", 100: "cohesion 100 kPa"}  # kPa: case
@@ -158,18 +158,33 @@ def passes(seeds):
 def factors(seeds, finished):
     rows, made = [], provenance.made_here()
     for seed in seeds:
-        for case, changed in (FACTORS | SMALL_STEPS if seed == seeds[0] else FACTORS).items():
-            for slip in (0.3,) if "kPa" in case else (0.1, 0.7):
+        for case, changed in FACTORS.items():
+            for slip in (0.1, 0.7):
                 summary = run_of("report_law_factors", f"{case} {slip:g}", seed, finished, changed, {"rig.slip": slip})
                 if summary:
                     rows.append({"case": case, "slip": slip, "seed": seed, **driver.drawbar_row(summary, FIGURES)})
                     driver.write("report_law_factors.csv", rows, made)
 
 
+def small_steps(seed, finished):
+    rows, made = [], provenance.made_here()
+    for step in SMALL_STEPS:
+        for case in SMALL_STEP_CASES:
+            if summary := run_of("report_law_small_steps", f"{case} {step * 1e6:g} us", seed, finished, LAW,
+                                 CASES[case], {"run.step": step}):
+                energy = summary["accounts"]["energy"]
+                rows.append({"case": case, "step_us": round(step * 1e6), "seed": seed,
+                             "slip": CASES[case].get("rig.slip", 0.3),
+                             "cohesion_kPa": CASES[case].get("terrain.cohesion", 80e3) / 1e3,
+                             **driver.drawbar_row(summary, FIGURES), "sliding_loss_J": energy["lost"]["sliding_loss"],
+                             "energy_residual_J": energy["residual"], "energy_closes": int(energy["closes"])})
+                driver.write("report_law_small_steps.csv", rows, made)
+
+
 def main():
     parser = driver.options(__doc__, seeds={"type": int, "nargs": "+", "default": [1, 2, 3, 4, 5]},
                             finished={"action": "store_true"})
-    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors"])
+    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors", "small_steps"])
     arguments = parser.parse_args()
     if "shear" in arguments.parts:
         shear()
@@ -179,6 +194,8 @@ def main():
         passes(arguments.seeds)
     if "factors" in arguments.parts:
         factors(arguments.seeds, arguments.finished)
+    if "small_steps" in arguments.parts:
+        small_steps(arguments.seeds[0], arguments.finished)
 
 
 if __name__ == "__main__":

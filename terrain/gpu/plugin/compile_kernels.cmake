@@ -5,7 +5,11 @@ set(_flags -std=c++20 -O3 -fmad=false --expt-relaxed-constexpr -cudart static -c
   -Xcompiler -fPIC,-O2,-ffp-contract=off,-fno-math-errno,-Wno-psabi -I ${ROOT} -isystem ${EIGEN}
   -Xcudafe --diag_error=68 -gencode arch=compute_80,code=sm_80
   -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90 -Xptxas -v)
-execute_process(COMMAND ${NVCC} ${_flags} -x cu ${SOURCES} -shared -o ${OUT}.part
+# Compiled together, they read the headers once for each architecture.
+list(TRANSFORM SOURCES REPLACE "(.+)" "#include \"\\1\"\n")
+list(JOIN SOURCES "" _together)
+file(WRITE ${OUT}.cu "${_together}")
+execute_process(COMMAND ${NVCC} ${_flags} ${OUT}.cu -shared -o ${OUT}.part
   RESULT_VARIABLE _failed OUTPUT_VARIABLE _log ERROR_VARIABLE _more)
 set(_log "${_log}${_more}")
 file(WRITE ${OUT}.log "${_log}")

@@ -55,7 +55,7 @@ constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that c
 constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are equal
 constexpr double kWindow = 0.25;     // diameters of a grain on either side of a point at which a curve is read
 
-const auto kRules = std::to_array<ParameterRule>({
+const auto kGrainRules = std::to_array<ParameterRule>({
     {"friction", "-", 0.0, 10.0, 0.2, 1.0, false},
     {"rolling_friction", "-", 0.0, 10.0, 0.0, 0.8, false},
     {"cohesion", "Pa", 0.0, 1e9, 0.0, 60e3, false},
@@ -491,7 +491,7 @@ class GrainModel final : public CalibrationModel {
 }  // namespace
 
 CalibrationKind grain_kind() {
-  CalibrationKind kind{"grains", "a scenario with grains", kRules, read_model<GrainModel>, optimize_noisy,
+  CalibrationKind kind{"grains", "a scenario with grains", kGrainRules, read_model<GrainModel>, optimize_noisy,
                        true,     {"set", "tests"}};
   for (const Quantity& q : kQuantities) kind.quantities.push_back({q.name, q.least, q.most});
   return kind;

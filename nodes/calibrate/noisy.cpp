@@ -25,11 +25,11 @@
 namespace furrow::calibrate {
 namespace {
 
-constexpr int kRounds = 3;      // of the weights, which depend on the place
-constexpr int kLooks = 400;     // random places among which the least certain one is chosen
-constexpr double kSame = 0.01;  // of a scale: two places with the same information
-constexpr double kStays = 0.3;  // of a parameter's standard error: the minimum stays in place
-constexpr double kNear = 0.15;  // of a scale: around the minimum
+constexpr int kRounds = 3;           // of the weights, which depend on the place
+constexpr int kLooks = 400;          // random places among which the least certain one is chosen
+constexpr double kSamePlace = 0.01;  // of a scale: two places with the same information
+constexpr double kStays = 0.3;       // of a parameter's standard error: the minimum stays in place
+constexpr double kNear = 0.15;       // of a scale: around the minimum
 
 using Places = std::vector<Eigen::VectorXd>;
 
@@ -117,7 +117,7 @@ class Noisy {
         return result(misfit, "converged");
       if (asked() >= options_.evaluations) return result(misfit, "all evaluations are used");
       // If the minimum was already evaluated, a place near it adds more information.
-      const bool known = distance(least) < kSame;
+      const bool known = distance(least) < kSamePlace;
       const bool answered = evaluate(known ? least_certain(misfit, least) : least);
       before = known || answered ? least : Eigen::VectorXd();
     }
@@ -192,7 +192,7 @@ class Noisy {
     // The identity limits the errors of undetermined directions to the scale's own length.
     const Eigen::MatrixXd JtJ = J.transpose() * J + Eigen::MatrixXd::Identity(now.size(), now.size());
     const Eigen::ArrayXd errors = JtJ.inverse().diagonal().array().sqrt();
-    return ((now - before).array().abs() <= (kStays * errors).max(kSame)).all();
+    return ((now - before).array().abs() <= (kStays * errors).max(kSamePlace)).all();
   }
 
   /// Returns a place near the minimum where the surrogates are least certain.
@@ -202,7 +202,7 @@ class Noisy {
     for (int n = 0; n < kLooks; ++n) {
       Eigen::VectorXd place = around + kNear * (2.0 * draw_.place(objective_.parameters()).array() - 1.0).matrix();
       place = place.cwiseMax(0.0).cwiseMin(1.0);
-      if (distance(place) < kSame) continue;
+      if (distance(place) < kSamePlace) continue;
       if (const double doubt = misfit.doubts(place).sum(); doubt > most) most = doubt, best = place;
     }
     return best;

@@ -35,7 +35,7 @@ using terrain::scm::ScmOptions;
 
 constexpr double kNoSlip = 1e9;  // friction of the shear box on the soil: it never slips
 
-const auto kRules = std::to_array<ParameterRule>({
+const auto kScmRules = std::to_array<ParameterRule>({
     {"bekker_k_c", "N/m^(n+1)", -1e12, 1e12, -1e6, 1e6, false},
     {"bekker_k_phi", "N/m^(n+2)", 1e-6, 1e13, 1e3, 1e9, true},
     {"bekker_n", "-", 1e-3, 5.0, 0.05, 2.0, false},
@@ -236,6 +236,6 @@ class ScmModel final : public CalibrationModel {
 
 }  // namespace
 
-CalibrationKind scm_kind() { return {"scm", "a soil file", kRules, read_model<ScmModel>, optimize_smooth}; }
+CalibrationKind scm_kind() { return {"scm", "a soil file", kScmRules, read_model<ScmModel>, optimize_smooth}; }
 
 }  // namespace furrow::calibrate

@@ -55,7 +55,7 @@ std::string target_line(const Json& target, const char* how) {
                      percent(target["largest_error_of_peak"]));
 }
 
-std::string result_text(const Json& summary) {
+std::string calibration_text(const Json& summary) {
   std::string text;
   for (const auto& [name, p] : summary["parameters"].items()) {
     const double value = p["value"].get<double>();
@@ -111,7 +111,7 @@ ExitCode calibrate_study(const CalibrateArguments& arguments) {
     display.clear();
     calibrate::write_calibration(calibration, results, folder);
     const Json summary = calibrate::calibration_json(calibration, results);
-    launch::say(result_text(summary));
+    launch::say(calibration_text(summary));
     const auto warnings = summary["warnings"].get<std::vector<std::string>>();
     for (const std::string& warning : warnings)
       if (std::find(notes.begin(), notes.end(), warning) == notes.end()) print_warning(warning);

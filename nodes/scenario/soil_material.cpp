@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kFormatVersion = 1;
+constexpr int kSoilVersion = 1;
 constexpr double kSameSize = 0.01;  // of radii, relative
 constexpr const char* kConeIndexKey = "cone_index";
 
@@ -55,7 +55,7 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   JsonReader reader(soil, name);
   reader.child("terrain");
   reader.allow_only({"format_version", "description", "terrain", "measured"});
-  reader.check_version(kFormatVersion, true);
+  reader.check_version(kSoilVersion, true);
   // The scenario itself sets the bin and the size of its grains.
   const std::vector<std::string> of_soil = terrain::terrain_keys(role::soil);
   for (const auto& [key, value] : soil["terrain"].items())

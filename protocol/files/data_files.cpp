@@ -13,8 +13,8 @@
 namespace furrow {
 namespace {
 
-constexpr std::size_t kMaxPath = 4095;  // bytes: PATH_MAX
-constexpr std::size_t kMaxName = 255;   // bytes: NAME_MAX
+constexpr std::size_t kMaxPath = 4095;     // bytes: PATH_MAX
+constexpr std::size_t kMaxFileName = 255;  // bytes: NAME_MAX
 constexpr const char* kFolders[] = {"rigs", "tire/data", "terrain/data", "vehicle/data"};
 
 /// Names of the JSON files in a folder; none if it cannot be read.
@@ -26,7 +26,7 @@ void add_names(const std::filesystem::path& folder, std::vector<std::string>& na
 
 /// The file of `known` that a name without a file probably means: with ".json" behind it, or of similar spelling.
 std::optional<std::string> meant(const std::string& typed, std::vector<std::string> known) {
-  if (typed.size() > kMaxName) return {};
+  if (typed.size() > kMaxFileName) return {};
   std::sort(known.begin(), known.end());
   const std::string whole = std::filesystem::path(typed).has_extension() ? typed : typed + ".json";
   if (std::binary_search(known.begin(), known.end(), whole)) return whole;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <Eigen/QR>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -18,6 +17,7 @@
 #include "rigs/vehicle/wheel_measures.hpp"
 #include "vehicle/driver/driver_car.hpp"
 #include "vehicle/driver/file_driver.hpp"
+#include "vehicle/multibody/statics.hpp"
 #include "vehicle/parts/vehicle_energy.hpp"
 
 namespace furrow::rigs {
@@ -157,7 +157,7 @@ Vec3 VehicleRig::upright(std::span<const double> axle_height) const {
     places.row(k) << at.x(), at.y(), 1.0;
     heights[k] = axle_height[k] - at.z();
   }
-  const Eigen::VectorXd plane = places.completeOrthogonalDecomposition().solve(heights);
+  const Eigen::VectorXd plane = vehicle::shortest_solution(places, heights);
   return Vec3(-plane[0], -plane[1], 1.0).normalized();
 }
 

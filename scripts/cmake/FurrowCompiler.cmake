@@ -93,14 +93,14 @@ function(furrow_precompile)
   endforeach()
 endfunction()
 
-# furrow_batch(<folder>...): compiles the sources of the libraries of these folders eight at a time, in a third of the
+# furrow_batch(<folder>...): compiles the sources of the libraries of these folders sixteen at a time, in a third of the
 # time. Names in anonymous namespaces must differ within a library. FURROW_BATCH=OFF compiles each source alone.
 function(furrow_batch)
   if(NOT FURROW_BATCH)
     return()
   endif()
   furrow_targets(targets STATIC_LIBRARY ${ARGN})
-  set_target_properties(${targets} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${targets} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 
 # furrow_batch_folders(<library> <folder>…): compiles the sources of each of these folders of a library together, in a

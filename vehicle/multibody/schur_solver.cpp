@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRegularization = 1e-9;  // ε relative to the largest diagonal entry of S
 
-struct Side {
+struct RowSide {
   int row;
   bool is_b;
 };
@@ -24,7 +24,7 @@ void SchurSolver::analyze(std::span<const Row> rows, const RateSides& rates) {
   int body_count = 0;
   for (const Row& row : rows) body_count = std::max({body_count, row.a + 1, row.b + 1});
   for (const SpinSide& side : rates.spins) body_count = std::max(body_count, side.body + 1);
-  std::vector<std::vector<Side>> sides(body_count);
+  std::vector<std::vector<RowSide>> sides(body_count);
   for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
     if (rows[i].a != kGround) sides[rows[i].a].push_back({i, false});
     if (rows[i].b != kGround) sides[rows[i].b].push_back({i, true});
@@ -34,8 +34,8 @@ void SchurSolver::analyze(std::span<const Row> rows, const RateSides& rates) {
   for (int i = 0; i < n; ++i) pattern.emplace_back(i, i, 0.0);
   entries_.clear();
   for (int body = 0; body < body_count; ++body)
-    for (const Side& si : sides[body])
-      for (const Side& sj : sides[body])
+    for (const RowSide& si : sides[body])
+      for (const RowSide& sj : sides[body])
         if (si.row >= sj.row) {
           entries_.push_back({si.row, sj.row, 0, body, si.is_b, sj.is_b});
           pattern.emplace_back(si.row, sj.row, 0.0);

@@ -18,7 +18,7 @@ constexpr double kClosed = 1e-13;      // m or rad, of a row
 constexpr double kBalanced = 1e-12;    // of the weight
 constexpr double kLongestStep = 0.03;  // of one iteration, m or rad
 constexpr double kDifference = 1e-6;   // for stiffnesses, m or rad
-constexpr double kRank = 1e-10;        // of G
+constexpr double kRank = 1e-10;        // of a matrix
 constexpr int kMaxIterations = 200, kMaxHalvings = 30;
 
 }  // namespace
@@ -99,6 +99,12 @@ void Statics::displace(const Eigen::VectorXd& by) {
   }
 }
 
+Eigen::VectorXd shortest_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(kRank);
+  return solver.compute(matrix).solve(right);
+}
+
 Outcome Statics::close() {
   double worst = 0.0;
   int worst_row = 0;
@@ -107,10 +113,7 @@ Outcome Statics::close() {
     worst = row_count() > 0 ? wanted.cwiseAbs().maxCoeff(&worst_row) : 0.0;
     if (worst <= kClosed) break;
     if (!std::isfinite(worst)) break;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(kRank);
-    solver.compute(jacobian());
-    Eigen::VectorXd step = solver.solve(wanted);
+    Eigen::VectorXd step = shortest_solution(jacobian(), wanted);
     const double longest = step.cwiseAbs().maxCoeff();
     const bool settled = iteration > 5 && longest < 1e-14;  // round-off
     if (settled) break;
@@ -139,10 +142,7 @@ Eigen::MatrixXd Statics::freedoms() const {
 Eigen::VectorXd Statics::tangent(int held) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(row_count());
   rate[system_.constraint_count() + held] = 1.0;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(kRank);
-  solver.compute(jacobian());
-  return solver.solve(rate);
+  return shortest_solution(jacobian(), rate);
 }
 
 Eigen::VectorXd Statics::forces() const {
@@ -166,12 +166,7 @@ Eigen::VectorXd Statics::forces() const {
   return Q;
 }
 
-Eigen::VectorXd Statics::multipliers() const {
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(kRank);
-  solver.compute(jacobian().transpose());
-  return solver.solve(-forces());
-}
+Eigen::VectorXd Statics::multipliers() const { return shortest_solution(jacobian().transpose(), -forces()); }
 
 double Statics::unbalance() const { return (freedoms().transpose() * forces()).cwiseAbs().maxCoeff(); }
 

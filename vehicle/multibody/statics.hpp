@@ -36,6 +36,9 @@ struct Mode {
   Eigen::VectorXd shape;   // vᵀ M v = 1
 };
 
+/// The shortest x for which |matrix x − right| is least; the rank counts pivots down to 1e-10 of the largest.
+Eigen::VectorXd shortest_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
 class Statics {
  public:
   /// @pre the system was assembled; it outlives this

@@ -37,8 +37,9 @@ FACTORS = {
     "speed 2 m/s, c = 10 s/m": LAW | SLOW | DOUBLE, "impulse limit": LAW | {"terrain.friction_impulse_limit": True},
     "stiffness of 1e8 Pa": LAW | STIFF, "mindlin": {}, "mindlin, speed 2 m/s": SLOW,
     "mindlin, stiffness of 1e6 N/m^1.5": {"terrain.young_modulus": 1.93e7}}
-SMALL_STEPS = (6e-6, 20e-6)  # s
-SMALL_STEP_CASES = ("slip 0.1", "slip 0.9", "slip 0.5", "cohesion 40 kPa", "cohesion 100 kPa", "slip 0.3")
+# step (s): cases, end (s); means begin at its half
+SMALL_STEPS = {6e-6: (("slip 0.1", "slip 0.9", "slip 0.5", "cohesion 40 kPa", "cohesion 100 kPa"), 1.2),
+               3e-6: (("slip 0.1", "slip 0.9"), 0.6), 20e-6: (("slip 0.1", "slip 0.9"), 1.2)}
 FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
            "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m"}
 OVER_TIME = {40: "cohesion 40 kPa", 60: "cohesion 60 kPa", 80: "slip 0.3", 100: "cohesion 100 kPa"}  # kPa: case
@@ -168,16 +169,22 @@ def factors(seeds, finished):
 
 def small_steps(seed, finished):
     rows, made = [], provenance.made_here()
-    for step in SMALL_STEPS:
-        for case in SMALL_STEP_CASES:
+    for step, (cases, end) in SMALL_STEPS.items():
+        for case in cases:
+            window = {"run.end": end, "run.average_from": 0.5 * end}
             if summary := run_of("report_law_small_steps", f"{case} {step * 1e6:g} us", seed, finished, LAW,
-                                 CASES[case], {"run.step": step}):
+                                 CASES[case], {"run.step": step}, window):
                 energy = summary["accounts"]["energy"]
+                series = driver.series(driver.RESULTS / "report_law_small_steps"
+                                       / f"{case} {step * 1e6:g} us_{seed}".replace(" ", "_"))
+                early = (series["time_s"] >= 0.3) & (series["time_s"] <= 0.6)
                 rows.append({"case": case, "step_us": round(step * 1e6), "seed": seed,
                              "slip": CASES[case].get("rig.slip", 0.3),
                              "cohesion_kPa": CASES[case].get("terrain.cohesion", 80e3) / 1e3,
+                             "pull_0.3_to_0.6_s_N": series["drawbar_pull_N"][early].mean(), "from_s": 0.5 * end,
                              **driver.drawbar_row(summary, FIGURES), "sliding_loss_J": energy["lost"]["sliding_loss"],
-                             "energy_residual_J": energy["residual"], "energy_closes": int(energy["closes"])})
+                             "energy_residual_J": energy["residual"], "energy_turnover_J": energy["turnover"],
+                             "energy_closes": int(energy["closes"])})
                 driver.write("report_law_small_steps.csv", rows, made)
 
 

@@ -68,7 +68,7 @@ class Run(SystemTest):
         sides = ["--set", "terrain.sides=periodic", "--threads"]
         for number, flags in enumerate((["--threads", "1"], ["--threads", "2"],
                                         ["--set", "run.seed=2"], [*sides, "1"], [*sides, "2"])):
-            self.furrow("run", path, "--out", f"out{number}", *flags)
+            self.furrow("run", path, "--out", f"out{number}", "--no-plots", *flags)
             hashes.append(self.summary(f"out{number}")["state_hash"])
         self.assertEqual(hashes[0], hashes[1])
         self.assertEqual(hashes[3], hashes[4])
@@ -76,10 +76,10 @@ class Run(SystemTest):
 
     def test_overwrite_replaces_results_and_nothing_else(self):
         path = write_scenario(self.folder)
-        self.furrow("run", path, "--out", "out")
+        self.furrow("run", path, "--out", "out", "--no-plots")
         (self.folder / "out" / "notes.txt").write_text("mine")
         (self.folder / "out" / "frames" / "terrain_009999.h5").write_text("of an older, longer run")
-        done = self.furrow("run", path, "--out", "out", "--overwrite")
+        done = self.furrow("run", path, "--out", "out", "--overwrite", "--no-plots")
         self.assertEqual(done.stderr.count("Open MPI's option --allow-run-as-root"), os.geteuid() == 0, done.stderr)
         self.assertEqual((self.folder / "out" / "notes.txt").read_text(), "mine")
         self.assertFalse((self.folder / "out" / "frames" / "terrain_009999.h5").exists())
@@ -87,14 +87,14 @@ class Run(SystemTest):
     def test_under_the_users_mpirun(self):
         path = write_scenario(self.folder)
         command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", "3",
-                   PROGRAM, "run", str(path)]
+                   PROGRAM, "run", str(path), "--no-plots"]
         done = self.call(command, prints="results/small-001\n")
         self.assertTrue((self.folder / "results" / "small-001" / "summary.json").exists())
         self.assertEqual(done.stderr.count(" simulated s, "), 1, done.stderr)
 
     def test_four_wheels_on_one_bed_each_read_their_own_weight(self):
         self.furrow("run", ROOT / "rigs" / "four_wheels.json", "--out", "out", "--set", "terrain.radius=0.03",
-                    "--set", "terrain.layers=3", "--set", "run.step=2e-4")
+                    "--set", "terrain.layers=3", "--set", "run.step=2e-4", "--no-plots")
         masses = [200, 320, 450, 700]
         summary = self.summary()
         self.assertEqual(len(summary["ranks"]), 6)
@@ -108,7 +108,7 @@ class Run(SystemTest):
         self.assertEqual(sorted(path.name for path in (self.folder / "out").glob("summary*")), ["summary.json"])
 
     def test_profile_is_a_chrome_trace_of_all_ranks(self):
-        self.furrow("run", write_scenario(self.folder), "--out", "out", "--profile")
+        self.furrow("run", write_scenario(self.folder), "--out", "out", "--profile", "--no-plots")
         events = read_json(self.folder / "out" / "profile.json")["traceEvents"]
         names = {event["pid"]: event["args"]["name"] for event in events if event["ph"] == "M"}
         self.assertEqual(list(names.values()), ["rig", "tire 0", "terrain"])
@@ -120,9 +120,8 @@ class Run(SystemTest):
 
     def test_report_makes_plots(self):
         path = write_scenario(self.folder)
-        self.furrow("run", path, "--out", "out")
-        for plot in (self.folder / "out").glob("*.png"):
-            plot.unlink()
+        self.furrow("run", path, "--out", "out", "--no-plots")
+        self.assertEqual(list((self.folder / "out").glob("*.png")), [])
         done = self.furrow("report", "out")
         self.assertTrue(done.stdout)
         for name in done.stdout.splitlines():
@@ -141,7 +140,7 @@ class Interrupted(SystemTest):
                                            output={"frame_interval": 0.05}))
 
     def started(self):
-        process = self.start("run", self.path, "--out", "out")
+        process = self.start("run", self.path, "--out", "out", "--no-plots")
         series = self.folder / "out" / "timeseries.csv"
         wait_for(lambda: series.exists() and len(ranks(self.path)) == 3 and process.poll() is None,
                  60, "the run begins")

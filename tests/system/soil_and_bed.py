@@ -196,9 +196,8 @@ class Soil(WithCache):
     def test_soil_files_with_grains_of_several_sizes_fit_the_small_boxes(self):
         path = write_scenario(self.work)
         for test in ("shear", "repose"):
-            soil, _ = self.run_json("soil", path, "--quick", "--only",
-                                    test, "--set", "terrain.material=loose_sand.json", "--set",
-                                    "terrain.size_spread=0.5", "--out", test)
+            soil, _ = self.run_json("soil", path, "--quick", "--speed", "0.3", "--only", test, "--out", test,
+                                    "--set", "terrain.material=loose_sand.json", "--set", "terrain.size_spread=0.5")
             self.assertIsNotNone(soil["friction_angle_deg" if test == "shear" else "repose_angle_deg"])
 
     def test_one_test_alone_twice_the_same(self):

@@ -42,16 +42,16 @@ class Sweep(SystemTest):
 
     def test_a_table_of_another_study_is_told_before_it_is_replaced(self):
         for slip, others in ((0.1, False), (0.3, True), (0.3, False)):
-            done = self.furrow("sweep", self.study(set={"run.end": 0.03}, grid={"rig.slip": [slip]}))
+            done = self.furrow("sweep", self.study(set={"run.end": 0.03}, grid={"rig.slip": [slip]}), "--no-plots")
             self.assertEqual("sweep.csv: held 1 run of another study" in done.stderr, others, done.stderr)
 
     def test_a_misspelt_result_is_told_and_needs_no_run_again(self):
         keys = {"set": {"run.end": 0.03}, "grid": {"rig.slip": [0.1]}}
-        done = self.furrow("sweep", self.study(**keys, results=["drawbar_pul_N.mean"]),
+        done = self.furrow("sweep", self.study(**keys, results=["drawbar_pul_N.mean"]), "--no-plots",
                            says="has no result 'drawbar_pul_N.mean', expected 'drawbar_pull_N.mean' or ")
         self.assertEqual(self.table()[0]["drawbar_pul_N.mean"], "")
-        done = self.furrow("sweep", self.study(**keys, results=["drawbar_pull_N.mean"]), says="is done already",
-                           lacks="has no result")
+        done = self.furrow("sweep", self.study(**keys, results=["drawbar_pull_N.mean"]), "--no-plots",
+                           says="is done already", lacks="has no result")
         self.assertNotEqual(self.table()[0]["drawbar_pull_N.mean"], "", done.stderr)
 
     def test_a_removed_folder_ends_it_and_is_not_made_anew(self):
@@ -65,14 +65,14 @@ class Sweep(SystemTest):
             self.assertEqual(err.count("furrow: error: "), 1, err)
             self.assertFalse(out.exists(), [str(path) for path in out.rglob("*")])
             self.assertEqual(survivors(self.folder), [])
-        self.furrow("sweep", study, "--jobs", "2")
+        self.furrow("sweep", study, "--jobs", "2", "--no-plots")
 
     def test_a_failed_run_stops_no_other(self):
         # grains as soft as these leave the bin while they settle
         study = self.study(list=[{"rig.slip": 0.1},
                                  {"terrain.young_modulus": 1e3, "rig.carrier_mass": 20000, "run.end": 0.2},
                                  {"rig.slip": 0.2}])
-        self.furrow("sweep", study, code=3, errors=1,
+        self.furrow("sweep", study, "--no-plots", code=3, errors=1,
                     says="sweep.csv: not every run finished; the first that failed has exit code")
         rows = self.table()
         self.assertEqual([row["state"] for row in rows], ["done", "failed", "done"])
@@ -88,11 +88,11 @@ class Sweep(SystemTest):
         self.ended(process, 75)
         self.assertEqual([row["state"] for row in self.table()], ["stopped", "waiting"])
         self.assertEqual(survivors(self.folder), [])
-        self.furrow("sweep", study, says="run 1 of 2 (rig.slip=0.1) continues")
+        self.furrow("sweep", study, "--no-plots", says="run 1 of 2 (rig.slip=0.1) continues")
         self.assertEqual([row["state"] for row in self.table()], ["done", "done"])
         folders = [self.folder / "results" / "study" / row["folder"] for row in self.table()]
         self.assertEqual([len(read_json(run / "summary.json")["segments"]) for run in folders], [2, 1])
-        self.furrow("sweep", study, "--out", "whole")
+        self.furrow("sweep", study, "--out", "whole", "--no-plots")
         self.assertEqual(differences(self.folder / "whole", self.folder / "results" / "study"), [])
 
     def test_a_run_whose_supervisor_was_killed_says_so(self):
@@ -158,11 +158,11 @@ class Sweep(SystemTest):
         self.assertNotEqual(a["state_hash"], b["state_hash"])
         # the bed of a pass is made again, bit for bit, so that the pass is still the one that is done
         (bed := self.folder / "results" / "study" / "beds" / f"{first.name}_rest_0.01.h5").write_bytes(b"damaged")
-        again = self.furrow("sweep", study)
+        again = self.furrow("sweep", study, "--no-plots")
         self.assertEqual(again.stderr.count("is done already"), 4, again.stderr)
         self.assertGreater(bed.stat().st_size, 1000)
         shutil.rmtree(second)
-        self.furrow("sweep", study)
+        self.furrow("sweep", study, "--no-plots")
         self.assertEqual(read_json(second / "summary.json")["state_hash"], b["state_hash"])
 
     def test_a_pass_goes_on_where_its_study_was_moved(self):
@@ -176,8 +176,8 @@ class Sweep(SystemTest):
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75)
         (self.folder / "before").rename(self.folder / "after")
-        self.furrow("sweep", study, "--out", "after", says="continues")
-        self.furrow("sweep", study, "--out", "whole")
+        self.furrow("sweep", study, "--out", "after", "--no-plots", says="continues")
+        self.furrow("sweep", study, "--out", "whole", "--no-plots")
         hashes = [{path.parent.name: read_json(path)["state_hash"]
                    for path in self.folder.glob(f"{name}/runs/*/summary.json")} for name in ("after", "whole")]
         self.assertEqual(*hashes)

@@ -51,7 +51,7 @@ class Cost final : public ceres::CostFunction {
 
 Least least_squares(const Residuals& residuals, std::size_t points, Eigen::VectorXd begin) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports by its summary; its log is not for users
-  for (double& share : begin) share = share <= kStartsAtBound ? 0.0 : share >= 1.0 - kAtBound ? 1.0 : share;
+  for (double& share : begin) share = share <= kStartsAtBound ? 0.0 : share >= 1.0 - kStartsAtBound ? 1.0 : share;
   Cost cost(residuals, points, begin.size());
   ceres::Problem::Options of_problem;
   of_problem.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

@@ -12,9 +12,9 @@
 namespace furrow::terrain::soil {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 constexpr double kBrixiusDepth = 0.15;           // depth down to which the mean cone index is taken, m
 constexpr double kLeastFreedom = 2.0;            // of an interval: with one it is wider than prior knowledge
@@ -38,9 +38,9 @@ std::string no_interval_because(const Measured& m, bool quick, bool angle) {
 /// Writes the parameters: values at the top level, and errors, or the reason for none, under the same names.
 class Parameters {
  public:
-  Parameters(json& target, bool quick) : target_(target), quick_(quick) {}
+  Parameters(Json& target, bool quick) : target_(target), quick_(quick) {}
   void add(const char* name, const Measured& m, double unit = 1.0) {
-    target_[name] = m.samples > 0 ? number(m.value / unit) : json(nullptr);
+    target_[name] = m.samples > 0 ? number(m.value / unit) : Json(nullptr);
     samples_[name] = m.samples;
     error_[name] = interval_[name] = nullptr;
     if (no_error_because(m, quick_).empty()) error_[name] = number(m.standard_error / unit);
@@ -59,12 +59,12 @@ class Parameters {
   }
 
  private:
-  json& target_;
+  Json& target_;
   bool quick_;
-  json error_, interval_, samples_, because_ = json::object();
+  Json error_, interval_, samples_, because_ = Json::object();
 };
 
-json box_json(const SpecimenFacts& s, const Box& box) {
+Json box_json(const SpecimenFacts& s, const Box& box) {
   const std::string periodic = std::string(s.periodic_x ? "x" : "") + (s.periodic_y ? "y" : "");
   return {{"length_m", s.length},
           {"width_m", s.width},
@@ -86,7 +86,7 @@ bool all_settled(const Tests& tests) {
 
 const char* shape_name(const PlateTest& test) { return test.disc ? "disc" : "strip"; }
 
-json volume_json(const VolumeAccount& volume) {
+Json volume_json(const VolumeAccount& volume) {
   return {{"displaced_m3", volume.displaced},
           {"heaved_m3", volume.heaved},
           {"compacted_m3", volume.compacted},
@@ -96,12 +96,12 @@ json volume_json(const VolumeAccount& volume) {
 }
 
 /// p = k zⁿ of each plate, and the volume account of the soil.
-json each_plate_json(const SoilRun& run, const SoilParameters& p) {
+Json each_plate_json(const SoilRun& run, const SoilParameters& p) {
   const double r = run.options.material.radius;
-  json list = json::array();
+  Json list = Json::array();
   for (const PlateParameters& of : p.plates) {
     const PlateTest& test = run.plan.plate_beds[of.bed].plates[of.plate];
-    json plate = {{"shape", shape_name(test)},
+    Json plate = {{"shape", shape_name(test)},
                   {"size_m", test.width * r},
                   {"b_m", (test.disc ? 0.5 : 1.0) * test.width * r},
                   {"bed", of.bed}};
@@ -118,10 +118,10 @@ json each_plate_json(const SoilRun& run, const SoilParameters& p) {
     const auto& tests = run.results.plate[of.bed];
     for (std::size_t at = of.plate; at < tests.size(); at += run.plan.plate_beds[of.bed].plates.size()) {
       const PlateResult& result = tests[at].result;
-      json one = {{"seed", tests[at].specimen.seed}, {"bed_depth_m", tests[at].specimen.height}};
+      Json one = {{"seed", tests[at].specimen.seed}, {"bed_depth_m", tests[at].specimen.height}};
       one.update(volume_json(result.volume));
       one["floor_force_error"] = number(result.balance_error);
-      one["unloaded"] = test.unload ? volume_json(result.unloaded) : json(nullptr);
+      one["unloaded"] = test.unload ? volume_json(result.unloaded) : Json(nullptr);
       if (test.unload) one["unloaded"]["rebound_m"] = result.rebound;
       plate["tests"].push_back(one);
     }
@@ -130,10 +130,10 @@ json each_plate_json(const SoilRun& run, const SoilParameters& p) {
   return list;
 }
 
-json plate_json(const SoilRun& run, const SoilParameters& p) {
+Json plate_json(const SoilRun& run, const SoilParameters& p) {
   const double r = run.options.material.radius;
   const PlateTest& test = run.plan.plate_beds.front().plates.front();
-  json j = {{"what", run.plan.plate_beds.front().exact
+  Json j = {{"what", run.plan.plate_beds.front().exact
                          ? "rigid rough plates in metres pushed in at constant speed; b of a disc is its radius"
                          : "rigid rough strip pushed in at constant speed; plane strain"},
             {"box", box_json(run.results.plate.front().front().specimen, run.plan.plate_beds.front().box)},
@@ -147,8 +147,8 @@ json plate_json(const SoilRun& run, const SoilParameters& p) {
     const auto& tests = run.results.plate[bed];
     if (!all_settled(tests)) j["beds_settled"] = false;
     for (const auto& t : tests) worst = t.result.balance_error < worst ? worst : t.result.balance_error;  // NaN stays
-    json one = {{"box", box_json(tests.front().specimen, run.plan.plate_beds[bed].box)},
-                {"r_squared", p.beds[bed].k_c.samples > 0 ? json(p.beds[bed].goodness) : json(nullptr)}};
+    Json one = {{"box", box_json(tests.front().specimen, run.plan.plate_beds[bed].box)},
+                {"r_squared", p.beds[bed].k_c.samples > 0 ? Json(p.beds[bed].goodness) : Json(nullptr)}};
     Parameters parameters(one, run.options.quick);
     parameters.add("k_c", p.beds[bed].k_c);
     parameters.add("k_phi", p.beds[bed].k_phi);
@@ -164,7 +164,7 @@ json plate_json(const SoilRun& run, const SoilParameters& p) {
 
 /// The first entries of the tests in the shear cell.
 template <class Tests>
-json cell_json(const char* what, const SoilRun& run, const Tests& tests, const ShearTest& test) {
+Json cell_json(const char* what, const SoilRun& run, const Tests& tests, const ShearTest& test) {
   return {{"what", what},
           {"box", box_json(tests.front().specimen, run.plan.shear_box)},
           {"beds_settled", all_settled(tests)},
@@ -172,11 +172,11 @@ json cell_json(const char* what, const SoilRun& run, const Tests& tests, const S
           {"travel_m", test.travel * run.options.material.radius}};
 }
 
-json shear_json(const SoilRun& run, double goodness) {
+Json shear_json(const SoilRun& run, double goodness) {
   const auto& tests = run.results.shear;
   const double r = run.options.material.radius;
   const ShearTest& test = run.plan.shears.front();
-  json j = cell_json(
+  Json j = cell_json(
       "two toothed plates in a cell periodic along and across; lid under constant load, moved at constant speed", run,
       tests, test);
   j["tooth_m"] = test.tooth * r;
@@ -205,16 +205,16 @@ json shear_json(const SoilRun& run, double goodness) {
   return j;
 }
 
-json interface_json(const SoilRun& run, const SoilParameters& p) {
+Json interface_json(const SoilRun& run, const SoilParameters& p) {
   const auto& tests = run.results.faces;
   const ShearTest& test = run.plan.faces.front();
-  json j = cell_json(
+  Json j = cell_json(
       "grains sheared along a flat plate and along one with half-grains glued to it, in the cell of the shear test; "
       "stresses at the end of the travel",
       run, tests, test);
   j["friction"] = test.friction >= 0.0 ? test.friction : run.options.material.friction;
   for (const Interface& of : p.interfaces) {
-    json face = {{"face", face_name(of.face)}};
+    Json face = {{"face", face_name(of.face)}};
     Parameters parameters(face, run.options.quick);
     parameters.add("friction_angle_deg", of.delta, kDegree);
     parameters.add("adhesion_Pa", of.adhesion);
@@ -241,7 +241,7 @@ json interface_json(const SoilRun& run, const SoilParameters& p) {
 }
 
 /// The lowest and the highest of the cones' values.
-json band(const std::vector<ConeParameters>& cones, Measured ConeParameters::*value) {
+Json band(const std::vector<ConeParameters>& cones, Measured ConeParameters::*value) {
   const auto less = [&](const ConeParameters& a, const ConeParameters& b) {
     return (a.*value).value < (b.*value).value;
   };
@@ -249,14 +249,14 @@ json band(const std::vector<ConeParameters>& cones, Measured ConeParameters::*va
   return {number(((*least).*value).value), number(((*most).*value).value)};
 }
 
-json cone_json(const SoilRun& run, const SoilParameters& p) {
+Json cone_json(const SoilRun& run, const SoilParameters& p) {
   const double r = run.options.material.radius;
   const ConeTest& test = run.plan.cones.front();
   const auto& tests = run.results.cone;
   // The same depth for all cones, so that their values are comparable.
   double reached = tests.front().result.reached;
   for (const auto& t : tests) reached = std::min(reached, t.result.reached);
-  json j = {{"what", "30° cone after ASABE S313.3, base diameter in grains, polished (friction at most 0.3)"},
+  Json j = {{"what", "30° cone after ASABE S313.3, base diameter in grains, polished (friction at most 0.3)"},
             {"box", box_json(tests.front().specimen, run.plan.cone_box)},
             {"beds_settled", all_settled(tests)},
             {"speed_m_s", test.speed},
@@ -269,7 +269,7 @@ json cone_json(const SoilRun& run, const SoilParameters& p) {
                                   ? "0 to 150 mm"
                                   : "from 0 to where the cones were pushed in this bed, not to 150 mm"}};
   for (std::size_t k = 0; k < p.cones.size(); ++k) {
-    json cone = {{"base_diameter_m", run.plan.cones[k].diameter * r},
+    Json cone = {{"base_diameter_m", run.plan.cones[k].diameter * r},
                  {"base_diameter_grains", 0.5 * run.plan.cones[k].diameter}};
     Parameters parameters(cone, run.options.quick);
     parameters.add("index_Pa", p.cones[k].index);
@@ -284,9 +284,9 @@ json cone_json(const SoilRun& run, const SoilParameters& p) {
   return j;
 }
 
-json repose_json(const SoilRun& run) {
+Json repose_json(const SoilRun& run) {
   const double r = run.options.material.radius;
-  json j = {{"what", "half of a settled bed taken away at once; slope of the flank that remains, on a rough base"},
+  Json j = {{"what", "half of a settled bed taken away at once; slope of the flank that remains, on a rough base"},
             {"box", box_json(run.results.repose.front().specimen, run.plan.repose_box)},
             {"beds_settled", all_settled(run.results.repose) && all_settled(run.results.dry)},
             {"cut_m", run.plan.repose.cut * r},
@@ -308,7 +308,7 @@ json repose_json(const SoilRun& run) {
 }
 
 /// Adds the keys of engine scm from the plate and the shear tests; skips tests that were not made or give no soil.
-void add_empirical(const SoilParameters& p, json& terrain) {
+void add_empirical(const SoilParameters& p, Json& terrain) {
   if (p.n.samples > 0 && p.k_phi.value > 0.0 && p.n.value > 0.0) {
     terrain["bekker_k_c"] = p.k_c.value;
     terrain["bekker_k_phi"] = p.k_phi.value;
@@ -323,16 +323,16 @@ void add_empirical(const SoilParameters& p, json& terrain) {
 
 }  // namespace
 
-json soil_json(const SoilRun& run) {
+Json soil_json(const SoilRun& run) {
   const dem::DemOptions& o = run.options.material;
   const SoilParameters p = soil::soil_parameters(run.results, run.plan, o.radius);
-  json j;
+  Json j;
   j["format_version"] = 1;
   j["version"] = FURROW_VERSION;
   j["scenario"] = run.scenario;
   j["scenario_digest"] = run.scenario_digest;
   j["quick"] = run.options.quick;
-  j["not_to_be_quoted"] = run.options.quick ? json(kQuickWarning) : json(nullptr);
+  j["not_to_be_quoted"] = run.options.quick ? Json(kQuickWarning) : Json(nullptr);
   j["seeds"] = run.options.seeds;
   j["first_seed"] = o.seed;
   Parameters parameters(j, run.options.quick);
@@ -358,7 +358,7 @@ json soil_json(const SoilRun& run) {
                  {"rolling_friction", o.rolling_friction},
                  {"size_distribution", o.size_distribution},
                  {"size_spread", o.size_spread},
-                 {"settling_friction", o.settling_friction < 0.0 ? json(nullptr) : json(o.settling_friction)},
+                 {"settling_friction", o.settling_friction < 0.0 ? Json(nullptr) : Json(o.settling_friction)},
                  {"cohesion_Pa", o.cohesion},
                  {"young_modulus_Pa", o.young_modulus},
                  {"bed_generator", o.bed_generator},

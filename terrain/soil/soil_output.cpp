@@ -9,7 +9,7 @@
 
 namespace furrow::terrain::soil {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 void write_soil_tables(const std::filesystem::path& folder, const SoilRun& run) {
   const auto write = [&](bool tested, const char* name, std::string text, const auto& add_rows) {
@@ -81,9 +81,9 @@ namespace {
 
 constexpr double kOpenAccount = 0.1;  // of the displaced volume, left over by the account
 
-std::string plate_text(const json& plate) {
+std::string plate_text(const Json& plate) {
   double displaced = 0.0, depth = 0.0, count = 0.0;
-  for (const json& test : plate["tests"])
+  for (const Json& test : plate["tests"])
     displaced += test["displaced_m3"].get<double>(), depth += test["bed_depth_m"].get<double>(), count += 1.0;
   const auto shares = [&](const std::string& of) {
     const auto share = [&](const char* name) { return 1e2 * plate[of + name].get<double>(); };
@@ -100,9 +100,9 @@ std::string plate_text(const json& plate) {
       open ? "; the account does not close: too few grains across the plate, or too little sinkage" : "");
 }
 
-std::string cone_text(const json& cone) {
+std::string cone_text(const Json& cone) {
   if (cone["cones"].size() < 2) return "";
-  const json &mean = cone["band"]["mean_Pa"], &gradient = cone["band"]["gradient_Pa_per_m"];
+  const Json &mean = cone["band"]["mean_Pa"], &gradient = cone["band"]["gradient_Pa_per_m"];
   return fmt::format(
       "furrow: cones of {} sizes: mean from 0 to {:.3g} mm {:.3g} to {:.3g} kPa, gradient {:.3g} to {:.3g} MPa/m\n",
       cone["cones"].size(), 1e3 * cone["mean_depth_m"][1].get<double>(), 1e-3 * mean[0].get<double>(),
@@ -111,11 +111,11 @@ std::string cone_text(const json& cone) {
 
 }  // namespace
 
-std::string soil_text(const json& soil) {
+std::string soil_text(const Json& soil) {
   const bool quick = soil.value("quick", false);
   std::string text;
   const auto value = [&](const char* name, double factor) {
-    const auto in = [&](const json& from) {
+    const auto in = [&](const Json& from) {
       return from.contains(name) && from[name].is_number() ? factor * from[name].get<double>() : NAN;
     };
     const double error = in(soil["standard_error"]);
@@ -127,13 +127,13 @@ std::string soil_text(const json& soil) {
     text += fmt::format("furrow: plate sinkage: n {}, k_c {} kN/m^(n+1), k_φ {} kN/m^(n+2)\n", value("n", 1.0),
                         value("k_c", 1e-3), value("k_phi", 1e-3));
   if (soil.contains("plate"))
-    for (const json& plate : soil["plate"]["plates"]) text += plate_text(plate);
+    for (const Json& plate : soil["plate"]["plates"]) text += plate_text(plate);
   if (soil["cohesion_Pa"].is_number())
     text += fmt::format("furrow: direct shear: c {} kPa, φ {}°, K {} mm; with c = 0: φ {}°\n",
                         value("cohesion_Pa", 1e-3), value("friction_angle_deg", 1.0), value("janosi_K_m", 1e3),
                         value("friction_angle_without_cohesion_deg", 1.0));
   if (soil.contains("interface"))
-    for (const json& face : soil["interface"]["faces"])
+    for (const Json& face : soil["interface"]["faces"])
       text +=
           fmt::format("furrow: {} plate: friction angle {:.3g}°, K {:.3g} mm; grains there roll by {:.2g} of its way\n",
                       face["face"].get<std::string>(), face["friction_angle_without_adhesion_deg"].get<double>(),
@@ -147,7 +147,7 @@ std::string soil_text(const json& soil) {
             cone_text(soil["cone"]);
   if (soil["repose_angle_deg"].is_number()) {
     bool slumped = true;
-    for (const json& test : soil["repose"]["tests"])
+    for (const Json& test : soil["repose"]["tests"])
       if (test["cohesion_Pa"] == soil["grains"]["cohesion_Pa"]) slumped = slumped && test["slumped"].get<bool>();
     text += fmt::format("furrow: angle of repose {}°{}", value("repose_angle_deg", 1.0),
                         slumped ? "" : " (a steep cut stands)");

@@ -23,11 +23,11 @@
 namespace furrow::terrain {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 512u << 20;
+constexpr std::uintmax_t kMostCrgBytes = 512u << 20;
 constexpr std::size_t kHeaderColumns = 72;                                 // what stands beyond is left out
 constexpr std::size_t kRecord = 80, kSingleField = 10, kDoubleField = 20;  // characters
 constexpr double kSameCut = 1e-6, kSamePlace = 1e-4;                       // m
-constexpr double kLeastIncrement = 1e-6, kFarthest = 1e6;                  // m; the latter as of terrain.profile
+constexpr double kLeastIncrement = 1e-6, kFarthestRoad = 1e6;              // m; the latter as of terrain.profile
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 enum class Channel { cut, slope, banking, heading, left_out };
@@ -35,7 +35,7 @@ enum class Channel { cut, slope, banking, heading, left_out };
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : name_(file.string()) {
-    bytes_ = read_whole_file(file, kMostBytes);
+    bytes_ = read_whole_file(file, kMostCrgBytes);
     rest_ = bytes_;
   }
 
@@ -271,14 +271,14 @@ class Reader {
     OpenCrg road;
     road.start = parameter("REFERENCE_LINE_START_U", 0.0);
     road.increment = needed("REFERENCE_LINE_INCREMENT");
-    if (!(road.increment >= kLeastIncrement && road.increment <= kFarthest))
+    if (!(road.increment >= kLeastIncrement && road.increment <= kFarthestRoad))
       throw wrong("REFERENCE_LINE_INCREMENT",
-                  fmt::format("is {:g}, expected {:g} to {:g} m", road.increment, kLeastIncrement, kFarthest));
+                  fmt::format("is {:g}, expected {:g} to {:g} m", road.increment, kLeastIncrement, kFarthestRoad));
     const double end = road.start + static_cast<double>(rows.size() / channels_.size()) * road.increment;
-    if (!(std::abs(road.start) <= kFarthest && end <= kFarthest))
+    if (!(std::abs(road.start) <= kFarthestRoad && end <= kFarthestRoad))
       throw wrong("REFERENCE_LINE_START_U",
                   fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m", road.start, end,
-                              -kFarthest, kFarthest));
+                              -kFarthestRoad, kFarthestRoad));
     std::vector<std::size_t> order(cuts_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cuts_[a] < cuts_[b]; });
@@ -426,10 +426,10 @@ ProfilePoints profile_of(const OpenCrg& road, double v, const std::filesystem::p
     const double z = share == 0.0   ? row[right]
                      : share == 1.0 ? row[left]
                                     : row[right] + share * (row[left] - row[right]);
-    if (std::abs(z) > kFarthest)
+    if (std::abs(z) > kFarthestRoad)
       throw input_error(file.string(), "",
                         fmt::format("has the height {:g} m at u = {:g} m, v = {:g} m, expected {:g} to {:g} m", z, u, v,
-                                    -kFarthest, kFarthest));
+                                    -kFarthestRoad, kFarthestRoad));
     if (!std::isfinite(z))
       throw input_error(file.string(), "",
                         fmt::format("has no height at u = {:g} m, v = {:g} m, expected a cut that lies on the road "

@@ -23,8 +23,8 @@
 namespace furrow::terrain {
 namespace {
 
-constexpr double kFarthest = 1e6;  // m, as entries of terrain.profile
-constexpr std::uintmax_t kMostBytes = 1u << 30;
+constexpr double kFarthestMap = 1e6;  // m, as entries of terrain.profile
+constexpr std::uintmax_t kMostMapBytes = 1u << 30;
 
 HeightMap map_of(const OpenCrg& road, const std::filesystem::path& file) {
   HeightMap map;
@@ -108,7 +108,7 @@ std::optional<HeightMap> read_csv_map(const std::filesystem::path& file) {
 class AsciiGrid {
  public:
   explicit AsciiGrid(const std::filesystem::path& file)
-      : name_(file.string()), text_(read_whole_file(file, kMostBytes)), rest_(text_) {
+      : name_(file.string()), text_(read_whole_file(file, kMostMapBytes)), rest_(text_) {
     if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);  // a byte-order mark, which editors write
   }
 
@@ -233,11 +233,11 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
   for (const auto& [name, values] : {std::pair("x", &map.x), {"y", &map.y}}) {
     if (values->size() < 2)
       throw input_error(file.string(), "", fmt::format("has one {} alone, expected a grid of two at least", name));
-    if (values->front() < -kFarthest || values->back() > kFarthest)
+    if (values->front() < -kFarthestMap || values->back() > kFarthestMap)
       throw input_error(file.string(), "",
                         fmt::format("lies from {} = {:g} to {:g} m, expected {:g} to {:g} m: terrain.profile_from and "
                                     "terrain.profile_v place it",
-                                    name, values->front(), values->back(), -kFarthest, kFarthest));
+                                    name, values->front(), values->back(), -kFarthestMap, kFarthestMap));
   }
   const std::size_t across = map.y.size();
   const auto place_of = [&](std::size_t k) {
@@ -248,10 +248,10 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
     if (std::isnan(map.z[k]))
       throw input_error(file.string(), "",
                         fmt::format("has no height at {}, expected a road without gaps", place_of(k)));
-    if (!(std::abs(map.z[k]) <= kFarthest))
+    if (!(std::abs(map.z[k]) <= kFarthestMap))
       throw input_error(file.string(), "",
                         fmt::format("has the height {:g} m at {}, expected {:g} to {:g} m", map.z[k], place_of(k),
-                                    -kFarthest, kFarthest));
+                                    -kFarthestMap, kFarthestMap));
   }
   return std::make_shared<const HeightMap>(std::move(map));
 }

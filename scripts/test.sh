@@ -34,5 +34,5 @@ build=$root/build; [[ $preset == release ]] || build=$root/build-$preset
 targets=()
 case $labels in unit|audit|verify) targets=("tests_$labels") ;; esac
 "$root/scripts/build.sh" --preset "$preset" "${targets[@]}"
-exec ctest --test-dir "$build" -L "^(${labels:-unit|mpi|system})\$" -j "$(($(nproc) + 2))" --no-tests=error \
+exec ctest --test-dir "$build" -L "^(${labels:-unit|mpi|system})\$" -j "$(($(nproc) + 1))" --no-tests=error \
   --output-on-failure "$@"

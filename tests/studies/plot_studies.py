@@ -119,8 +119,10 @@ def report_law():
         places = sorted({float(row[x]) for row in rows})
         means = [driver.over_beds([float(row[y]) for row in rows if float(row[x]) == place]) for place in places]
         steady = all(int(row["steady"]) for row in rows)
-        axes.errorbar(places, [mean for mean, _ in means], [half for _, half in means], marker="o", capsize=3,
-                      label=label, mfc=None if steady else "white", **look)
+        beds = len({row["seed"] for row in rows})
+        halves = [half for _, half in means] if beds > 1 else None
+        axes.errorbar(places, [mean for mean, _ in means], halves, marker="o", capsize=3, label=label,
+                      mfc=None if steady else "white", **look)
 
     rows = table("")
     figure, panels = driver.subplots(1, 4, figsize=(13, 3.6), layout="constrained")
@@ -134,7 +136,7 @@ def report_law():
                                            ("pull_N", "net force"))):
             points(panels[1], at_slip, "cohesion_kPa", name, label if step == 60 else None, color=f"C{k}",
                    linestyle=line)
-    driver.label(panels[0], "slip", "drawbar pull, N", "Fig. 8", 0)
+    driver.label(panels[0], "slip", "drawbar pull, N", "Fig. 8")
     driver.label(panels[1], "cohesion, kPa", "force, N", "Figs 14 to 16, slip 0.3")
     over_time = table("_resistance")
     for name in over_time[0]:

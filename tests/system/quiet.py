@@ -103,8 +103,8 @@ class Quiet(SystemTest):
 
     def test_errors_and_how_to_continue_are_said(self):
         self.furrow("run", "none.json", "--quiet", code=2, matches="^furrow: error: ")
-        failing = changed(run={"step": 5e-4}, terrain={"allow_unstable_step": True, "young_modulus": 1e10},
-                          output={"series_interval": 1e-3})
+        failing = changed(run={"step": 2e-3}, terrain={"allow_unstable_step": True, "young_modulus": 1e8},
+                          output={"series_interval": 4e-3})
         done = furrow("run", write_scenario(self.folder, failing), "--quiet", cwd=self.folder, env=self.env)
         self.assertNotEqual(done.returncode, 0)
         self.assertTrue(done.stderr.startswith("furrow: error: "), done.stderr)

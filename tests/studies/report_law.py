@@ -8,8 +8,8 @@ writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the r
 6 m over slip and cohesion; writes report_law.csv, a row for each bed, report_law_slopes.csv, and
 report_law_resistance.csv, the resistance against time at four cohesions (Fig. 13). `passes`: three passes
 in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig. 8, one change at a time from the rig's
-runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. `small_steps`: the rig at steps of 6 and 20 µs on the
-first bed, for the law as it is printed; writes report_law_small_steps.csv.
+runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. `small_steps`: the rig at steps of 3, 6 and 20 µs on
+the first bed, for the law as it is printed; writes report_law_small_steps.csv.
 
 Expected, written down before the first run: a trend agrees with the report's if the 95 % interval of the slope over
 beds excludes zero with the report's sign: pull grows with slip (Fig. 8), tractive effort falls with cohesion (Fig. 16),
@@ -89,10 +89,14 @@ def slope(points):
     return ((n * sum(a * b for a, b in points) - x * y) / (n * sum(a * a for a, _ in points) - x * x))
 
 
+def folder_of(part, case, seed):
+    return driver.RESULTS / part / f"{case}_{seed}".replace(" ", "_").replace("/", "_")
+
+
 def run_of(part, case, seed, finished, *changed):
     """The summary of a run of the rig; None where it has failed or must not run."""
     words = [RIG, *driver.settings(FAST, *changed, {"run.seed": seed})]
-    out = driver.RESULTS / part / f"{case}_{seed}".replace(" ", "_").replace("/", "_")
+    out = folder_of(part, case, seed)
     return driver.summary(out) if driver.done_run(words, out, finished) else None
 
 
@@ -129,9 +133,8 @@ def resistance(seeds, finished, made):
     for kpa, case in OVER_TIME.items():
         of_bed = []
         for seed in seeds:
-            folder = driver.RESULTS / "report_law" / f"{case}_{seed}".replace(" ", "_")
             if run_of("report_law", case, seed, finished, LAW, CASES[case]):
-                series = driver.series(folder)
+                series = driver.series(folder_of("report_law", case, seed))
                 place = (series["time_s"] / MEAN).astype(int)
                 of_bed.append([series["terrain_resistance_N"][place == k].mean() for k in range(place[-1])])
         for k, values in enumerate(zip(*of_bed)):
@@ -171,12 +174,10 @@ def small_steps(seed, finished):
     rows, made = [], provenance.made_here()
     for step, (cases, end) in SMALL_STEPS.items():
         for case in cases:
-            window = {"run.end": end, "run.average_from": 0.5 * end}
-            if summary := run_of("report_law_small_steps", f"{case} {step * 1e6:g} us", seed, finished, LAW,
-                                 CASES[case], {"run.step": step}, window):
-                energy = summary["accounts"]["energy"]
-                series = driver.series(driver.RESULTS / "report_law_small_steps"
-                                       / f"{case} {step * 1e6:g} us_{seed}".replace(" ", "_"))
+            at_step = "report_law_small_steps", f"{case} {step * 1e6:g} us", seed
+            if summary := run_of(*at_step, finished, LAW, CASES[case], {
+                    "run.step": step, "run.end": end, "run.average_from": 0.5 * end}):
+                energy, series = summary["accounts"]["energy"], driver.series(folder_of(*at_step))
                 early = (series["time_s"] >= 0.3) & (series["time_s"] <= 0.6)
                 rows.append({"case": case, "step_us": round(step * 1e6), "seed": seed,
                              "slip": CASES[case].get("rig.slip", 0.3),

@@ -18,6 +18,7 @@
 #include "protocol/files/printable.hpp"
 #include "protocol/files/text_file.hpp"
 #include "terrain/rigid/roads/crg_settings.hpp"
+#include "terrain/rigid/roads/road_place.hpp"
 #include "terrain/rigid/roads/road_text.hpp"
 
 namespace furrow::terrain {
@@ -27,7 +28,7 @@ constexpr std::uintmax_t kMostCrgBytes = 512u << 20;
 constexpr std::size_t kHeaderColumns = 72;                                 // what stands beyond is left out
 constexpr std::size_t kRecord = 80, kSingleField = 10, kDoubleField = 20;  // characters
 constexpr double kSameCut = 1e-6, kSamePlace = 1e-4;                       // m
-constexpr double kLeastIncrement = 1e-6, kFarthestRoad = 1e6;              // m; the latter as of terrain.profile
+constexpr double kLeastIncrement = 1e-6;                                   // m
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 enum class Channel { cut, slope, banking, heading, left_out };
@@ -271,14 +272,14 @@ class Reader {
     OpenCrg road;
     road.start = parameter("REFERENCE_LINE_START_U", 0.0);
     road.increment = needed("REFERENCE_LINE_INCREMENT");
-    if (!(road.increment >= kLeastIncrement && road.increment <= kFarthestRoad))
+    if (!(road.increment >= kLeastIncrement && road.increment <= kFarthest))
       throw wrong("REFERENCE_LINE_INCREMENT",
-                  fmt::format("is {:g}, expected {:g} to {:g} m", road.increment, kLeastIncrement, kFarthestRoad));
+                  fmt::format("is {:g}, expected {:g} to {:g} m", road.increment, kLeastIncrement, kFarthest));
     const double end = road.start + static_cast<double>(rows.size() / channels_.size()) * road.increment;
-    if (!(std::abs(road.start) <= kFarthestRoad && end <= kFarthestRoad))
+    if (!(std::abs(road.start) <= kFarthest && end <= kFarthest))
       throw wrong("REFERENCE_LINE_START_U",
                   fmt::format("leads the road from u = {:g} to {:g} m, expected {:g} to {:g} m", road.start, end,
-                              -kFarthestRoad, kFarthestRoad));
+                              -kFarthest, kFarthest));
     std::vector<std::size_t> order(cuts_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cuts_[a] < cuts_[b]; });
@@ -426,10 +427,10 @@ ProfilePoints profile_of(const OpenCrg& road, double v, const std::filesystem::p
     const double z = share == 0.0   ? row[right]
                      : share == 1.0 ? row[left]
                                     : row[right] + share * (row[left] - row[right]);
-    if (std::abs(z) > kFarthestRoad)
+    if (std::abs(z) > kFarthest)
       throw input_error(file.string(), "",
                         fmt::format("has the height {:g} m at u = {:g} m, v = {:g} m, expected {:g} to {:g} m", z, u, v,
-                                    -kFarthestRoad, kFarthestRoad));
+                                    -kFarthest, kFarthest));
     if (!std::isfinite(z))
       throw input_error(file.string(), "",
                         fmt::format("has no height at u = {:g} m, v = {:g} m, expected a cut that lies on the road "

@@ -23,7 +23,6 @@
 namespace furrow::terrain {
 namespace {
 
-constexpr double kFarthestMap = 1e6;  // m, as entries of terrain.profile
 constexpr std::uintmax_t kMostMapBytes = 1u << 30;
 
 HeightMap map_of(const OpenCrg& road, const std::filesystem::path& file) {
@@ -233,11 +232,11 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
   for (const auto& [name, values] : {std::pair("x", &map.x), {"y", &map.y}}) {
     if (values->size() < 2)
       throw input_error(file.string(), "", fmt::format("has one {} alone, expected a grid of two at least", name));
-    if (values->front() < -kFarthestMap || values->back() > kFarthestMap)
+    if (values->front() < -kFarthest || values->back() > kFarthest)
       throw input_error(file.string(), "",
                         fmt::format("lies from {} = {:g} to {:g} m, expected {:g} to {:g} m: terrain.profile_from and "
                                     "terrain.profile_v place it",
-                                    name, values->front(), values->back(), -kFarthestMap, kFarthestMap));
+                                    name, values->front(), values->back(), -kFarthest, kFarthest));
   }
   const std::size_t across = map.y.size();
   const auto place_of = [&](std::size_t k) {
@@ -248,10 +247,10 @@ std::shared_ptr<const HeightMap> read_map(const std::filesystem::path& file, con
     if (std::isnan(map.z[k]))
       throw input_error(file.string(), "",
                         fmt::format("has no height at {}, expected a road without gaps", place_of(k)));
-    if (!(std::abs(map.z[k]) <= kFarthestMap))
+    if (!(std::abs(map.z[k]) <= kFarthest))
       throw input_error(file.string(), "",
                         fmt::format("has the height {:g} m at {}, expected {:g} to {:g} m", map.z[k], place_of(k),
-                                    -kFarthestMap, kFarthestMap));
+                                    -kFarthest, kFarthest));
   }
   return std::make_shared<const HeightMap>(std::move(map));
 }

@@ -13,8 +13,6 @@
 namespace furrow::terrain {
 namespace {
 
-constexpr double kFarthest = 1e6;  // m, as entries of terrain.profile
-
 ProfilePoints read_csv(const std::filesystem::path& file) {
   const CsvFile csv(file, "a profile in CSV with the columns x_m and z_m", {"x_m", "z_m"});
   ProfilePoints points;

@@ -3,6 +3,8 @@
 
 namespace furrow::terrain {
 
+inline constexpr double kFarthest = 1e6;  // m, of places and heights in a file, as entries of terrain.profile
+
 struct RoadPlace {
   double v = 0.0;      // of the file at y = 0, m: v of OpenCRG, y of a grid; a profile has none
   double from = -1.0;  // x of its first height, m; negative: as the file says

@@ -13,6 +13,8 @@ import unittest
 from checkpoint_runs import FAULTY, INTERVAL, RANKS, STEPS, CheckpointTest, differences, steps, summary
 from program import children, main, read_json, start, write_json
 
+LAUNCHER = " --oversubscribe "  # on its command line: one left without ranks is ended by who waits for the folder
+
 # (point, rank, which time, step at which the run continues at the latest)
 KILLS = [
     ("step", "rig", 250, 200),
@@ -349,7 +351,7 @@ class Folder(CheckpointTest):
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=10)
         self.mark.unlink()
-        self.no_process_left()
+        self.no_process_left(but=LAUNCHER)
         self.continues()
 
     def test_killed_supervisor_of_ranks_that_are_being_started(self):
@@ -357,7 +359,7 @@ class Folder(CheckpointTest):
         process = self.start_waiting("start", 1, 1)
         process.send_signal(signal.SIGKILL)
         process.communicate(timeout=10)
-        self.no_process_left()
+        self.no_process_left(but=LAUNCHER)
         self.resume(code=2, says="start again with furrow run --overwrite")
         self.program("run", self.path, "--out", self.run_folder, "--no-plots", "--overwrite")
         self.same_as_whole()

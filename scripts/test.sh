@@ -7,7 +7,7 @@ usage() { cat <<'HELP'
 usage: scripts/test.sh [--label LABEL]... [--preset NAME] [-- CTEST-OPTION ...]
 Builds everything and runs the tests with the labels unit, mpi and system; or builds what the labels given need, and
 runs those.
-  --label LABEL  unit, audit (those of protocol, terrain and tire), mpi, system, verify (longer comparisons),
+  --label LABEL  unit, mpi, system, verify (longer comparisons),
                  campaign (hours), fresh (bare Debian machine; needs root),
                  cluster (Slurm and an image; skipped where they are not installed), browser (report.html in Chromium),
                  docs (the documentation site and the commands of its tutorial),
@@ -32,7 +32,7 @@ done
 build=$root/build; [[ $preset == release ]] || build=$root/build-$preset
 
 targets=()
-case $labels in unit|audit|verify) targets=("tests_$labels") ;; esac
+case $labels in unit|verify) targets=("tests_$labels") ;; esac
 "$root/scripts/build.sh" --preset "$preset" "${targets[@]}"
 exec ctest --test-dir "$build" -L "^(${labels:-unit|mpi|system})\$" -j "$(($(nproc) + 1))" --no-tests=error \
   --output-on-failure "$@"

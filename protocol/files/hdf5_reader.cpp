@@ -138,7 +138,12 @@ bool Hdf5Reader::has_attribute(const std::string& name) const { return H5Aexists
 
 std::vector<std::string> Hdf5Reader::datasets() const {
   std::vector<std::string> names;
-  check(H5Ovisit2(handle_, H5_INDEX_NAME, H5_ITER_INC, add_dataset, &names, H5O_INFO_BASIC) >= 0,
+#if H5_VERSION_GE(1, 12, 0)
+  constexpr auto visit = H5Ovisit3;
+#else
+  constexpr auto visit = H5Ovisit2;
+#endif
+  check(visit(handle_, H5_INDEX_NAME, H5_ITER_INC, add_dataset, &names, H5O_INFO_BASIC) >= 0,
         "its contents cannot be listed: the file is damaged");
   return names;
 }

@@ -39,7 +39,7 @@ bool in_range(const json& node, const json& value) {
   if (value.is_string()) {
     const auto text = value.get<std::string>();
     if (node.contains("minLength") && text.size() < node["minLength"].get<std::size_t>()) return false;
-    return !node.contains("pattern") || "^" + text + "$" == node["pattern"];
+    return !node.contains("pattern") || "^" + text + "$" == node["pattern"].get<std::string>();
   }
   if (value.is_array()) {
     return value.size() >= node.value("minItems", std::size_t{0}) &&

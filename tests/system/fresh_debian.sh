@@ -12,16 +12,18 @@ say() { printf 'fresh_debian: %s\n' "$*" >&2; }
 usage() { cat <<'HELP'
 usage: tests/system/fresh_debian.sh [--short] [--keep] [--results DIR]
 Needs root, debootstrap, git and the network (the mirror is that of this machine's apt configuration).
+  --release NAME the name of another release, for example trixie: Debian 13 (default: bookworm, Debian 12)
   --short        the commands of the tutorial instead of the tests
   --keep         leave the system's folder for a look inside
   --results DIR  copy the runs' results there
 HELP
 }
 
-short=false keep=false results=''
+short=false keep=false results='' release=bookworm
 all=("$@")
 while (($#)); do
   case $1 in
+    --release) release=$2; shift ;;
     --short) short=true ;;
     --keep) keep=true ;;
     --results) results=$(realpath -m -- "$2"); shift ;;
@@ -64,10 +66,11 @@ log=$work/commands.log
 # 1. The machine. Debian's archives as this machine's apt knows them: URI, suite, component.
 archives=$(apt-get indextargets --format '$(ORIGIN)|$(REPO_URI)|$(RELEASE)|$(COMPONENT)' 'Created-By: Packages' |
   awk -F'|' '$1 == "Debian" && $3 ~ /^bookworm/ {print $2, $3, $4}' | sort -u)
-mirror=$(awk '$2 == "bookworm" {print $1; exit}' <<<"$archives")
+archives=${archives//bookworm/$release}
+mirror=$(awk -v release="$release" '$2 == release {print $1; exit}' <<<"$archives")
 [[ -n $mirror ]] || { say "skipped: this machine's apt knows no Debian 12 archive (apt-get update first?)"; exit 77; }
-say 'making a minimal Debian 12'
-debootstrap --variant=minbase bookworm "$system" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+say "making a minimal Debian ($release)"
+debootstrap --variant=minbase "$release" "$system" "$mirror" >"$work/debootstrap.log" 2>&1 ||
   { tail -n 20 "$work/debootstrap.log" >&2; exit 1; }
 sed 's/^/deb /' <<<"$archives" >"$system/etc/apt/sources.list"
 apt-config dump | grep -E '^Acquire::(http|https|Check-|Retries|ForceIPv)' >"$system/etc/apt/apt.conf.d/90host" || true
@@ -151,6 +154,7 @@ cat <<JSON
 {
   "made": {"commit": "$commit", "compiler": "$compiler", "processor": "$processor",
            "command": "tests/system/fresh_debian.sh$($short && echo ' --short')"},
+  "release": "$release",
   "cores": $(nproc),
   "packages": {"before": $packages_before, "added": $((packages - packages_before))},
   "installed_MB": {"before": $mb_before, "added": $((mb - mb_before))},

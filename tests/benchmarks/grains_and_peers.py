@@ -56,9 +56,12 @@ fix m1 all property/global youngsModulus peratomtype 2.49e7
 fix m2 all property/global poissonsRatio peratomtype 0.3
 fix m3 all property/global coefficientRestitution peratomtypepair 1 0.2
 fix m4 all property/global coefficientFriction peratomtypepair 1 0.9
+{cohesion}
 pair_style gran model hertz tangential {tangential}
 pair_coeff * *
 """
+# F = k A with A = 4π δ R*, LIGGGHTS' nearest to a constant force: k for about as many contacts as furrow's 80 kPa gives.
+LIGGGHTS_COHESION = "fix m5 all property/global cohesionEnergyDensity peratomtypepair 1 {density}"
 LIGGGHTS_WALLS = """
 fix floor all wall/gran model hertz tangential {tangential} primitive type 1 zplane 0.0
 fix side1 all wall/gran model hertz tangential {tangential} primitive type 1 yplane 0.0
@@ -70,9 +73,10 @@ LAMMPS_HERTZ = "hertz/history 1.8242e7 2.2536e7 7.5e6 NULL 0.9 1"
 
 # furrow's law, cohesion in Pa and precision
 FURROW = {"furrow hertz_tanh, cohesion 80 kPa": ("hertz_tanh", 80e3, "mixed"),
-          "furrow mindlin": ("mindlin", 0.0, "mixed"), "furrow mindlin, double precision": ("mindlin", 0.0, "double")}
-# program and tangential model
-PEERS = {"LIGGGHTS hertz/no_history": ("liggghts", "no_history"), "LAMMPS gran/hertz/history": ("lmp", ""),
+          "furrow hertz_tanh": ("hertz_tanh", 0.0, "mixed"), "furrow mindlin": ("mindlin", 0.0, "mixed"), "furrow mindlin, double precision": ("mindlin", 0.0, "double")}
+# program, tangential model and cohesion energy density in J/m³
+PEERS = {"LIGGGHTS hertz/no_history, sjkr2": ("liggghts", "no_history", 4e5),
+         "LIGGGHTS hertz/no_history": ("liggghts", "no_history"), "LAMMPS gran/hertz/history": ("lmp", ""),
          "LIGGGHTS hertz/history": ("liggghts", "history")}
 CASES = [case for pair in zip(FURROW, PEERS) for case in pair]  # in turn
 
@@ -98,16 +102,18 @@ def run_deck(program, text, ranks, folder, *options):
     return text, float(seconds), int(done), int(atoms), re.findall(r"Neighbor list builds = (\d+)", text)[-1]
 
 
-def run_peer(program, tangential, ranks, steps, folder):
+def run_peer(program, tangential, ranks, steps, folder, cohesion=0.0):
     lammps = program == "lmp"
+    sticky = {"tangential": tangential + (" cohesion sjkr2" if cohesion else ""),
+              "cohesion": LIGGGHTS_COHESION.format(density=cohesion) if cohesion else ""}
     deck = COMMON.format(
         ranks=ranks, data=folder / "bed.data", step=STEP, warm=WARM, steps=steps,
         style="sphere" if lammps else "granular",
         ghosts="comm_modify mode single vel yes" if lammps else "communicate single vel yes",
-        law=f"pair_style gran/{LAMMPS_HERTZ}\npair_coeff * *" if lammps else LIGGGHTS_LAW.format(tangential=tangential),
+        law=f"pair_style gran/{LAMMPS_HERTZ}\npair_coeff * *" if lammps else LIGGGHTS_LAW.format(**sticky),
         walls=(f"fix floor all wall/gran {LAMMPS_HERTZ} zplane 0.0 NULL\n"
                f"fix sides all wall/gran {LAMMPS_HERTZ} yplane 0.0 0.6" if lammps
-               else LIGGGHTS_WALLS.format(tangential=tangential)))
+               else LIGGGHTS_WALLS.format(**sticky)))
     text, seconds, done, atoms, rebuilds = run_deck(program, deck, ranks, folder, "--bind-to", "core")
     contacts = float(re.findall(r"^\s*\d+\s+\d+\s+\S+\s+(\S+)\s*$", text, re.M)[-1])
     return {"grains": atoms, "grain_steps_per_s": atoms * done / seconds, "coordination": contacts / atoms,
@@ -128,14 +134,17 @@ def settle(bed, threads, folder):
     with open(bed) as file:
         write_data([tuple(float(row[f"{axis}_m"]) for axis in "xyz") for row in csv.DictReader(file)],
                    folder / "bed.data")
-    for law, cohesion, precision in list(FURROW.values())[:2]:
-        run_furrow(law, cohesion, precision, bed, threads, 1, "--settle", "0.3", "--save-bed", folder / f"{law}.csv")
+    for law, cohesion, precision in list(FURROW.values())[:3]:
+        run_furrow(law, cohesion, precision, bed, threads, 1, "--settle", "0.3", "--save-bed",
+                   folder / f"{law}_{cohesion}.csv")
 
 
 def measure(case, threads, steps, folder):
     if case in PEERS:
-        return run_peer(*PEERS[case], threads, steps, folder)
-    return run_furrow(*FURROW[case], folder / f"{FURROW[case][0]}.csv", threads, steps)
+        program, tangential, *cohesion = PEERS[case]
+        return run_peer(program, tangential, threads, steps, folder, *cohesion)
+    law, cohesion, precision = FURROW[case]
+    return run_furrow(law, cohesion, precision, folder / f"{law}_{cohesion}.csv", threads, steps)
 
 
 def options(doc, **more):
@@ -166,6 +175,7 @@ def main():
             "grain_steps_per_s": median[case], "lowest": min(speeds), "highest": max(speeds),
             "coordination": f"{last['coordination']:.3f}", "list_rebuilds": f"{last['list_rebuilds']:.2f}",
             "bytes_per_grain": f"{last['bytes_per_grain']:.0f}" if "bytes_per_grain" in last else "",
+            "over_LIGGGHTS_sjkr2": f"{median[case] / median['LIGGGHTS hertz/no_history, sjkr2']:.2f}",
             "over_LIGGGHTS_no_history": f"{median[case] / median['LIGGGHTS hertz/no_history']:.2f}",
             "over_LAMMPS_history": f"{median[case] / median['LAMMPS gran/hertz/history']:.2f}"})
     driver.write(arguments.out, rows, told=True)

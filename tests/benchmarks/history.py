@@ -5,9 +5,9 @@ usage: history.py MILESTONE [--rounds 3] [--out history.csv]
 
 Nothing else may run meanwhile; it takes some ten minutes, and more until the beds are in the cache. On two threads and
 one bed, in turn, medians over rounds: `furrow bench grains` with the law mindlin in mixed and double precision and
-LAMMPS, with hertz_tanh and LIGGGHTS, then `furrow bench tire` and `furrow bench rig`. A quick soil test and the ring
-pressed on a cleat are timed once. A peer that is not installed leaves its columns empty. The other options make a row
-quickly, to try the script.
+LAMMPS, with hertz_tanh and LIGGGHTS, each with and without cohesion, then `furrow bench tire` and `furrow bench rig`. A
+quick soil test and the ring pressed on a cleat are timed once. A peer that is not installed leaves its columns empty.
+The other options make a row quickly, to try the script.
 """
 import datetime
 import json
@@ -26,8 +26,10 @@ import provenance  # noqa: E402
 THREADS = 2
 CASES = {"mindlin": "furrow mindlin", "lammps": "LAMMPS gran/hertz/history",
          "mindlin_double": "furrow mindlin, double precision", "hertz_tanh": "furrow hertz_tanh, cohesion 80 kPa",
-         "liggghts": "LIGGGHTS hertz/no_history"}
-OVER = (("mindlin", "lammps"), ("mindlin_double", "lammps"), ("hertz_tanh", "liggghts"))
+         "liggghts": "LIGGGHTS hertz/no_history", "hertz_tanh_free": "furrow hertz_tanh",
+         "liggghts_sjkr2": "LIGGGHTS hertz/no_history, sjkr2"}
+OVER = (("mindlin", "lammps"), ("mindlin_double", "lammps"), ("hertz_tanh", "liggghts"),
+        ("hertz_tanh_free", "liggghts"), ("hertz_tanh", "liggghts_sjkr2"))
 RING = ("--set", "tire.file=hmmwv_ring.json", "--set", "tire.elements_circumference=null",
         "--set", "tire.elements_width=null")
 

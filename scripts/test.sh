@@ -34,5 +34,6 @@ build=$root/build; [[ $preset == release ]] || build=$root/build-$preset
 targets=()
 case $labels in unit|verify) targets=("tests_$labels") ;; esac
 "$root/scripts/build.sh" --preset "$preset" "${targets[@]}"
-exec ctest --test-dir "$build" -L "^(${labels:-unit|mpi|system})\$" -j "$(($(nproc) + 1))" --no-tests=error \
+# Tests of runs wait for a quarter of their time.
+exec ctest --test-dir "$build" -L "^(${labels:-unit|mpi|system})\$" -j "$(($(nproc) + 2))" --no-tests=error \
   --output-on-failure "$@"

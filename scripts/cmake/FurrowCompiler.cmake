@@ -10,10 +10,10 @@ target_compile_options(furrow_options INTERFACE -Wall -Wextra -Wpedantic -fno-ma
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(furrow_options INTERFACE --param=ggc-min-heapsize=262144)
 endif()
-# GCC 12 warns of overlaps and overflows inside std::string and std::vector where there are none (GCC bug 105651 and
-# the like), and of uninitialized vectors inside its own AVX-512 header (GCC bug 105593); the sanitizers look for real
-# ones.
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+# GCC 12 to 14 warn of overlaps and overflows inside std::string and std::vector where there are none (GCC bug 105651
+# and the like), and of uninitialized vectors inside its own AVX-512 header (GCC bug 105593); the sanitizers look for
+# real ones.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15)
   target_compile_options(furrow_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
     -Wno-stringop-overread -Wno-maybe-uninitialized -Wno-uninitialized)
 endif()
@@ -126,29 +126,21 @@ function(furrow_batch_folders library)
   set_target_properties(${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# furrow_test(<name> [UNOPTIMIZED] LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest
-# program, one CTest entry. The target tests_<label> builds all programs with that label. The sources of a program are
-# compiled together, which takes less than half of the time. UNOPTIMIZED halves it again: for tests whose own code
-# computes little and compares no bits with it.
+# furrow_test(<name> LABELS <label>… LIBS <target>… SOURCES <file>… [TIMEOUT <s>]): one GoogleTest program, one CTest
+# entry. The target tests_<label> builds all programs with that label. The sources of a program are compiled together,
+# which takes less than half of the time.
 function(furrow_test name)
-  cmake_parse_arguments(ARG "UNOPTIMIZED" "TIMEOUT" "LABELS;LIBS;SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS;LIBS;SOURCES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  set(pch furrow_test_pch)
-  if(ARG_UNOPTIMIZED)
-    set(unoptimized -O0)
-    set(pch furrow_unoptimized_pch)
-    target_compile_options(${name} PRIVATE -O0)
-  endif()
   set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   target_link_libraries(${name} PRIVATE furrow_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
   if(FURROW_PCH)
-    if(NOT TARGET ${pch})
-      add_library(${pch} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
-      target_compile_options(${pch} PRIVATE ${unoptimized})
-      target_link_libraries(${pch} PRIVATE furrow_options GTest::gtest)
-      target_precompile_headers(${pch} PRIVATE ${_headers} <gtest/gtest.h>)
+    if(NOT TARGET furrow_test_pch)
+      add_library(furrow_test_pch OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+      target_link_libraries(furrow_test_pch PRIVATE furrow_options GTest::gtest)
+      target_precompile_headers(furrow_test_pch PRIVATE ${_headers} <gtest/gtest.h>)
     endif()
-    target_precompile_headers(${name} REUSE_FROM ${pch})
+    target_precompile_headers(${name} REUSE_FROM furrow_test_pch)
   endif()
   add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)

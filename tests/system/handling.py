@@ -20,7 +20,7 @@ STEADY = {
             "rim_spin_inertia": 0.7, "rim_diametral_inertia": 0.4, "touchdown_damping": 12e3, "touchdown_time": 0.5},
     "tire": {"file": "hmmwv_handling.tir"},
     "terrain": {"engine": "rigid"},
-    "run": {"step": 2e-4, "end": 2.0, "average_from": 1.5},
+    "run": {"step": 4e-4, "end": 2.0, "average_from": 1.5},
     "output": {"series_interval": 2e-3, "frame_interval": 0},
 }
 

@@ -60,7 +60,7 @@ fix m4 all property/global coefficientFriction peratomtypepair 1 0.9
 pair_style gran model hertz tangential {tangential}
 pair_coeff * *
 """
-# F = k A with A = 4π δ R*, LIGGGHTS' nearest to a constant force: k for about as many contacts as furrow's 80 kPa gives.
+# F = k A with A = 4π δ R*, LIGGGHTS' nearest to a constant force.
 LIGGGHTS_COHESION = "fix m5 all property/global cohesionEnergyDensity peratomtypepair 1 {density}"
 LIGGGHTS_WALLS = """
 fix floor all wall/gran model hertz tangential {tangential} primitive type 1 zplane 0.0
@@ -73,7 +73,8 @@ LAMMPS_HERTZ = "hertz/history 1.8242e7 2.2536e7 7.5e6 NULL 0.9 1"
 
 # furrow's law, cohesion in Pa and precision
 FURROW = {"furrow hertz_tanh, cohesion 80 kPa": ("hertz_tanh", 80e3, "mixed"),
-          "furrow hertz_tanh": ("hertz_tanh", 0.0, "mixed"), "furrow mindlin": ("mindlin", 0.0, "mixed"), "furrow mindlin, double precision": ("mindlin", 0.0, "double")}
+          "furrow hertz_tanh": ("hertz_tanh", 0.0, "mixed"),
+          "furrow mindlin": ("mindlin", 0.0, "mixed"), "furrow mindlin, double precision": ("mindlin", 0.0, "double")}
 # program, tangential model and cohesion energy density in J/m³
 PEERS = {"LIGGGHTS hertz/no_history, sjkr2": ("liggghts", "no_history", 4e5),
          "LIGGGHTS hertz/no_history": ("liggghts", "no_history"), "LAMMPS gran/hertz/history": ("lmp", ""),

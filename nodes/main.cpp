@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   // A daemon may pass SIGCHLD on as ignored; then the exit codes of children are lost.
   std::signal(SIGCHLD, SIG_DFL);
   if (!as_rank) furrow::launch::end_on_stop_signals();
+  if (!as_rank) furrow::launch::end_on_abort();  // mpirun passes on how a rank ended
   try {
     furrow::launch::end_where_memory_runs_out(furrow::launch::kOutOfMemory);
     if (!as_rank)  // a rank reports its errors after MPI has begun, whose failures have the same status

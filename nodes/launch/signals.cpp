@@ -29,6 +29,13 @@ void end_here(int) {
   _exit(static_cast<int>(ExitCode::stopped));
 }
 
+void end_on_fault(int) {
+  constexpr char kText[] =
+      "furrow: error: fault of the program, in the line above; please report it as an issue, with that line\n";
+  (void)!write(2, kText, sizeof kText - 1);
+  _exit(static_cast<int>(ExitCode::fault));
+}
+
 void want_pause(int) { pause_wanted.store(true, std::memory_order_relaxed); }
 
 void set_handler(int signal, void (*handler)(int)) {
@@ -50,6 +57,8 @@ void end_on_stop_signals() {
   for (const int signal : kStopSignals)
     if (!ignored(signal)) set_handler(signal, end_here);
 }
+
+void end_on_abort() { set_handler(SIGABRT, end_on_fault); }
 
 void catch_stop_signals() {
   for (const int signal : kStopSignals)

@@ -352,6 +352,10 @@ LaunchResult Supervisor::outcome() const {
   if (stop_seen_ > 0.0 && (stopped || ended_ > 0.0))
     return {ExitCode::stopped,
             ended_ > 0.0 ? "stopped by a signal before the ranks could finish" : "stopped by a signal"};
+  if (!launcher_.fault().empty()) {
+    const Error fault = fault_error(launcher_.fault());
+    return {fault.code(), fault.what()};
+  }
   if (launcher_.lost()) {
     const int signal = launcher_.lost()->signal;
     bool limit = false;

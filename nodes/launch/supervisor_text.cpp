@@ -41,6 +41,7 @@ void LauncherText::add(std::string_view line) {
   // "mpirun noticed that process rank 2 with PID 0 on node host exited on signal 9 (Killed)."
   static const std::regex kDead("process rank ([0-9]+) with PID [0-9]+ on node .* exited on signal ([0-9]+)");
   line = line.substr(0, kLongestLine);
+  if (fault_.empty() && line.find(": precondition failed: ") != std::string_view::npos) fault_ = trimmed(line);
   std::match_results<std::string_view::const_iterator> found;
   if (std::regex_search(line.begin(), line.end(), found, kDead)) {
     if (!lost_) lost_ = LostRank{std::stoi(found[1].str()), std::stoi(found[2].str())};

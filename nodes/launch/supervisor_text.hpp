@@ -19,11 +19,14 @@ class LauncherText {
   void add(std::string_view line);
 
   const std::optional<LostRank>& lost() const { return lost_; }
+  /// The line that reports a precondition of the program that did not hold; "" if there is none.
+  const std::string& fault() const { return fault_; }
   /// The other text without ruled lines, in one line, its usual sentences last; for failures to start.
   std::string words() const;
 
  private:
   std::optional<LostRank> lost_;
+  std::string fault_;
   std::vector<std::string> lines_, usual_;
   bool is_usual_ = false;  // for the current paragraph
 };

@@ -83,6 +83,14 @@ TEST(LauncherText, names_the_rank_that_died) {
   EXPECT_EQ(text.words(), "");
 }
 
+TEST(LauncherText, finds_the_precondition_that_a_rank_reports) {
+  launch::LauncherText text;
+  EXPECT_EQ(text.fault(), "");
+  text.add("a.cpp:7: step: precondition failed: dt > 0.0 [dt = 0]");
+  text.add("[host:7] *** Process received signal ***");
+  EXPECT_EQ(text.fault(), "a.cpp:7: step: precondition failed: dt > 0.0 [dt = 0]");
+}
+
 TEST(LauncherText, keeps_what_else_was_said_in_one_line) {
   launch::LauncherText text;
   for (const char* line :

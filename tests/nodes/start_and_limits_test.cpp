@@ -11,11 +11,13 @@
 #include "nodes/launch/child_process.hpp"
 #include "nodes/launch/end_watch.hpp"
 #include "nodes/launch/limits.hpp"
+#include "nodes/launch/signals.hpp"
 #include "nodes/launch/start_watch.hpp"
 #include "nodes/launch/supervisor_lines.hpp"
 #include "nodes/launch/supervisor_text.hpp"
 #include "nodes/scenario/memory_check.hpp"
 #include "nodes/scenario/rank_table.hpp"
+#include "protocol/core/assert.hpp"
 #include "tests/refusal.hpp"
 
 namespace furrow {
@@ -205,6 +207,15 @@ TEST(NoThreadDeathTest, an_end_by_openmp_is_told_with_the_code_of_limits) {
   };
   EXPECT_EXIT(end(EXIT_FAILURE), ::testing::ExitedWithCode(6), "^no room for threads\n$");
   EXPECT_EXIT(end(3), ::testing::ExitedWithCode(3), "^ended slowly\n$");
+}
+
+TEST(AbortDeathTest, a_precondition_that_does_not_hold_has_the_code_of_faults) {
+  const auto misuse = [](int threads) {
+    launch::end_on_abort();
+    FURROW_ASSERT(threads > 0, threads);
+  };
+  EXPECT_EXIT(misuse(0), ::testing::ExitedWithCode(70),
+              "precondition failed: threads > 0 \\[threads = 0\\]\nfurrow: error: fault of the program, in the line");
 }
 
 TEST(RequireMemory, refuses_what_surely_does_not_fit) {

@@ -2,7 +2,7 @@
 //   FURROW_FAULT=point:rank:count:action   the count-th time that this rank comes to the point
 //   FURROW_FAULT_FIRED=file                made when it happens
 // Actions: kill (SIGKILL), stop (SIGSTOP), wait (until the file is removed, a minute at most), throw (an exception that
-// no code expects), say TEXT (fault_text).
+// no code expects), misuse (a precondition that does not hold), say TEXT (fault_text).
 // The rank * is every rank.
 #include <fcntl.h>
 #include <unistd.h>
@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "protocol/core/assert.hpp"
 #include "protocol/files/fault_point.hpp"
 #include "protocol/mpi_transport.hpp"
 
@@ -47,6 +48,7 @@ void fire(const std::string& action) {
   if (action == "kill") raise(SIGKILL);
   if (action == "stop") raise(SIGSTOP);
   if (action == "throw") throw std::logic_error("thrown by a test");
+  FURROW_ASSERT(action != "misuse", action);
   for (int i = 0; action == "wait" && i < 6000 && access(mark, F_OK) == 0; ++i) usleep(10000);
 }
 

@@ -68,6 +68,12 @@ class ProgramFault(CheckpointTest):
         self.assertEqual(failed["exit_code"], 70)
         self.continues()
 
+    def test_a_precondition_that_does_not_hold(self):
+        self.run_with_fault("step", RANKS["terrain"], 250, "misuse", code=70, matches=(
+            r"furrow: error: fault of the program: .*fault_injection.cpp:\d+: fire: precondition failed: "
+            r"action != \"misuse\" \[action = misuse\]; please report it"))
+        self.continues()
+
 
 class KilledAtTheStart(CheckpointTest):
     """Before MPI connects the ranks."""

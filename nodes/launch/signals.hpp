@@ -10,8 +10,8 @@ namespace furrow::launch {
 /// called. Signals that this process was started to ignore stay ignored.
 void end_on_stop_signals();
 
-/// Ends the program with the exit code of its own faults, and a message, when it aborts: on a precondition that does not
-/// hold, which FURROW_ASSERT has printed.
+/// Ends the program with the exit code of its own faults, and a message, when it aborts: on a precondition that does
+/// not hold, which FURROW_ASSERT has printed.
 void end_on_abort();
 
 /// Counts stop signals from now on instead of ending the program, except those that this process was started to ignore.

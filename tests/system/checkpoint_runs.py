@@ -104,14 +104,11 @@ class CheckpointTest(SystemTest):
         while "stopping" not in process.stderr.readline():
             pass
 
-    def no_process_left(self, but=""):
+    def no_process_left(self, but=None):
         """@param but a text of command lines that may be left"""
         def left():
-            return [command for command in survivors(self.folder) if not but or but not in command]
-        try:
-            wait_for(lambda: not left(), 10, "all processes end")
-        except AssertionError as error:
-            raise AssertionError(f"{error}, still there: {left()}") from None
+            return [command for command in survivors(self.folder) if not (but and but in command)]
+        wait_for(lambda: not left(), 10, lambda: f"all processes end, still there: {left()}")
 
     def copy_of_whole(self):
         """The whole run as if it had died in its last step."""

@@ -46,7 +46,8 @@ class ClusterTest(CheckpointTest):
         number = self.cluster.submit(self.script(), cwd=self.folder,
                                      env={**self.fault("step", 0, self.STOPPED_AT, "wait"), **env})
         self.addCleanup(self.cluster.call, "scancel", "--quiet", number, check=False)
-        wait_for(self.mark.exists, 60, f"the job comes to its step {self.STOPPED_AT}: {self.cluster.job(number)}")
+        wait_for(self.mark.exists, 60,
+                 lambda: f"the job comes to its step {self.STOPPED_AT}: {self.cluster.job(number)}")
         self.cluster.call("scancel", "--batch", "--signal=USR1", number)
         said = self.folder / f"slurm-{number}.out"
         wait_for(lambda: "stopping" in said.read_text(), 20, "the signal comes")

@@ -165,14 +165,14 @@ def survivors(mark):
 
 
 def wait_for(condition, seconds, what):
-    """The first true value of condition()."""
+    """The first true value of condition(). @param what a text, or a function that makes it when the time is over"""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         value = condition()
         if value:
             return value
         time.sleep(0.05)
-    raise AssertionError(f"{what}: not within {seconds} s")
+    raise AssertionError(f"{what() if callable(what) else what}: not within {seconds} s")
 
 
 class SystemTest(unittest.TestCase):

@@ -151,7 +151,8 @@ class Interrupted(SystemTest):
     def end(self, process, code, seconds=20):
         out, err = process.communicate(timeout=seconds)
         self.assertEqual(process.returncode, code, err)
-        wait_for(lambda: not survivors(self.path), 5, f"all processes end, still there: {survivors(self.path)}")
+        wait_for(lambda: not survivors(self.path), 5,
+                 lambda: f"all processes end, still there: {survivors(self.path)}")
         return out, err
 
     def error_line(self, err):

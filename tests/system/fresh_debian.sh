@@ -10,7 +10,7 @@ readonly setup_budget_s=180 build_budget_s=600 small_budget_s=180  # README.md: 
 
 say() { printf 'fresh_debian: %s\n' "$*" >&2; }
 usage() { cat <<'HELP'
-usage: tests/system/fresh_debian.sh [--short] [--keep] [--results DIR]
+usage: tests/system/fresh_debian.sh [--release NAME] [--short] [--keep] [--results DIR]
 Needs root, debootstrap, git and the network (the mirror is that of this machine's apt configuration).
   --release NAME the name of another release, for example trixie: Debian 13 (default: bookworm, Debian 12)
   --short        the commands of the tutorial instead of the tests

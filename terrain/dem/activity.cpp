@@ -20,14 +20,14 @@ void Activity::spread(const Strips& strips, Need from, Need to, const int (&besi
   }
 }
 
-void Activity::plan(const Strips& strips, int sway_steps) {
+bool Activity::plan(const Strips& strips, int sway_steps) {
   // A list contains grains of its own parcel, of the next one across, and of three in the next strip.
   static constexpr int kAround[9][2] = {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   static constexpr int kListedBy[5][2] = {{0, 0}, {0, -1}, {-1, -1}, {-1, 0}, {-1, 1}};
   static constexpr int kListed[5][2] = {{0, 0}, {0, 1}, {1, -1}, {1, 0}, {1, 1}};
   constexpr Need kAwake{8};
   sway_steps_ = sway_steps;
-  if (planned_ == strips.changes()) return;
+  if (planned_ == strips.changes()) return false;
   planned_ = strips.changes();
   across_ = strips.across();
   need_.assign(static_cast<std::size_t>(strips.count()) * across_, 0);
@@ -43,6 +43,7 @@ void Activity::plan(const Strips& strips, int sway_steps) {
   spread(strips, kAwake, kLoads, kAround);
   spread(strips, kLoads, kList, kListedBy);
   spread(strips, kList, kMotion, kListed);
+  return true;
 }
 
 void Activity::add_drift(const Parcel& parcel, Drift* drift, const Quad* velocity) const {

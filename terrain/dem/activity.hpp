@@ -76,8 +76,9 @@ class Activity {
     limits_ = limits;
   }
 
-  /// Decides what the coming step needs of each parcel, from those that are awake. @param sway_steps steps of a window
-  void plan(const Strips& strips, int sway_steps);
+  /// Decides what the coming step needs of each parcel, from those that are awake. Returns whether that may differ from
+  /// the step before. @param sway_steps steps of a window
+  bool plan(const Strips& strips, int sway_steps);
   /// Whether some list of strip k is evaluated.
   bool evaluated(int k) const { return any(k, kList); }
   /// Whether the loads on the grains of some parcel of strip k will be complete.

@@ -13,7 +13,7 @@
 namespace furrow::terrain::dem {
 namespace {
 
-constexpr int kMaxChunks = 64;  // enough for any load balance
+constexpr int kChunks = 64;     // with strips to evaluate, for load balance
 constexpr int kMaxStrips = 12;  // of a chunk, so that its data stay in the cache of its thread
 constexpr int kMinStrips = 6;   // of a chunk, as its first strip is moved only in the second pass
 
@@ -54,15 +54,19 @@ GrainSolver::GrainSolver(const SolverParams& params)
   FURROW_ASSERT(params.threads > 0, params.threads);
   FURROW_ASSERT(!params.sizes() || params.smallest > 0.0, params.smallest, params.largest);
   FURROW_ASSERT(!params.sizes() || has_sizes(params.law), params.smallest, params.largest);
-  make_chunks();
 }
 
+/// Cuts the bin into chunks whose length follows from the strips that a step evaluates, not from the threads.
 void GrainSolver::make_chunks() {
   const int n = strips_.count();
-  const int each = std::clamp((n + kMaxChunks - 1) / kMaxChunks, kMinStrips, kMaxStrips);
-  for (int from = 0; from < n; from += each) {
-    chunks_.emplace_back();
-    chunks_.back().from = from, chunks_.back().to = std::min(from + each, n);
+  int evaluated = 0;
+  for (int k = 0; k < n; ++k) evaluated += activity_.evaluated(k) ? 1 : 0;
+  const int each = std::clamp((evaluated + kChunks - 1) / kChunks, kMinStrips, kMaxStrips);
+  chunks_.resize((n + each - 1) / each);
+  int from = 0;
+  for (Chunk& chunk : chunks_) {
+    chunk.from = from;
+    chunk.to = from = std::min(from + each, n);
   }
 }
 
@@ -337,7 +341,7 @@ int GrainSolver::step_part(const StepPart& part, bool measure) {
   const auto threads = static_cast<std::size_t>(std::max(1, params_.threads));
   const bool sample = sample_now();
   const Wanted wanted{.forces = measure || sample, .losses = energies_.due()};
-  activity_.plan(strips_, sway_steps(part.whole));
+  if (activity_.plan(strips_, sway_steps(part.whole))) make_chunks();
   if (params_.precision == Precision::mixed) {
     if (single_.size() < threads) single_.resize(threads);
     evaluate<float>(part, wanted);

@@ -111,7 +111,7 @@ json read_document(const std::string& file, const Settings& settings) {
   json document = parse_json(read_text_file(file, "a scenario in JSON"), file);
   if (!document.is_object()) throw input_error(file, "", "is " + value_text(document) + ", expected an object { }");
   refuse_other_kinds(document, FileKind::scenario, file);
-  // Later settings win: a soil on the command line replaces the file's own values of soil.
+  // A soil on the command line replaces the file's own values of soil, but none that is set beside it.
   const std::string soil = "terrain.material", engine = engine_to_be(document, file, settings);
   if (std::none_of(settings.begin(), settings.end(), [&](const auto& one) { return one.first == soil; }))
     apply_soil_material(document, file, engine);
@@ -119,7 +119,7 @@ json read_document(const std::string& file, const Settings& settings) {
     refuse_vehicle_key(document, key, file);
     if (key.starts_with("tires.") && !document.contains("tires")) fill_rig_tires(document, file);
     set_value(document, key, text, file);
-    if (key == soil) override_soil_material(document, file, engine);
+    if (key == soil) override_soil_material(document, file, engine, settings);
   }
   if (document.contains("format_version") && document["format_version"].is_number_integer() &&
       document["format_version"] > kFormatVersion)
@@ -305,7 +305,9 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
   json document = read_document(file.string(), settings);
   s.warnings = complete(document, file.string(), settings, s.ground_friction);
   fill_cone_index(document, file);
-  if (const std::string warning = other_grains_warning(document, file); !warning.empty()) s.warnings.push_back(warning);
+  for (const std::string& warning :
+       {kept_cone_index_warning(document, file, settings), other_grains_warning(document, file)})
+    if (!warning.empty()) s.warnings.push_back(warning);
   take_run(document["run"], s);
   read_fields(document["output"], s.output);
   read_fields(document["checkpoint"], s.checkpoint);

@@ -107,6 +107,11 @@ json named_material(const json& document, const std::filesystem::path& scenario,
   return values_for(engine, read_soil_material(file), file.string());
 }
 
+/// @param key of the section `terrain`
+bool is_set(const Settings& settings, const std::string& key) {
+  return std::ranges::any_of(settings, [&](const auto& one) { return one.first == "terrain." + key; });
+}
+
 }  // namespace
 
 json read_soil_material(const std::filesystem::path& file) { return read_soil_file(file).values; }
@@ -117,9 +122,14 @@ void apply_soil_material(json& document, const std::filesystem::path& scenario, 
     if (!document["terrain"].contains(key)) document["terrain"][key] = value;
 }
 
-void override_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine) {
+void override_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine,
+                            const Settings& settings) {
   const json soil = named_material(document, scenario, engine);
-  for (const auto& [key, value] : soil.items()) document["terrain"][key] = value;
+  if (soil.is_null()) return;
+  json& terrain = document["terrain"];
+  if (!is_set(settings, kConeIndexKey)) terrain.erase(kConeIndexKey);  // of the scenario's own soil
+  for (const auto& [key, value] : soil.items())
+    if (!is_set(settings, key)) terrain[key] = value;
 }
 
 void fill_cone_index(json& completed, const std::filesystem::path& scenario) {
@@ -131,6 +141,23 @@ void fill_cone_index(json& completed, const std::filesystem::path& scenario) {
   const json index = soil->measured.value("cone_index_Pa", json());
   const json mean = index.is_object() ? index.value("mean", json()) : json();
   if (mean.is_number() && mean.get<double>() > 0.0) terrain[kConeIndexKey] = mean;
+}
+
+std::string kept_cone_index_warning(const json& completed, const std::filesystem::path& scenario,
+                                    const Settings& settings) {
+  const json& terrain = completed.at("terrain");
+  if (!terrain.contains(kConeIndexKey) || terrain[kConeIndexKey].is_null() || is_set(settings, kConeIndexKey) ||
+      is_set(settings, kSoilKey))
+    return {};
+  for (const std::string& key : terrain::terrain_keys(role::soil))
+    if (is_set(settings, key))
+      return input_error(scenario.string(), std::string("terrain.") + kConeIndexKey,
+                         "is {} Pa, which the scenario states for its own soil, and terrain.{} was set: the "
+                         "regressions of traction and the expected sinkage are those of the former soil, expected the "
+                         "new soil's or null",
+                         value_text(terrain[kConeIndexKey]), key)
+          .what();
+  return {};
 }
 
 std::string other_grains_warning(const json& completed, const std::filesystem::path& scenario) {

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "nodes/scenario/scenario.hpp"
+
 namespace furrow::scenario {
 
 inline constexpr const char* kSoilKey = "material";
@@ -20,12 +22,19 @@ nlohmann::json read_soil_material(const std::filesystem::path& file);
 /// @throws Error(bad_input) if the engine uses soil files and this one has no value for it
 void apply_soil_material(nlohmann::json& document, const std::filesystem::path& scenario, const std::string& engine);
 
-/// Does the same for a soil named on the command line, but its values replace the scenario's own.
-void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario, const std::string& engine);
+/// Does the same for a soil named on the command line, but its values replace the scenario's own, cone index included.
+/// Values of other settings stay, in whatever order they are given.
+void override_soil_material(nlohmann::json& document, const std::filesystem::path& scenario, const std::string& engine,
+                            const Settings& settings);
 
 /// Fills a null `terrain.cone_index` of a completed scenario with the measured value of its soil, if the scenario uses
 /// the soil unchanged.
 void fill_cone_index(nlohmann::json& completed, const std::filesystem::path& scenario);
+
+/// Returns a warning if the scenario states the cone index of its soil, and the settings change that soil alone; empty
+/// otherwise.
+std::string kept_cone_index_warning(const nlohmann::json& completed, const std::filesystem::path& scenario,
+                                    const Settings& settings);
 
 /// Returns a warning if the scenario uses a cohesive soil unchanged, but with grains of another size than in the soil's
 /// measurements; empty otherwise. `completed`: the scenario with its defaults.

@@ -319,6 +319,32 @@ TEST(Scenario, a_soil_taken_as_it_is_brings_its_measured_cone_index) {
   EXPECT_EQ(cone_index("30e3", "0.006", ""), std::nullopt);
 }
 
+TEST(Scenario, a_soil_on_the_command_line_replaces_the_scenario_s_but_no_other_setting) {
+  const testing::ScenarioFile sand(R"({"format_version": 1, "terrain": {"friction": 0.4, "rolling_friction": 0.1},
+                                       "measured": {"cone_index_Pa": {"mean": 64e3}}})");
+  const testing::ScenarioFile file(R"({"tire": {"file": "hmmwv_layered.json"},
+      "terrain": {"radius": 0.01, "friction": 0.9, "rolling_friction": 0.3, "cone_index": 340e3}})");
+  const std::pair<std::string, std::string> soil{"terrain.material", '"' + sand.path().string() + '"'},
+      friction{"terrain.friction", "0.7"}, index{"terrain.cone_index", "5e4"};
+  const auto found = [&](const scenario::Settings& settings) {
+    const scenario::Scenario s = file.load(settings);
+    const terrain::dem::DemOptions grains = s.grains("");
+    return std::tuple(grains.friction, grains.rolling_friction, s.terrain->describe().cone_index.value_or(-1.0));
+  };
+  EXPECT_EQ(found({soil}), std::tuple(0.4, 0.1, 64e3));
+  EXPECT_EQ(found({friction, soil}), std::tuple(0.7, 0.1, -1.0)) << "changed, so its cone index is not known";
+  EXPECT_EQ(found({soil, friction}), found({friction, soil}));
+  EXPECT_EQ(found({index, soil}), std::tuple(0.4, 0.1, 5e4));
+
+  const std::vector<std::string> kept = file.load({friction}).warnings;
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_TRUE(holds(kept[0],
+                    "key 'terrain.cone_index': is 340e3 Pa, which the scenario states for its own soil, and "
+                    "terrain.friction was set"));
+  EXPECT_TRUE(file.load({friction, index}).warnings.empty());
+  EXPECT_TRUE(file.load({{"terrain.layers", "12"}}).warnings.empty());
+}
+
 TEST(Scenario, a_soil_is_cohesive_above_the_cohesion_of_sand) {
   const auto cohesive = [](const std::string& terrain) {
     return testing::ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {)" + terrain + "}}")

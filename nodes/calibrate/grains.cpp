@@ -52,6 +52,7 @@ constexpr int kUsualPoints = 5;
 constexpr double kUsualRelativeSigma = 0.1;
 constexpr double kMostSize = 10.0;   // m, as of `furrow soil`
 constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that counts
+constexpr double kOneBed = 0.1;   // of a bed, relative
 constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are equal
 constexpr double kWindow = 0.25;     // diameters of a grain on either side of a point at which a curve is read
 
@@ -424,15 +425,21 @@ class GrainModel final : public CalibrationModel {
                         {"sinkage_m", "pressure_Pa", "seed", "width_m", "diameter_m", "bed_depth_m"});
     if (!table.has("pressure_Pa")) throw table.wrong(0, "has no column 'pressure_Pa' above it, expected one");
     std::map<double, double> measured;
+    const auto differs = [&](std::size_t row, const char* column, double from, double most) {
+      return table.has(column) && !(std::abs(table.number(row, column) - from) <= most);
+    };
     for (std::size_t row = 0; row < table.row_count(); ++row) {
-      const char* size = curve.disc ? "diameter_m" : "width_m";
-      if (table.has(size) && std::abs(table.number(row, size) - curve.size) > 1e-6) continue;
+      if (differs(row, "diameter_m", curve.disc ? curve.size : 0.0, 1e-6)) continue;
+      if (!curve.disc && differs(row, "width_m", curve.size, 1e-6)) continue;
+      if (differs(row, "bed_depth_m", curve.depth, kOneBed * curve.depth)) continue;
       const double z = table.number(row, "sinkage_m");
       if (z >= 0.0) measured[z] = table.number(row, "pressure_Pa");
     }
     const std::string file = target.data.string();
     if (measured.size() < 2)
-      throw input_error(file, "", "has {} points of this plate with a sinkage of 0 or more, expected two or more",
+      throw input_error(file, "",
+                        "has {} points of this plate on a bed of this depth with a sinkage of 0 or more, expected two "
+                        "or more",
                         measured.size());
     std::vector<double> sinkage, pressure;
     for (const auto& [z, p] : measured) sinkage.push_back(z), pressure.push_back(p);

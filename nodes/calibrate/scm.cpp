@@ -33,7 +33,8 @@ namespace {
 using nlohmann::json;
 using terrain::scm::ScmOptions;
 
-constexpr double kNoSlip = 1e9;  // friction of the shear box on the soil: it never slips
+constexpr double kSameDepth = 1.1;  // ratio of depths of beds that count as equal
+constexpr double kNoSlip = 1e9;     // friction of the shear box on the soil: it never slips
 
 const auto kScmRules = std::to_array<ParameterRule>({
     {"bekker_k_c", "N/m^(n+1)", -1e12, 1e12, -1e6, 1e6, false},
@@ -177,6 +178,15 @@ class ScmModel final : public CalibrationModel {
           0, fmt::format("has no column '{}' above it, expected one, or the key '{}' of the target", mark, key));
     const double given = marked ? NAN : reader.positive(key);
     std::map<double, std::vector<Point>> tests;
+    double shallowest = INFINITY, deepest = 0.0;
+    for (std::size_t row = 0; table.has("bed_depth_m") && row < table.row_count(); ++row) {
+      const double depth = table.number(row, "bed_depth_m");
+      shallowest = std::min(shallowest, depth), deepest = std::max(deepest, depth);
+      if (deepest > kSameDepth * shallowest)
+        throw table.wrong(row, fmt::format("bed_depth_m is {} m, and {} m elsewhere, expected plates on beds of one "
+                                           "depth: the pressure depends on it",
+                                           number_text(depth), number_text(depth == deepest ? shallowest : deepest)));
+    }
     for (std::size_t row = 0; row < table.row_count(); ++row) {
       const auto number = [&](const char* column, double otherwise) {
         return table.has(column) ? table.number(row, column) : otherwise;

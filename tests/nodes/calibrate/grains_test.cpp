@@ -204,7 +204,17 @@ TEST_F(CalibrateGrainsOnCurves, wrong_curves_are_refused_with_file_and_key) {
   write("plate.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,5000\n0.05,9000\n");
   write("short.csv", "sinkage_m,pressure_Pa\n0,0\n0.01,5000\n");
   write("pulled.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,-500\n0.05,9000\n");
-  EXPECT_EQ(load(curve_study()).model->targets(TargetSet::fitted)[0].y.back(), 9000.0 - 0.5 * 0.005 * 4000.0 / 0.03);
+  write("other.csv", "sinkage_m,pressure_Pa,bed_depth_m\n0,0,0.2\n0.02,500,0.2\n0.05,9000,0.2\n");
+  const double last = 9000.0 - 0.5 * 0.005 * 4000.0 / 0.03;
+  EXPECT_EQ(load(curve_study()).model->targets(TargetSet::fitted)[0].y.back(), last);
+  // Of a table of several plates and beds, only the curve of this plate on this bed counts.
+  write("plates.csv",
+        "sinkage_m,pressure_Pa,width_m,diameter_m,bed_depth_m\n"
+        "0,0,0.04,0.08,0.127\n0.02,5000,0.04,0.08,0.127\n0.05,9000,0.04,0.08,0.127\n"
+        "0.025,20,0.04,0.08,0.26\n0.03,10,0.08,0,0.127\n0.04,10,0.04,0.1,0.127\n");
+  json several = curve_study();
+  several["targets"][0]["data"] = "plates.csv";
+  EXPECT_EQ(load(several).model->targets(TargetSet::fitted)[0].y.back(), last);
   expect_refused(curve_study(),
                  {
                      {"/targets/0/depth", nullptr, "key 'targets[0].depth': is missing, expected the depth of the bed"},
@@ -212,6 +222,8 @@ TEST_F(CalibrateGrainsOnCurves, wrong_curves_are_refused_with_file_and_key) {
                      {"/targets/0/strip", 0.1, "key 'targets[0].disc': expected either 'disc', a diameter, or 'strip'"},
                      {"/targets/0/disc", -1, "key 'targets[0].disc'"},
                      {"/targets/0/points", 1, "key 'targets[0].points': is 1, expected a whole number from 2 to 20"},
+                     {"/targets/0/data", "other.csv",
+                      "other.csv: has 0 points of this plate on a bed of this depth with a sinkage of 0 or more"},
                      {"/targets/0/data", "short.csv", "short.csv: key 'sinkage_m': ends at 0.01 m, expected 0.024 m"},
                      {"/targets/0/data", "pulled.csv", "pulled.csv: key 'pressure_Pa': is"},
                      {"/targets/0/quantity", "n", "key 'targets[0].quantity': is unknown"},

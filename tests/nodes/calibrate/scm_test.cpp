@@ -132,6 +132,7 @@ TEST_F(CalibrateScm, wrong_targets_are_refused) {
   write("no_width.csv", "sinkage_m,pressure_Pa\n0.01,5000\n");
   write("negative.csv", "width_m,sinkage_m,pressure_Pa\n-0.05,0.01,5000\n");
   write("empty.csv", "width_m,sinkage_m,pressure_Pa\n0.05,0,0\n");
+  write("beds.csv", "width_m,sinkage_m,pressure_Pa,bed_depth_m\n0.05,0.01,5000,0.15\n0.05,0.01,3000,0.3\n");
   expect_refused(
       good(),
       {
@@ -139,6 +140,7 @@ TEST_F(CalibrateScm, wrong_targets_are_refused) {
           {"/targets/0/data", "shear.csv", "shear.csv: key 'line 1': column 'nominal_normal_stress_Pa' is unknown"},
           {"/targets/0/data", "no_width.csv", "has no column 'width_m'"},
           {"/targets/0/data", "negative.csv", "negative.csv: key 'line 2': width_m is -0.05, expected above 0"},
+          {"/targets/0/data", "beds.csv", "key 'line 3': bed_depth_m is 0.3 m, and 0.15 m elsewhere, expected plates"},
           {"/targets/0/data", "empty.csv", "empty.csv: has no point with sinkage_m above 0"},
           {"/targets/0/normal_stress", 2e4, "key 'targets[0].normal_stress': is given with \"on\": \"plate\""},
           {"/targets/0/width", 0.05,

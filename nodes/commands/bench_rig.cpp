@@ -148,7 +148,7 @@ std::string bench_rig(const RigBench& bench, const RunArguments& arguments, laun
                       number_text(number_at(summary, "end_time_s")), number_text(scenario.run.end));
   Json json = times_json(ranks, scenario.run.step);
   json["grains"] = summary["grains"];
-  json["awake_share"] = json_number(number_at(summary, "columns.active_share"));
+  json["awake_share"] = json_number(number_at(summary, "wheels.0.columns.active_share"));
   json["refined_share"] = summary["substeps_refined_share"];
   json["bed_s"] = summary["settle_wall_s"];
   json["tires"] = scenario.tires.size();

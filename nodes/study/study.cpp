@@ -1,6 +1,7 @@
 #include "nodes/study/study.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -72,12 +73,28 @@ double rest(Reader& reader) {
 const std::vector<std::string> kSteadiness{"drawbar_pull_N.steady", "drawbar_pull_N.n_eff", "interface.share",
                                            "interface.ok"};
 
-const std::vector<std::string> kUsualResults{
-    "drawbar_pull_N.mean", "drawbar_pull_N.sem", "drawbar_pull_N.steady", "drawbar_pull_N.n_eff",
-    "drawbar_coefficient", "sinkage_m",          "sinkage_sem_m",         "rut_depth_m",
-    "rut_depth_sem_m",     "tractive_effort_N",  "terrain_resistance_N",  "drive_torque_Nm",
-    "tractive_efficiency", "vertical_load_N",    "bed_clearance_m",       "interface.share",      "interface.ok",
-    "wall_s"};
+const std::vector<std::string> kUsualResults{"drawbar_pull_N.mean",  "drawbar_pull_N.sem",   "drawbar_pull_N.steady",
+                                             "drawbar_pull_N.n_eff", "drawbar_coefficient",  "sinkage_m",
+                                             "sinkage_sem_m",        "rut_depth_m",          "rut_depth_sem_m",
+                                             "tractive_effort_N",    "terrain_resistance_N", "drive_torque_Nm",
+                                             "tractive_efficiency",  "vertical_load_N",      "bed_clearance_m",
+                                             "interface.share",      "interface.ok",         "wall_s"};
+
+/// Refuses a plot whose means would be over runs that differ in more than the key of `mean_over`.
+void check_means(Reader& reader, const Study& study, const Json& plot, const std::vector<std::string>& varied) {
+  const std::string x = plot.value("x", ""), lines = plot.value("lines", ""), over = plot.value("mean_over", "");
+  if (over.empty() || std::find(varied.begin(), varied.end(), x) == varied.end()) return;
+  std::string also = study.passes > 1 && x != "pass" && lines != "pass" && over != "pass" ? "pass" : "";
+  std::map<std::string, const Json*> first;  // run of a point
+  for (const Json& run : study.runs) {
+    const auto [at, is_new] = first.try_emplace(run.value(x, Json()).dump() + run.value(lines, Json()).dump(), &run);
+    for (const std::string& key : varied)
+      if (key != over && run.value(key, Json()) != at->second->value(key, Json())) also = key;
+  }
+  if (!also.empty())
+    reader.fail("plot.mean_over", "is '{}', but runs of one point differ in '{}' too, expected it as x or lines", over,
+                also);
+}
 
 /// Checks a plot: lines and means are over keys that differ between runs, the ordinate is a result, the abscissa
 /// either.
@@ -102,6 +119,7 @@ Json checked_plot(Reader& reader, const Study& study) {
   }
   if (plot.contains("x") != plot.contains("y"))
     reader.fail(plot.contains("x") ? "plot.y" : "plot.x", "is missing, expected both x and y");
+  check_means(reader, study, plot, varied);
   return plot;
 }
 

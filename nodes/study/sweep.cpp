@@ -84,6 +84,8 @@ std::string without_result(const Json& summary, const std::string& name) {
   std::vector<std::string> names;
   add_names(summary, "", names);
   const std::string text = "has no result '" + name + "'";
+  if (value_at(summary, "wheels").size() > 1 && !value_at(summary, "wheels.0." + name).is_null())
+    return text + " for all its wheels, expected that of one: 'wheels.0." + name + "'";
   if (std::ranges::find(names, name) != names.end()) return text + ": it was not measured";
   std::string similar;
   for (const std::string& one : nearest_words(name, names))
@@ -271,7 +273,7 @@ bool Sweep::prepare_bed(Run& run) try {
                           rest.time, rest.settled ? "settled" : "NOT settled", rest.force_ratio, 1e3 * rest.speed));
   }
   run.passes_on["terrain.bed"] = fs::absolute(bed, error).string();
-  run.passes_on["terrain.undisturbed_height"] = value_at(read_summary(folder_of(first)), "surface_height_m");
+  run.passes_on["terrain.undisturbed_height"] = value_at(read_summary(folder_of(first)), "wheels.0.surface_height_m");
   load(run);
   return true;
 } catch (const std::bad_alloc&) {
@@ -338,7 +340,7 @@ void Sweep::poll(Run& run) {
                           unsteady ? ", NOT STEADY" : "");
     if (value_at(summary, "interface.ok") == false) told += ", THE STEP IS TOO LARGE";
     tell(run, told);
-    if (const double deep = number_at(summary, "sinkage_m") / number_at(summary, "surface_height_m");
+    if (const double deep = number_at(summary, "wheels.0.sinkage_m") / number_at(summary, "wheels.0.surface_height_m");
         run.pass > 0 && deep > kDeepRut)
       tell(run, fmt::format("stands {:.0f} % of the bed's depth in it: the floor carries it too; a deeper bed is "
                             "needed for soil without a floor (more terrain.layers)",

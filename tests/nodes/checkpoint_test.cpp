@@ -196,5 +196,22 @@ TEST(WallSchedule, begins_early_and_slows_down_to_its_interval) {
   EXPECT_TRUE(times(0.0, 1000.0).empty());
 }
 
+TEST(RunSummary, keys_of_a_wheel_are_at_the_top_only_if_it_is_the_only_one) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& wheels) {
+    write_whole_file(folder.path() / "summary.json", R"({"grains": 5, "wheels": [)" + wheels + "]}");
+    return checkpoint::read_summary(folder.path());
+  };
+  const std::string steady = R"({"sinkage_m": 0.01, "drawbar_pull_N": {"mean": 7, "steady": true}})",
+                    unsteady = R"({"sinkage_m": 0.02, "drawbar_pull_N": {"mean": 9, "steady": false}})";
+  EXPECT_EQ(read(steady)["sinkage_m"], 0.01);
+  const Json both = read(steady + "," + unsteady);
+  EXPECT_FALSE(both.contains("sinkage_m"));
+  EXPECT_EQ(both["drawbar_pull_N"], Json({{"steady", false}}));
+  EXPECT_EQ(read(steady + "," + steady)["drawbar_pull_N"], Json({{"steady", true}}));
+  EXPECT_EQ(read(unsteady + "," + steady)["drawbar_pull_N"], Json({{"steady", false}}));
+  EXPECT_FALSE(read(R"({"sinkage_m": 1}, {"sinkage_m": 2})").contains("drawbar_pull_N")) << "a vehicle";
+}
+
 }  // namespace
 }  // namespace furrow

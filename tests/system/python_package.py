@@ -176,6 +176,8 @@ class Package(SystemTest):
                  "plot": {"x": "rig.slip", "y": "drawbar_pull_N.mean", "mean_over": "run.seed"}}
         swept = furrow.sweep(study, out=self.folder / "study", jobs=2, progress=False)
         self.assertEqual(len(swept.runs), 4)
+        with self.assertRaisesRegex(ValueError, "runs with the same exit_code differ in rig.slip"):
+            swept.points("exit_code", "drawbar_pull_N.mean", mean_over="run.seed")
         points = swept.points("rig.slip", "drawbar_pull_N.mean", mean_over="run.seed")
         self.assertEqual(list(points["rig.slip"]), [0.1, 0.4])
         pulls = [run.number("drawbar_pull_N.mean") for run in swept.runs if run.scenario["rig"]["slip"] == 0.1]

@@ -5,6 +5,9 @@ import shutil
 import signal
 import sys
 
+import h5py
+import numpy as np
+
 from program import (ROOT, SystemTest, changed, children, main, read_json, rows_of, survivors, wait_for, write_json,
                      write_scenario)
 
@@ -122,6 +125,12 @@ class Sweep(SystemTest):
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip", "y": "q"}},
                              "key 'plot.y': is 'q', expected one of: drawbar_pull_N.mean"),
                             ({"list": [{"rig.slip": 0.1}], "plot": {"x": "rig.slip"}}, "key 'plot.y': is missing"),
+                            ({"grid": {"rig.slip": [0.1, 0.2], "terrain.cohesion": [0, 1e3], "run.seed": [1, 2]},
+                              "plot": {"x": "rig.slip", "y": "sinkage_m", "mean_over": "run.seed"}},
+                             "key 'plot.mean_over': is 'run.seed', but runs of one point differ in 'terrain.cohesion'"),
+                            ({"grid": {"rig.slip": [0.1, 0.2], "run.seed": [1, 2]}, "passes": 2,
+                              "plot": {"x": "rig.slip", "y": "sinkage_m", "mean_over": "run.seed"}},
+                             "key 'plot.mean_over': is 'run.seed', but runs of one point differ in 'pass'"),
                             ({"grid": {"run.threads": [1, 2]}},
                              "has a run with run.threads=1 and a run with run.threads=2, which have the same results"),
                             ({"terrain": {}}, "is a scenario, expected a study"),
@@ -153,6 +162,10 @@ class Sweep(SystemTest):
         a, b = [read_json(run / "summary.json") for run in (first, second)]
         self.assertEqual(a["grains"], b["grains"])
         self.assertEqual(a["surface_height_m"], b["surface_height_m"], "sinkage counts from another surface")
+        with h5py.File(second / "results.h5") as file:
+            before = file["terrain/height_before"][()]
+        np.testing.assert_array_equal(before[np.isfinite(before)], a["surface_height_m"],
+                                      "the rut counts from another surface")
         scenario = read_json(second / "scenario.json")
         self.assertTrue(scenario["terrain"]["bed"].endswith(f"beds/{first.name}_rest_0.01.h5"))
         self.assertNotEqual(a["state_hash"], b["state_hash"])

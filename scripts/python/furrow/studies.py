@@ -55,7 +55,7 @@ class Study:
         With `mean_over`, the name of a key such as "run.seed": means over the runs with the same x, and `half_bar` half
         their 95 % interval [Student's t]; else `half_bar` is the column `error`. `unsteady` is true where a run's pull
         is not steady. Further arguments choose runs: terrain__cohesion=80e3. Raises Missing when no such run is done,
-        KeyError for a column that is not there.
+        KeyError for a column that is not there, ValueError where a mean would be over runs that differ in another key.
         """
         rows = self.table[self.table["state"] == "done"]
         for name, value in only.items():
@@ -65,8 +65,14 @@ class Study:
                 raise KeyError(f"{self.directory}: sweep.csv has no column '{name}'")
         if rows.empty:
             raise Missing(f"{self.directory}: no such run is done")
-        lines = [{name: str(value) for name, value in row.items()} for row in rows.to_dict("records")]
         from .plots import sweep  # which needs matplotlib
+        if mean_over:
+            keys = {"pass", *sweep.keys_among(list(rows.columns), self.asked["results"])} & set(rows.columns)
+            of_point = rows.groupby(x)[sorted(keys - {x, mean_over})].nunique(dropna=False)
+            for key in of_point.columns[(of_point > 1).any()]:
+                raise ValueError(f"{self.directory}: runs with the same {x} differ in {key}, expected one value of it: "
+                                 f"{key.replace('.', '__')}=…")
+        lines = [{name: str(value) for name, value in row.items()} for row in rows.to_dict("records")]
         values = sweep.points(lines, x, y, error, mean_over)
         table = frame_of({x: values[0], y: values[1], "half_bar": values[2]})
         table["unsteady"] = values[3].astype(bool)

@@ -49,12 +49,16 @@ def mean_and_interval(values):
     return float(np.mean(values)), half_interval(values)
 
 
+def keys_among(columns, results):
+    """The columns of a table that are keys of the scenario: those that the runs differ in."""
+    last = max((k for k, name in enumerate(columns) if name in ("exit_code", "pass")), default=len(columns))
+    return [name for name in columns[last + 1:] if name not in results and name != "problem"]
+
+
 def keys_of(sweep):
     """The keys of the scenario that the runs differ in."""
-    names = [name for name in next(iter(sweep.rows + sweep.failed), {}) if name]
-    last = max((k for k, name in enumerate(names) if name in ("exit_code", "pass")), default=len(names))
-    results = set(sweep.values.get("results", []))
-    return [name for name in names[last + 1:] if name not in results and name != "problem"]
+    columns = [name for name in next(iter(sweep.rows + sweep.failed), {}) if name]
+    return keys_among(columns, sweep.values.get("results", []))
 
 
 def varied(sweep):

@@ -210,7 +210,7 @@ void DrawbarRig::end_advance(double duration, int substeps) {
 }
 
 void DrawbarRig::derive(int /*subject*/, const LineView& line, std::span<double> values) const {
-  const auto ratio = [](double a, double b) { return b != 0.0 ? a / b : 0.0; };
+  const auto ratio = [](double a, double b) { return b > 0.0 ? a / b : 0.0; };
   const double pull = line["drawbar_pull_N"], torque = line["spindle_torque_Nm"];
   DrawbarRow row;
   row.tractive_efficiency = ratio(pull * line["speed_m_per_s"], torque * line["spin_rad_per_s"]);

@@ -145,7 +145,7 @@ class DrawbarSpec final : public RigSpec {
     d.across = half * c + tire.radius * s;
     d.toe_angle = rig.toe_angle;
     d.camber_angle = rig.camber_angle;
-    d.slip = rig.slip;
+    if (rig.mode != "free_rolling") d.slip = rig.slip;
     d.travel_sign = rig.travel_sign;
     d.carried_mass = d.unsprung_mass = rig.carrier_mass + rig.rim_mass;
     if (rig.mode == "free_rolling") d.spin_inertia = rig.rim_spin_inertia;  // else its spin is imposed

@@ -23,6 +23,7 @@ struct WheelEnd {
   const SpindleReport& tire;     // the last one
   double load = 0.0;             // weight on the undisturbed ground of all that the wheel carries, N
   Vec3 heading = Vec3::UnitX();  // unit, W
+  Vec3 centre = Vec3::Zero();    // of the rim, W, m
 };
 
 /// End of a run, from the rig's rank.

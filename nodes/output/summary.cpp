@@ -33,6 +33,7 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kAlongX = 0.1;             // largest sine of the heading to x where a rut is measured
 constexpr double kLeastWindow = 0.1;        // of the planned averaging window, that a run must have reached
 constexpr char kPull[] = "drawbar_pull_N";  // the rig's, if it has one
 constexpr char kDistance[] = "distance_m";  // of a whole vehicle, if the rig is one
@@ -103,14 +104,21 @@ Json tire_axes_means(const Window& w) {
 
 void add_rut(const WheelInput& in, Json& json) {
   terrain::Rut rut;
-  rut.missing = in.rows.empty() ? "the series has no lines" : "the run failed before its end";
-  if (!in.rows.empty() && !in.run.end.reports.empty()) {
+  const bool has_lines = !in.rows.empty(), ended = !in.run.end.reports.empty();
+  const bool along_x = std::abs(in.end.heading.y()) < kAlongX;
+  if (!has_lines)
+    rut.missing = "the series has no lines";
+  else if (!ended)
+    rut.missing = "the run failed before its end";
+  else if (!along_x)
+    rut.missing = "the wheel moves at an angle to x, and ruts along x are measured";
+  if (has_lines && ended && along_x) {
     const FinalReport& terrain = in.run.end.reports[scenario::terrain_rank(in.run.scenario)];
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;
-    options.lateral = scenario::describe_rig(in.run.scenario).wheels[in.wheel].lateral;
-    options.axle = options.direction * in.rows.back().position;
-    options.start = options.direction * in.rows.front().position;
+    options.lateral = in.end.centre.y();
+    options.axle = in.end.centre.x();
+    options.start = options.axle - options.direction * (in.rows.back().position - in.rows.front().position);
     options.radius = in.card().tire_radius;
     options.tread_width = in.card().tire_width;
     rut = terrain::measure_rut(terrain.height_before, terrain.height_after, options);
@@ -181,7 +189,8 @@ void add_mobility(const WheelInput& in, const Window& w, Json& json) {
   json["drive_torque_Nm"] = json_number(torque);
   json["lateral_force_N"] = json_number(mean(&WheelRow::lateral_force));
   json["aligning_moment_Nm"] = json_number(mean(&WheelRow::aligning_moment));
-  json["tractive_efficiency"] = json_number(pull * speed / (torque * spin));
+  const double power = torque * spin;
+  json["tractive_efficiency"] = json_number(power > 0.0 ? pull * speed / power : NAN);
   json["motion_resistance_coefficient"] = json_number((torque / radius - pull) / load);
   json["iso_w"] = tire_axes_means(w);
 }

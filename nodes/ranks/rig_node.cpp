@@ -224,7 +224,8 @@ class RigNode : public Node {
   std::vector<output::WheelEnd> wheel_ends() const {
     std::vector<output::WheelEnd> wheels;
     for (int k = 0; k < rig_->wheel_count(); ++k)
-      wheels.push_back({series_[k].wheel(), tires_[k], rig_->report(k).load(), rig_->heading(k)});
+      wheels.push_back(
+          {series_[k].wheel(), tires_[k], rig_->report(k).load(), rig_->heading(k), rig_->rim(k).position});
     return wheels;
   }
 

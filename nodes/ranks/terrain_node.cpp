@@ -1,6 +1,7 @@
 // The terrain's rank: prepares the bed, reports its height under each tire, then computes the forces on the tires. In a
 // terrain of several ranks it is the leader and orders what all of them do (terrain_orders.hpp).
 #include <algorithm>
+#include <cmath>
 
 #include "nodes/output/frames.hpp"
 #include "nodes/ranks/early_end.hpp"
@@ -172,6 +173,10 @@ class TerrainNode : public Node {
     setup_.grains = terrain_->size();
     setup_.floor_height = terrain_->floor_height();
     height_before_ = terrain_->gather_height_field();
+    const terrain::TerrainDescription described = scenario_.terrain->describe();
+    if (described.grain_radius > 0.0 && described.undisturbed_height)  // a later pass: its rut counts from there too
+      for (double& height : height_before_.height)
+        if (std::isfinite(height)) height = *described.undisturbed_height;
     grains_begin_ = terrain_->grains_here();
   }
 

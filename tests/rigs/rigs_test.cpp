@@ -106,6 +106,11 @@ TEST(Rigs, entries_of_wheels_take_from_the_rig_what_they_leave_out) {
   EXPECT_EQ(d.wheels[1].start_key, "rig.wheels.1.start");
 }
 
+TEST(Rigs, a_wheel_that_rolls_freely_has_no_slip_of_its_rig) {
+  EXPECT_EQ(only_wheel({{"slip", 0.2}}, 0.5).slip, 0.2);
+  EXPECT_EQ(only_wheel({{"slip", 0.2}, {"mode", "free_rolling"}, {"speed", 2.0}}, 0.5).slip, std::nullopt);
+}
+
 TEST(Rigs, of_a_list_with_one_wheel_the_start_is_named_where_it_stands) {
   const std::vector<rigs::WheelSize> one(1, {kRadius, kWidth});
   const auto key = [&](const json& section) {

@@ -2,7 +2,7 @@
 """`furrow bench` and `furrow press` on coarse tires: what they print, leave behind, and refuse."""
 import json
 
-from program import ROOT, SystemTest, furrow, main, read_json, write_json, write_scenario
+from program import SystemTest, furrow, main, read_json, write_json, write_scenario
 
 SCENARIO = {
     "format_version": 1,

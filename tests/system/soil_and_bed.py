@@ -2,7 +2,6 @@
 """`furrow bed` and `furrow soil` on a few large grains: what they print, leave behind, and how they stop."""
 import json
 import math
-import os
 import pathlib
 import signal
 import time
@@ -10,8 +9,6 @@ import unittest
 
 from program import (HAS_OTHER_MATHEMATICS, OTHER_MATHEMATICS, SystemTest, changed, furrow, main, read_json, start,
                      wait_for, write_json, write_scenario)
-
-PLOTS = os.access("/usr/bin/python3", os.X_OK)
 
 
 class WithCache(SystemTest):

@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .chart_table import MODES
-from .run_data import Missing, read_object
+from .run_data import Missing
 from .soil import COLOURS, Soil
 from .style import BLUE, GREY, RED, heading
 
@@ -16,9 +16,7 @@ SPOKES = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
 class Modes(Soil):
     """summary.json and the tables beside it."""
 
-    def __init__(self, directory):
-        self.directory = directory
-        self.values = read_object(directory / "summary.json")
+    FIGURES = "summary.json"
 
     def title(self, figure, what):
         heading(figure, f"{self.values.get('tire', self.directory.name)} · {what}", 11)

@@ -3,7 +3,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .chart_table import CENTRE_LINE, PRESS
-from .run_data import read_object
 from .soil import Soil
 from .style import BLUE, GREY, ORANGE, heading
 
@@ -11,9 +10,7 @@ from .style import BLUE, GREY, ORANGE, heading
 class Press(Soil):
     """summary.json and the tables beside it."""
 
-    def __init__(self, directory):
-        self.directory = directory
-        self.values = read_object(directory / "summary.json")
+    FIGURES = "summary.json"
 
     def title(self, figure, what):
         heading(figure, f"{self.values['scenario']} · {self.values['tire']} on a {self.values['obstacle']} · {what}",
@@ -38,7 +35,7 @@ def load_deflection(run):
     return figure
 
 
-def centre_line(run, axis, table, values):
+def centre_line(axis, table, values):
     """Of a tire without points across."""
     axis.plot(CENTRE_LINE.places(table), CENTRE_LINE.values(table, "pressure_Pa"), ".-", color=BLUE)
     axis.set_ylim(bottom=0.0)
@@ -53,7 +50,7 @@ def footprint(run):
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
     run.title(figure, CENTRE_LINE.title)
     if not np.any(table["y_m"]):
-        centre_line(run, axis, table, values)
+        centre_line(axis, table, values)
         return figure
     points = axis.scatter(1e3 * table["y_m"], 1e3 * table["x_m"], c=1e-3 * table["pressure_Pa"], s=14, marker="s",
                           cmap="viridis", vmin=0, vmax=1e-3 * np.max(table["pressure_Pa"], initial=1.0))

@@ -10,11 +10,13 @@ COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE]
 
 
 class Soil:
-    """soil.json and the tables beside it."""
+    """A file of figures and the tables beside it."""
+
+    FIGURES = "soil.json"
 
     def __init__(self, directory):
         self.directory = directory
-        self.values = read_object(directory / "soil.json")
+        self.values = read_object(directory / self.FIGURES)
 
     def table(self, name):
         """The columns of a CSV file as arrays."""

@@ -17,6 +17,7 @@ HEAPED, SAND, RUT = (0.55, 0.66, 0.78), (0.50, 0.36, 0.22), [(0.70, 0.30, 0.06),
 COLOURS = mpl.colors.LinearSegmentedColormap.from_list("ruts",
                                                        [HEAPED, (0.54, 0.46, 0.40), SAND, RUT[0], RUT[1], RUT[2]])
 DARK = (0.16, 0.11, 0.07)
+GLOSS = 0.10
 LIGHT = scene.LIGHT / np.linalg.norm(scene.LIGHT)
 ZERO = 0.4  # where in COLOURS the undisturbed surface is
 
@@ -29,7 +30,7 @@ DECK = [(-0.12, 0.35), (-0.12, 0.75), (1.08, 0.75), (1.16, 0.55), (1.08, 0.35)]
 class Bed:
     """Grains of an instant in the axes of the vehicle: forward, left, up from the place of its origin on the ground."""
 
-    def __init__(self, v, path, before, origin, yaw, scale):
+    def __init__(self, path, before, origin, yaw, scale):
         position, self.radius = read_grains(path, scale)
         self.cell = 3.0 * self.radius.max()
         depth = self._depth(position, *read_grains(before, scale))
@@ -129,12 +130,12 @@ def face_normals(vertex, triangle):
     return normal
 
 
-def add_solid(buffers, vertex, triangle, colour, gloss=0.10):
+def add_solid(buffers, vertex, triangle, colour):
     if buffers.depth_only:
         buffers.triangles(vertex, triangle)
         return
     buffers.triangles(vertex, triangle, face_normals(vertex, triangle),
-                      np.tile(np.float32(colour), (len(triangle), 1)), gloss)
+                      np.tile(np.float32(colour), (len(triangle), 1)), GLOSS)
 
 
 class Stage:
@@ -163,7 +164,7 @@ class Stage:
         self.bed = None
         terrain = v.run.frames("terrain")
         if frame in terrain:
-            self.bed = Bed(v, terrain[frame], terrain[min(terrain)], self.scale * foot, yaw, self.scale)
+            self.bed = Bed(terrain[frame], terrain[min(terrain)], self.scale * foot, yaw, self.scale)
         self.span = 0.02 * self.scale
 
     def soil(self, ahead, left, cut=True):

@@ -132,6 +132,8 @@ class TerrainSpec {
   virtual double nodes_under(double /*radius*/, double /*width*/, double /*load*/) const {
     return std::numeric_limits<double>::infinity();
   }
+  /// Bekker's k_c/b + k_φ over k_φ at that wheel's contact; 1 where there is no such soil.
+  virtual double modulus_under(double /*radius*/, double /*width*/, double /*load*/) const { return 1.0; }
   /// @param width overall, of one tire, m
   /// @throws Error(bad_input) naming the key of the terrain that does not allow such a tire
   virtual void check_tire_width(double) const {}

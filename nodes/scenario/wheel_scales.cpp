@@ -38,6 +38,7 @@ constexpr double kDeepEnough = 8.0;      // sinkages
 constexpr double kBesideTread = 0.5;     // tread widths
 constexpr double kNearEnd = 0.1;         // of the averaging window
 constexpr double kRateEffect = 0.05;     // of the friction, of the pressure
+constexpr double kLeastModulus = 0.3;    // of empirical soil under a wheel, of k_φ
 constexpr double kNodesInContact = 5.0;  // of empirical soil in the contact's length
 
 constexpr double kLeapfrog = 0.5;  // ω H of a prompt force at which the rule's error is about 1 %
@@ -251,6 +252,13 @@ std::vector<Bound> scale_bounds(const Scenario& s) {
           fmt::format("the contact is about {:.1f} nodes long, expected {:g} or more: with two nodes a wheel of 58 "
                       "mm rolled with 84 % more resistance than with ten",
                       nodes, kNodesInContact));
+    if (const double share = s.terrain->modulus_under(tires[k].radius, tires[k].tread_width, w.load);
+        share < kLeastModulus)
+      bounds.add(true, "terrain.bekker_k_c",
+                 fmt::format("k_c/b + k_phi is {:.2g} times k_phi with the b of this contact, expected {:g} or more: a "
+                             "negative k_c that was fitted to wider plates does not hold here, and below 0.05 the run "
+                             "takes 0.05; give terrain.patch_width, or plates of this size",
+                             share, kLeastModulus));
     if (!w.grains) continue;
     add_bin(*w.grains, tires[k].tread_width, bounds);
     add_rates(*w.grains, bounds);

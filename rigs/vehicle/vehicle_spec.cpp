@@ -164,8 +164,17 @@ void VehicleRigSpec::check_driver() const {
         fmt::format("{}, expected a driver that does not: the vehicle {} has {}", what, plan_.vehicle.name, lacks));
   };
   if (plan_.driver->path && !vehicle::can_steer(plan_.vehicle)) refuse("follows a path", "no steering");
+  if (plan_.driver->path && !vehicle::can_follow(plan_.vehicle))
+    refuse("follows a path", "no steered axle ahead of its last one");
   if (plan_.driver->speed && !vehicle::can_drive(plan_.vehicle)) refuse("holds a speed", "neither engine nor motors");
   const vehicle::InputSpec& inputs = plan_.driver->inputs;
+  if (plan_.driver->speed)
+    for (const auto& [time, gear] : inputs.gear)
+      if (gear == vehicle::gear_request::reverse)
+        throw input_error(context_.file, context_.key("driver"),
+                          fmt::format("holds a speed and asks for gear -1 at {} s, expected one of them: the speed is "
+                                      "that forward",
+                                      number_text(time)));
   const auto refuse_use = [&](const char* what, const vehicle::DriverPoints& points, const char* lacks) {
     const auto used = std::find_if(points.begin(), points.end(), [](const auto& point) { return point.second != 0.0; });
     if (used == points.end()) return;

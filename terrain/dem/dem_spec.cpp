@@ -50,10 +50,29 @@ class DemSpec final : public TerrainSpec {
   DemOptions options_;
 };
 
+/// Keys of the law that is not chosen, where they are not at their default.
+std::vector<std::pair<std::string, std::string>> keys_of_other_law(const DemOptions& o) {
+  const DemOptions usual;
+  std::vector<std::pair<std::string, std::string>> idle;
+  const bool mindlin = o.law == "mindlin", hertz_tanh = o.law == "hertz_tanh";
+  const auto look = [&](const char* key, auto DemOptions::*member, bool without) {
+    if (without && o.*member != usual.*member)
+      idle.emplace_back(key, fmt::format("has no effect: the law is '{}'", o.law));
+  };
+  look("young_modulus", &DemOptions::young_modulus, hertz_tanh);
+  look("restitution", &DemOptions::restitution, hertz_tanh);
+  look("normal_stiffness", &DemOptions::normal_stiffness, mindlin);
+  look("normal_damping", &DemOptions::normal_damping, mindlin);
+  look("friction_velocity_scale", &DemOptions::friction_velocity_scale, mindlin);
+  look("friction_impulse_limit", &DemOptions::friction_impulse_limit, mindlin);
+  return idle;
+}
+
 }  // namespace
 
 TerrainDescription describe_grains(const DemOptions& options) {
   TerrainDescription d;
+  d.remarks = keys_of_other_law(options);
   d.law = options.law;
   d.grain_radius = options.radius;
   d.gives_tangents = true;

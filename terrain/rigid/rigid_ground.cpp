@@ -136,7 +136,8 @@ void RigidGround::add_surface(const SurfaceMesh& mesh, const ContactMaterial& ma
   FURROW_ASSERT(last.size() == static_cast<std::size_t>(mesh.vertex_count), last.size(), mesh.vertex_count);
   GroundSurface surface{.mesh = mesh,
                         .material = material,
-                        .friction = std::min(options_.friction, material.friction),
+                        .friction = material.pair_friction >= 0.0 ? material.pair_friction
+                                                                  : std::min(options_.friction, material.friction),
                         .last = std::move(last),
                         .velocity = std::vector<Vec3>(mesh.vertex_count, Vec3::Zero()),
                         .position = {},

@@ -19,7 +19,8 @@ constexpr double kFrameBytes = 20.0;  // of each node: position, speed, radius i
 
 constexpr double kMostSlope = 0.268;  // 15°
 constexpr double kLeastShare =
-    1e-4;  // m, of k_c over k_φ; soils in the table of [Wong 2008] have 5e-4 to 0.2, one 1e-5
+    1e-4;                        // m, of k_c over k_φ; soils in the table of [Wong 2008] have 5e-4 to 0.2, one 1e-5
+constexpr int kIterations = 30;  // of the sinkage below a wheel; each halves the error of its logarithm
 constexpr double kMostSlopes = 1e6;  // places where the slope is measured
 
 /// Over the distance of nodes, or where there are very many, of some of them.
@@ -94,6 +95,10 @@ class ScmSpec final : public TerrainSpec {
   double nodes_under(double radius, double width, double load) const override {
     return std::sqrt(2.0 * radius * sinkage(radius, width, load)) / options_.grid_spacing;
   }
+  double modulus_under(double radius, double width, double load) const override {
+    const double b = patch_width(radius, width, sinkage(radius, width, load));
+    return 1.0 + options_.bekker_k_c / (b * options_.bekker_k_phi);
+  }
   void check_tire_width(double width) const override { check_scm_width(options_, width); }
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
     ScmOptions options = options_;
@@ -106,12 +111,22 @@ class ScmSpec final : public TerrainSpec {
   }
 
  private:
-  /// Bekker's of a rigid wheel [Bekker 1969], W = ⅓ (3 − n) (k_c/b + k_φ) b √(2R) z^(n + ½), m.
+  /// b of a contact of that width from the lowest point forward: 2 A/P, or the one of the scenario, m.
+  double patch_width(double radius, double width, double sinkage) const {
+    const double length = std::sqrt(2.0 * radius * sinkage);
+    return options_.patch_width >= 0.0 ? options_.patch_width : width * length / (width + length);
+  }
+  /// Bekker's of a rigid wheel [Bekker 1969], W = ⅓ (3 − n) (k_c/b + k_φ) w √(2R) z^(n + ½), m.
   double sinkage(double radius, double width, double load) const {
     const ScmOptions& o = options_;
-    const double b = o.patch_width >= 0.0 ? o.patch_width : width, modulus = o.bekker_k_c / b + o.bekker_k_phi;
-    const double whole = std::max(0.1, (3.0 - o.bekker_n) / 3.0) * modulus * width * std::sqrt(2.0 * radius);
-    return std::min(radius, std::pow(load / whole, 1.0 / (o.bekker_n + 0.5)));
+    const double rest = std::max(0.1, (3.0 - o.bekker_n) / 3.0) * width * std::sqrt(2.0 * radius);
+    double z = 0.1 * radius;
+    for (int k = 0; k < kIterations; ++k) {  // the modulus grows or falls with z, as b follows the contact
+      const double modulus =
+          PressureLaw{.k_c = o.bekker_k_c, .k_phi = o.bekker_k_phi}.modulus(patch_width(radius, width, z));
+      z = std::sqrt(z * std::min(radius, std::pow(load / (rest * modulus), 1.0 / (o.bekker_n + 0.5))));
+    }
+    return z;
   }
 
   ScmOptions options_;

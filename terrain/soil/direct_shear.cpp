@@ -173,6 +173,8 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
   const double start = cell.lid_height(), each = travel / test.samples;
   double j = 0.0, begun = 0.0, floor_off = 0.0, shear_off = 0.0, late_shear = 0.0;
   FaceSums face;
+  const int half = test.samples - (test.samples + 1) / 2;         // samples from the half on
+  const int quarter = test.samples - (3 * test.samples + 3) / 4;  // of the last quarter
   for (int k = 0; k < test.samples; ++k) {
     Sample sum;
     int steps = 0;
@@ -193,16 +195,14 @@ ShearResult direct_shear(const Specimen& specimen, const ShearTest& test, const 
     result.normal.push_back(sum.normal / steps / cell.area());
     result.rise.push_back(cell.lid_height() - start);
     if (2 * k >= test.samples) {
-      const double half = 0.5 * test.samples;
       result.normal_mean += result.normal.back() / half;
       floor_off += (sum.below - sum.normal) / steps - specimen.weight();
       shear_off += (sum.across - sum.shear) / steps;
       late_shear += sum.shear / steps;
       if (test.face != Face::teeth) cell.look_at_face(speed, test.face, face);
     }
-    if (4 * k >= 3 * test.samples) result.final_shear += result.shear.back() / (0.25 * test.samples);
+    if (4 * k >= 3 * test.samples) result.final_shear += result.shear.back() / quarter;
   }
-  const double half = 0.5 * test.samples;
   result.floor_error = std::abs(floor_off / half) / (specimen.weight() + result.normal_mean * cell.area());
   result.shear_error = std::abs(shear_off) / std::max(std::abs(late_shear), 1e-300);
   result.janosi = fit_janosi(result.travel, result.shear);

@@ -315,8 +315,9 @@ void add_empirical(const SoilParameters& p, Json& terrain) {
     terrain["bekker_n"] = p.n.value;
   }
   if (p.phi.samples > 0 && p.phi.value >= 0.0 && p.K.value > 0.0) {
-    terrain["mohr_cohesion"] = std::max(p.cohesion.value, 0.0);  // the fitted line may begin below 0
-    terrain["mohr_friction_angle"] = p.phi.value / kDegree;
+    const bool below = p.cohesion.value < 0.0;  // the fitted line begins below 0: that through 0 replaces it
+    terrain["mohr_cohesion"] = below ? 0.0 : p.cohesion.value;
+    terrain["mohr_friction_angle"] = (below ? p.phi_alone.value : p.phi.value) / kDegree;
     terrain["janosi_k"] = p.K.value;
   }
 }

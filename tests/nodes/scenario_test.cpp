@@ -345,6 +345,37 @@ TEST(Scenario, a_soil_on_the_command_line_replaces_the_scenario_s_but_no_other_s
   EXPECT_TRUE(file.load({{"terrain.layers", "12"}}).warnings.empty());
 }
 
+TEST(Scenario, keys_of_the_law_that_is_not_chosen_are_told) {
+  const testing::ScenarioFile file(testing::kSmallest);
+  const auto told = [&](const scenario::Settings& settings) {
+    std::string all;
+    for (const std::string& warning : file.load(settings).warnings) all += warning + "\n";
+    return all;
+  };
+  EXPECT_TRUE(holds(told({{"terrain.normal_stiffness", "2e6"}}),
+                    "key 'terrain.normal_stiffness': has no effect: the law is 'mindlin'"));
+  const std::string other = told({{"terrain.law", "hertz_tanh"}, {"terrain.restitution", "0.9"}});
+  EXPECT_TRUE(holds(other, "key 'terrain.restitution': has no effect: the law is 'hertz_tanh'"));
+  EXPECT_FALSE(holds(told({{"terrain.restitution", "0.9"}}), "no effect"));
+}
+
+TEST(Scenario, empirical_soil_tells_its_modulus_under_a_small_wheel) {
+  const auto share = [](double radius, double width, double load) {
+    return testing::ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {"engine": "scm",
+        "bekker_k_c": -6905, "bekker_k_phi": 206700, "bekker_n": 0.284, "mohr_cohesion": 0, "mohr_friction_angle": 27,
+        "janosi_k": 0.02}})")
+        .load()
+        .terrain->modulus_under(radius, width, load);
+  };
+  EXPECT_LT(share(0.058, 0.05, 24.5), 0.05) << "on the floor";
+  EXPECT_GT(share(0.47, 0.25, 4600.0), 0.6);
+  // b follows the contact: k_c/b + k_phi at b = w L/(w + L), with Bekker's sinkage of that modulus
+  const double k = share(0.47, 0.25, 4600.0) * 206700.0,
+               z = std::pow(4600.0 * 3.0 / ((3.0 - 0.284) * 0.25 * std::sqrt(0.94) * k), 1.0 / 0.784),
+               length = std::sqrt(0.94 * z), b = 0.25 * length / (0.25 + length);
+  EXPECT_NEAR(k, 206700.0 - 6905.0 / b, 1e-6 * k);
+}
+
 TEST(Scenario, a_soil_is_cohesive_above_the_cohesion_of_sand) {
   const auto cohesive = [](const std::string& terrain) {
     return testing::ScenarioFile(R"({"tire": {"file": "hmmwv_layered.json"}, "terrain": {)" + terrain + "}}")

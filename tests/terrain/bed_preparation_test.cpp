@@ -263,6 +263,8 @@ TEST_F(Beds, radii_of_a_file_are_kept_and_checked) {
   options_.bed = write("sizes.csv", "x_m,y_m,z_m,radius_m\n0.05,0,0.02,0.012\n0.1,0,0.02,0.008\n");
   EXPECT_NEAR(statistics_of(prepare_bed(options_, {})).grain_volume,
               4.0 / 3.0 * std::numbers::pi * (std::pow(0.012, 3) + std::pow(0.008, 3)), 1e-15);
+  options_.bed = write("without.csv", "x_m,y_m,z_m\n0.05,0,0.02\n");
+  EXPECT_TRUE(holds(refusal(), "line 2': the grain has no radius, expected one (radius_m"));
   options_.bed = write("large.csv", "x_m,y_m,z_m,radius_m\n0.05,0,0.02,0.014\n");
   EXPECT_TRUE(holds(refusal(), "line 2': the grain's radius is 0.014 m, expected 0.007 to 0.013 m"));
 }

@@ -93,6 +93,18 @@ TEST(RigidGround, follows_the_regularised_friction_law) {
     }
 }
 
+TEST(RigidGround, friction_of_the_pair_holds_as_it_stands) {
+  GroundOptions options;
+  options.friction = 0.7;
+  const SurfaceState start = placed(kBlock, {0.0, 0.0, -4e-4}, {3.0, 0.0, 0.0});
+  ContactMaterial tread = rubber(0.8);
+  tread.pair_friction = 1.2;
+  const auto ground = make_rigid_ground(options);
+  ground->attach(kBlock.mesh, tread, start);
+  const Push one = slide_steadily(*ground, start);
+  EXPECT_NEAR(one.sums.tangential.norm(), 1.2 * one.sums.normal.norm(), 1e-6 * one.sums.normal.norm());
+}
+
 TEST(RigidGround, sticks_like_a_spring_before_it_slides) {
   // A block pushed sideways by less than μ N: κ A ξ holds it, and gives the work back.
   GroundOptions options;

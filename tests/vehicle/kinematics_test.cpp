@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -130,6 +131,41 @@ TEST(Kinematics, positive_steering_turns_the_wheels_to_the_left_and_the_inner_on
     EXPECT_EQ(left > right, ackermann > 0.0) << name;
     EXPECT_LT(std::abs(ackermann), 2.0) << name;
   }
+}
+
+TEST(Kinematics, axles_are_front_or_rear_wherever_the_origin_of_the_file_is) {
+  const auto anti_dive = [](double shift) {
+    nlohmann::json text = shipped_text("buggy.json");
+    text["chassis"]["center_of_mass"][0] = text["chassis"]["center_of_mass"][0].get<double>() + shift;
+    for (nlohmann::json& axle : text["axles"]) axle["origin"][0] = axle["origin"][0].get<double>() + shift;
+    std::array<double, 2> found{};
+    for (const KinematicsRow& row : sweep(vehicle::read_vehicle(text, "buggy.json"), 0.4, 0.05, 3))
+      if (row.motion == "parallel" && row.travel == 0.0) found[row.wheel.starts_with("front") ? 0 : 1] = row.anti_dive;
+    return found;
+  };
+  const auto [front, rear] = anti_dive(0.0);
+  EXPECT_GT(front, 1e-3);
+  EXPECT_LT(rear, -1e-2);
+  for (const double shift : {-1.9, -1.2, 1.2, 1.7}) {
+    EXPECT_NEAR(anti_dive(shift)[0], front, 1e-9) << shift;
+    EXPECT_NEAR(anti_dive(shift)[1], rear, 1e-9) << shift;
+  }
+}
+
+TEST(Kinematics, behind_the_turning_line_the_outer_wheel_steers_to_the_other_side) {
+  nlohmann::json text = shipped_text("buggy.json");
+  std::swap(text["axles"][0]["origin"], text["axles"][1]["origin"]);  // the steered one is the last
+  double left = 0.0, right = 0.0, ackermann = 0.0;
+  for (const KinematicsRow& row : sweep(vehicle::read_vehicle(text, "buggy.json"), 0.4, 0.05, 3)) {
+    if (row.motion != "steering" || row.steering != 1.0) continue;
+    (row.wheel.ends_with("left") ? left : right) = row.steer;
+    ackermann = row.ackermann;
+  }
+  ASSERT_GT(left, right);
+  ASSERT_GT(right, 0.2);  // the vehicle turns right, about a point on that side: the right wheel is the inner one
+  const double ideal = std::atan(1.0 / (1.0 / std::tan(right) + 2.0 * 0.7 / 2.4));
+  EXPECT_LT(ackermann, 0.0);
+  EXPECT_NEAR(ackermann, (right - left) / (right - ideal), 0.1 * std::abs(ackermann));
 }
 
 // If a steering demands more than its linkage allows, the message contains demand, limit and the input at the limit.

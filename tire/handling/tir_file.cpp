@@ -462,6 +462,8 @@ MagicFormula parse_tir(const std::string& text, const std::string& name) {
        {std::pair{"ROLLING_COEFFICIENTS", "the rolling resistance"}, {"ALIGNING_COEFFICIENTS", "the aligning moment"}})
     if (!sections.has(section))
       t.remarks.emplace_back(fmt::format("[{}]", section), fmt::format("is missing: {} is 0", what));
+  if (t.reference_speed == 0.0 && (t.rolling.qsy3 != 0.0 || t.rolling.qsy4 != 0.0))
+    t.remarks.emplace_back("[MODEL] LONGVL", "is missing: QSY3 and QSY4, of the rolling resistance, have no effect");
   if (sections.has("TURNSLIP_COEFFICIENTS")) SectionReader(sections, "TURNSLIP_COEFFICIENTS").finish();
   sections.refuse_missing();
   t.load_curve = read_curve(sections);

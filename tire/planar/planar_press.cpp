@@ -74,6 +74,7 @@ PressResults press_planar(const PlanarParams& params, const MassProperties& mass
     return s;
   };
   results.start_height = params.size.radius;
+  results.base_missed = base_missed(options, "planar tire");
   results.mass = mass;
   results.footprint_width = params.options.width;
   measure_press(

@@ -47,9 +47,9 @@ double path_difference(const PressResults& results) {
 }
 
 struct Extent {
-  double low = 0.0, high = 0.0;
+  double low = INFINITY, high = -INFINITY;
   void include(double value) { low = std::min(low, value), high = std::max(high, value); }
-  double size() const { return high - low; }
+  double size() const { return std::max(high - low, 0.0); }
 };
 
 }  // namespace
@@ -99,7 +99,17 @@ void require_no_camber(const PressOptions& options, const char* name) {
                   options.obstacle.camber, name));
 }
 
+std::string base_missed(const PressOptions& options, const char* name) {
+  const PressObstacle& o = options.obstacle;
+  if (!o.profile.empty() || o.height == 0.0 || options.deflection <= o.height) return "";
+  return fmt::format(
+      "beyond a deflection of {:g} m, the cleat's height, the tire would also touch the ground beside the cleat, which "
+      "a {} does not see: forces are too small there",
+      o.height, name);
+}
+
 std::string press_caution(const PressResults& results) {
+  if (!results.base_missed.empty()) return results.base_missed;
   const double difference = path_difference(results);
   const std::string end =
       difference > kOnePath
@@ -183,9 +193,7 @@ nlohmann::ordered_json press_json(const PressOptions& options, const PressResult
   j["stable_while_pressed"] = failed == results.loading.front().failed_factorizations;
   double area = 0.0, force = 0.0, highest = 0.0;
   for (const PressSample& s : results.footprint) highest = std::max(highest, s.pressure);
-  // A patch on plate or cleat contains the obstacle's middle.
-  const double middle = profile && !results.footprint.empty() ? results.footprint.front().x : options.obstacle.position;
-  Extent length{middle, middle}, width;
+  Extent length, width;
   for (const PressSample& s : results.footprint) {
     force += s.pressure * s.area;
     if (s.pressure < kEdgePressure * highest) continue;

@@ -36,6 +36,7 @@ struct PressResults {
   std::optional<GroundStiffness> stiffness;  // at the footprint's load
   std::string stiffness_missing;             // why parts of it are NaN; empty: none is
   double start_height = 0.0;                 // of the rim's centre over the obstacle's top where deflection starts, m
+  std::string base_missed;                   // what the model leaves out beyond a cleat's height; empty: nothing
   std::string ended;                         // why the curve ends early; empty if it does not
   std::optional<double> inflation_growth;    // of the largest radius, axisymmetric, m; if the model has one
   std::optional<double> footprint_width;     // m; if the model has no points across
@@ -62,6 +63,9 @@ inline constexpr const char* kAlikeAcross =
     "lateral and torsional: the model is alike across its width and rigid sideways";
 /// @throws Error(bad_input) if camber is asked for; for models whose section does not change across their width
 void require_no_camber(const PressOptions& options, const char* name);
+
+/// What a model of a bar without its base leaves out in this test, in words; empty: nothing.
+std::string base_missed(const PressOptions& options, const char* name);
 
 /// Static test of a model that can be pressed, as TireSpec::static_test() makes it.
 class StaticTest {

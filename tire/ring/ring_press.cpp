@@ -135,6 +135,7 @@ PressResults press_ring(const RingParams& params, double rim_radius, const MassP
   PressResults results;
   results.stiffness_missing = kAlikeAcross;
   results.start_height = params.radius;
+  results.base_missed = base_missed(options, "flexible ring");
   results.pressure = params.pressure;
   results.mass = mass;
   results.footprint_width = params.width;

@@ -82,7 +82,7 @@ class Bench {
   std::array<double, 2> wheel_rates(int axle, double left, double right, double steering);
   double damping_ratio(int k, double wheel_rate, const Eigen::VectorXd& parallel) const;
   KinematicsRow row(int k) const;
-  void add_slopes(int axle, KinematicsRow* rows) const;
+  void add_slopes(int axle, double middle, KinematicsRow* rows) const;
   double support(int k, const Eigen::VectorXd& parallel) const;
   double ratio(const std::optional<int>& element, const Eigen::VectorXd& tangent) const;
 
@@ -176,8 +176,8 @@ KinematicsRow Bench::row(int k) const {
   return r;
 }
 
-// Quantities from the motion's derivatives, for the two wheels of an axle.
-void Bench::add_slopes(int axle, KinematicsRow* rows) const {
+/// Quantities from the motion's derivatives, for the two wheels of an axle. @param middle x between first and last axle
+void Bench::add_slopes(int axle, double middle, KinematicsRow* rows) const {
   const Eigen::VectorXd parallel = tangent(axle, 1.0), opposite = tangent(axle, -1.0);
   for (int side = 0; side < 2; ++side) {
     const int k = 2 * axle + side;
@@ -185,7 +185,7 @@ void Bench::add_slopes(int axle, KinematicsRow* rows) const {
     KinematicsRow& r = rows[side];
     // In the opposite motion, the right wheel has the rate −1.
     r.roll_center = contact_point(k).y() * contact_rate(k, opposite).y() * outward(side);
-    r.brake_slope = contact_rate(k, parallel).x() * (contact_point(k).x() > vehicle_.origin().x() ? 1.0 : -1.0);
+    r.brake_slope = contact_rate(k, parallel).x() * (contact_point(k).x() > middle ? 1.0 : -1.0);
     r.spring_ratio = ratio(wheel.spring, parallel);
     r.shock_ratio = ratio(wheel.shock, parallel);
   }
@@ -193,8 +193,9 @@ void Bench::add_slopes(int axle, KinematicsRow* rows) const {
 
 /// Distances of the whole vehicle that anti-dive and Ackermann refer to, as drawn.
 struct Base {
-  double wheelbase = 0.0,
-         height = 0.0;               // between first and last axle; of the centre of mass above the ground, m
+  double wheelbase = 0.0;            // between first and last axle, m
+  double middle = 0.0;               // x between them, m
+  double height = 0.0;               // of the centre of mass above the ground, m
   std::vector<double> brake_shares;  // of each wheel, of all braking
 };
 
@@ -218,6 +219,7 @@ Base base_of(const Vehicle& vehicle, std::span<const double> radii) {
   }
   for (double& share : base.brake_shares) share = brakes > 0.0 ? share / brakes : KinematicsRow::kNone;
   base.wheelbase = front - rear;
+  base.middle = 0.5 * (front + rear);
   base.height = moment.z() / mass - ground;
   return base;
 }
@@ -237,9 +239,10 @@ double turning_line(Bench& bench) {
 void add_ackermann(KinematicsRow* rows, double line) {
   const double left = rows[kLeft].steer, right = rows[kRight].steer;
   if (std::abs(left) < 1e-3 || std::abs(right) < 1e-3 || left * right < 0.0) return;
-  const double inner = left > 0.0 ? left : -right, outer = left > 0.0 ? right : -left;
   const double track = rows[kLeft].half_track + rows[kRight].half_track;
-  const double wheelbase = std::abs(0.5 * (rows[kLeft].wheel_x + rows[kRight].wheel_x) - line);
+  const double ahead = 0.5 * (rows[kLeft].wheel_x + rows[kRight].wheel_x) - line, wheelbase = std::abs(ahead);
+  const bool left_inside = (left > 0.0) == (ahead > 0.0);  // wheels behind the line turn out of the curve
+  const double inner = std::abs(left_inside ? left : right), outer = std::abs(left_inside ? right : left);
   const double ideal = std::atan(1.0 / (1.0 / std::tan(inner) + track / wheelbase));
   rows[kLeft].ackermann = rows[kRight].ackermann = (inner - outer) / (inner - ideal);
 }
@@ -296,7 +299,7 @@ class Sweep {
         rows[side].steering = steering == 0.0 ? 0.0 : share * steering;  // not -0
         rows[side].wheel_rate = rates[side];
       }
-      bench_.add_slopes(axle, rows);
+      bench_.add_slopes(axle, base_.middle, rows);
       for (int side = 0; side < 2; ++side)
         rows[side].anti_dive =
             rows[side].brake_slope * 2.0 * base_.brake_shares[2 * axle + side] * base_.wheelbase / base_.height;

@@ -96,6 +96,11 @@ Vec3 rear_axle_middle(const VehicleSpec& spec) {
 
 bool can_steer(const VehicleSpec& spec) { return spec.driveline.skid_steer != 0.0 || foremost(spec, true) >= 0; }
 
+bool can_follow(const VehicleSpec& spec) {
+  const int front = foremost(spec, true);
+  return spec.driveline.skid_steer != 0.0 || (front >= 0 && axle_x(spec.axles[front]) > rear_axle_middle(spec).x());
+}
+
 bool can_brake(const VehicleSpec& spec) { return brake_force(spec, 1.0) > 0.0; }
 
 bool can_drive(const VehicleSpec& spec) { return engine_force(spec, 1.0) + motor_force(spec, 1.0) > 0.0; }

@@ -23,6 +23,8 @@ int rear_axle(const VehicleSpec& spec);
 Vec3 rear_axle_middle(const VehicleSpec& spec);
 /// Whether the steering wheel has an effect.
 bool can_steer(const VehicleSpec& spec);
+/// Whether a driver can follow a path: an axle ahead of the last one steers, or the wheels of one side turn faster.
+bool can_follow(const VehicleSpec& spec);
 /// Whether an engine or motor drives a wheel.
 bool can_drive(const VehicleSpec& spec);
 /// Whether a wheel has a brake.

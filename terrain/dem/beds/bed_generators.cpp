@@ -138,6 +138,9 @@ void check_positions(const DemOptions& o, const std::filesystem::path& file, std
                       fmt::format("holds {} grains, expected at most {}", grains.size(), kMaxGrains));
   for (std::size_t g = 0; g < grains.size(); ++g) {
     double& radius = grains[g].w;
+    if (radius == 0.0 && smallest_radius(o) < largest_radius(o))
+      throw wrong(g,
+                  "the grain has no radius, expected one (radius_m, or the dataset radius), or terrain.size_spread 0");
     if (radius == 0.0) radius = o.radius;
     // Frames store radii in single precision.
     for (const double limit : {smallest_radius(o), largest_radius(o)})

@@ -157,6 +157,15 @@ TEST(TirFile, names_what_it_does_not_use_once) {
       "model\n");
 }
 
+TEST(TirFile, speed_terms_of_the_rolling_resistance_need_the_speed_they_are_relative_to) {
+  MagicFormula tire = example_tire();
+  tire.rolling.qsy3 = 0.002;
+  tire.reference_speed = 0.0;
+  EXPECT_TRUE(holds(remarks(tir_text(tire, {})), "[MODEL] LONGVL is missing: QSY3 and QSY4"));
+  tire.reference_speed = 16.7;
+  EXPECT_EQ(remarks(tir_text(tire, {})), "");
+}
+
 TEST(TirFile, refuses_what_is_missing_together) {
   std::string text = replaced("PKX1               = 22\n", "");
   text.replace(text.find("FNOMIN             = 4000"), 25, "FNOMIN =");

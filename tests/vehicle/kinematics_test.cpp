@@ -140,7 +140,8 @@ TEST(Kinematics, axles_are_front_or_rear_wherever_the_origin_of_the_file_is) {
     for (nlohmann::json& axle : text["axles"]) axle["origin"][0] = axle["origin"][0].get<double>() + shift;
     std::array<double, 2> found{};
     for (const KinematicsRow& row : sweep(vehicle::read_vehicle(text, "buggy.json"), 0.4, 0.05, 3))
-      if (row.motion == "parallel" && row.travel == 0.0) found[row.wheel.starts_with("front") ? 0 : 1] = row.anti_dive;
+      if (row.motion == "parallel" && std::abs(row.travel) < 1e-6)
+        found[row.wheel.starts_with("front") ? 0 : 1] = row.anti_dive;
     return found;
   };
   const auto [front, rear] = anti_dive(0.0);

@@ -52,7 +52,7 @@ constexpr int kUsualPoints = 5;
 constexpr double kUsualRelativeSigma = 0.1;
 constexpr double kMostSize = 10.0;   // m, as of `furrow soil`
 constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that counts
-constexpr double kOneBed = 0.1;   // of a bed, relative
+constexpr double kOneBed = 0.1;      // of a bed, relative
 constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are equal
 constexpr double kWindow = 0.25;     // diameters of a grain on either side of a point at which a curve is read
 

@@ -20,7 +20,8 @@ inline constexpr Key kConeIndex =
         "are taken as they are, or not known.");
 inline constexpr Key kFriction = key(
     "friction", "-", allowed::from(0, 10),
-    "Coulomb coefficient between grains. Between grain or ground and tire the smaller of this and the tire's holds. "
+    "Coulomb coefficient between grains. Between grain or ground and tire the smaller of this and that of the tire's "
+    "file holds, or tire.friction. "
     "Without the key a handling tire has the grip of its file.");
 inline constexpr Key kLength = key("length", "m", allowed::above(0).to(1e4).usual(0.2, 200),
                                    "Length of the bin or of the grid of engine scm, x from 0 to length.");

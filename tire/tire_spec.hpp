@@ -58,9 +58,10 @@ void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
             "Inflation pressure above the atmosphere. A list of [t, p] in s and Pa makes it a function of time: "
             "straight between the entries, constant before the first and after the last. Rigid tires ignore it. null: "
             "as in the tire file."));
-  visit(s.friction, key("friction", "-", from(0, 10).or_null(),
-                        "Coulomb coefficient of the tread; between grains and tread it holds as it stands. null: as in "
-                        "the tire file, or as among grains where that is less."));
+  visit(s.friction,
+        key("friction", "-", from(0, 10).or_null(),
+            "Coulomb coefficient of the tread; on grains and hard ground it holds as it stands. null: as in "
+            "the tire file, or terrain.friction where that is less."));
   visit(s.rolling_friction,
         key("rolling_friction", "-", from(0, 10).or_null(),
             "Coefficient of rolling friction of grains on the tread: limit of the couple over "

@@ -19,12 +19,16 @@ Json read_one(const std::filesystem::path& file) {
   if (!summary.is_object()) return {};
   const Json wheels = summary.value("wheels", Json::array());
   if (!wheels.is_array()) return summary;
-  if (wheels.size() == 1)
+  if (wheels.size() == 1) {
     for (const auto& [key, value] : wheels.front().items())
       if (!summary.contains(key)) summary[key] = value;
-  for (const Json& wheel : wheels)  // of several wheels with a pull: whether all are steady
-    if (wheels.size() > 1 && wheel.contains("drawbar_pull_N"))
-      if (Json& all = summary["drawbar_pull_N"]["steady"]; all != false) all = value_at(wheel, "drawbar_pull_N.steady");
+    return summary;
+  }
+  for (const Json& wheel : wheels) {
+    if (!wheel.contains("drawbar_pull_N")) continue;
+    Json& all = summary["drawbar_pull_N"]["steady"];
+    if (all != false) all = value_at(wheel, "drawbar_pull_N.steady");
+  }
   return summary;
 }
 

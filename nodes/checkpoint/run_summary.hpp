@@ -10,8 +10,8 @@
 
 namespace furrow::checkpoint {
 
-/// The summary of a run; null if the run has not ended, or the file is damaged. The keys of a
-/// single wheel are at its top too; of several with a pull only `drawbar_pull_N.steady`, whether all are.
+/// The summary of a run; null if the run has not ended, or the file is damaged. The keys of a single wheel are at its
+/// top too; of several with a pull only `drawbar_pull_N.steady`, whether all are.
 nlohmann::ordered_json read_summary(const std::filesystem::path& run);
 
 /// The summary of a failed run: means of the available lines, and the reason under `failed`; null if it has not failed.

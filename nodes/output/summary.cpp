@@ -104,15 +104,13 @@ Json tire_axes_means(const Window& w) {
 
 void add_rut(const WheelInput& in, Json& json) {
   terrain::Rut rut;
-  const bool has_lines = !in.rows.empty(), ended = !in.run.end.reports.empty();
-  const bool along_x = std::abs(in.end.heading.y()) < kAlongX;
-  if (!has_lines)
+  if (in.rows.empty()) {
     rut.missing = "the series has no lines";
-  else if (!ended)
+  } else if (in.run.end.reports.empty()) {
     rut.missing = "the run failed before its end";
-  else if (!along_x)
+  } else if (!(std::abs(in.end.heading.y()) < kAlongX)) {
     rut.missing = "the wheel moves at an angle to x, and ruts along x are measured";
-  if (has_lines && ended && along_x) {
+  } else {
     const FinalReport& terrain = in.run.end.reports[scenario::terrain_rank(in.run.scenario)];
     terrain::RutOptions options;
     options.direction = in.end.heading.x() < 0.0 ? -1.0 : 1.0;

@@ -252,13 +252,12 @@ std::vector<Bound> scale_bounds(const Scenario& s) {
           fmt::format("the contact is about {:.1f} nodes long, expected {:g} or more: with two nodes a wheel of 58 "
                       "mm rolled with 84 % more resistance than with ten",
                       nodes, kNodesInContact));
-    if (const double share = s.terrain->modulus_under(tires[k].radius, tires[k].tread_width, w.load);
-        share < kLeastModulus)
-      bounds.add(true, "terrain.bekker_k_c",
-                 fmt::format("k_c/b + k_phi is {:.2g} times k_phi with the b of this contact, expected {:g} or more: a "
-                             "negative k_c that was fitted to wider plates does not hold here, and below 0.05 the run "
-                             "takes 0.05; give terrain.patch_width, or plates of this size",
-                             share, kLeastModulus));
+    const double share = s.terrain->modulus_under(tires[k].radius, tires[k].tread_width, w.load);
+    bounds.add(share < kLeastModulus, "terrain.bekker_k_c",
+               fmt::format("k_c/b + k_phi is {:.2g} times k_phi with the b of this contact, expected {:g} or more: a "
+                           "negative k_c that was fitted to wider plates does not hold here, and below 0.05 the run "
+                           "takes 0.05; give terrain.patch_width, or plates of this size",
+                           share, kLeastModulus));
     if (!w.grains) continue;
     add_bin(*w.grains, tires[k].tread_width, bounds);
     add_rates(*w.grains, bounds);

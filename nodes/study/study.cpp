@@ -87,9 +87,10 @@ void check_means(Reader& reader, const Study& study, const Json& plot, const std
   std::string also = study.passes > 1 && x != "pass" && lines != "pass" && over != "pass" ? "pass" : "";
   std::map<std::string, const Json*> first;  // run of a point
   for (const Json& run : study.runs) {
-    const auto [at, is_new] = first.try_emplace(run.value(x, Json()).dump() + run.value(lines, Json()).dump(), &run);
+    const std::string point = run.value(x, Json()).dump() + run.value(lines, Json()).dump();
+    const Json& other = *first.try_emplace(point, &run).first->second;
     for (const std::string& key : varied)
-      if (key != over && run.value(key, Json()) != at->second->value(key, Json())) also = key;
+      if (key != over && run.value(key, Json()) != other.value(key, Json())) also = key;
   }
   if (!also.empty())
     reader.fail("plot.mean_over", "is '{}', but runs of one point differ in '{}' too, expected it as x or lines", over,

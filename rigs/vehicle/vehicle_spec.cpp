@@ -147,6 +147,11 @@ void VehicleRigSpec::check_gears() const {
           fmt::format("asks for gear -1 at {} s, expected 0 to {} or 'auto': the vehicle {} has {}", number_text(time),
                       gears, name,
                       gearbox ? "no reverse gear" : "neither a gearbox nor motors, which turn backward in it"));
+    if (gear == vehicle::gear_request::reverse && plan_.driver->speed)
+      throw input_error(
+          context_.file, context_.key("driver"),
+          fmt::format("holds a speed and asks for gear -1 at {} s, expected one of them: the speed is that forward",
+                      number_text(time)));
     if (gear > gears)
       throw input_error(
           context_.file, context_.key("driver"),
@@ -168,13 +173,6 @@ void VehicleRigSpec::check_driver() const {
     refuse("follows a path", "no steered axle ahead of its last one");
   if (plan_.driver->speed && !vehicle::can_drive(plan_.vehicle)) refuse("holds a speed", "neither engine nor motors");
   const vehicle::InputSpec& inputs = plan_.driver->inputs;
-  if (plan_.driver->speed)
-    for (const auto& [time, gear] : inputs.gear)
-      if (gear == vehicle::gear_request::reverse)
-        throw input_error(context_.file, context_.key("driver"),
-                          fmt::format("holds a speed and asks for gear -1 at {} s, expected one of them: the speed is "
-                                      "that forward",
-                                      number_text(time)));
   const auto refuse_use = [&](const char* what, const vehicle::DriverPoints& points, const char* lacks) {
     const auto used = std::find_if(points.begin(), points.end(), [](const auto& point) { return point.second != 0.0; });
     if (used == points.end()) return;

@@ -28,7 +28,9 @@ SLIPS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 COHESIONS = (40e3, 50e3, 60e3, 70e3, 90e3, 100e3)  # Pa; the scenario has slip 0.3 and 80 kPa
 CASES = {f"slip {slip:g}": {"rig.slip": slip} for slip in SLIPS} | {
     f"cohesion {cohesion / 1e3:g} kPa": {"terrain.cohesion": cohesion} for cohesion in COHESIONS}
-PASSES = {"cohesion 80 kPa": {}, "cohesion 40 kPa": {"terrain.cohesion": 40e3}}
+# cohesion and rest between passes (s)
+PASSES = {"cohesion 80 kPa": ({}, 0.2), "cohesion 40 kPa": ({"terrain.cohesion": 40e3}, 0.2),
+          "80 kPa, rest 0 s": ({}, 0.0), "80 kPa, rest 1 s": ({}, 1.0)}
 SLOW = {"rig.angular_speed": 4.28, "run.end": 1.8, "run.average_from": 0.9}
 STIFF = {"terrain.normal_stiffness": 5.17e6}  # N/m^1.5, of the scenario's 1e8 Pa at 10 mm
 DOUBLE = {"terrain.friction_velocity_scale": 10}  # s/m
@@ -145,18 +147,22 @@ def resistance(seeds, finished, made):
         driver.write("report_law_resistance.csv", rows.values(), made)
 
 
-def passes(seeds):
-    rows, made = [], provenance.made_here()
-    for case, changed in PASSES.items():
+def passes(cases, seeds):
+    """Rows of other cases and beds stay in the table; each row has the commit of its program."""
+    name, made = "report_law_passes.csv", provenance.made_here()
+    for case in cases:
+        changed, rest = PASSES[case]
         for seed in seeds:
             study = {"format_version": 1, "scenario": RIG, "set": LAW | FAST | changed | {"run.seed": seed},
-                     "passes": 3, "rest": 0.2}
-            out = driver.kept(driver.RESULTS / "report_law_passes" / f"{case.replace(' ', '_')}_{seed}", "sweep",
-                              scenario=study)
+                     "passes": 3, "rest": rest}
+            out = driver.kept(folder_of("report_law_passes", case, seed), "sweep", scenario=study)
+            rows = [row for row in provenance.read_table(driver.HERE / name)
+                    if (row["case"], row["seed"]) != (case, str(seed))]
             for run in provenance.read_table(out / "sweep.csv"):
                 rows.append({"case": case, "seed": seed, "pass": run["pass"],
-                             **driver.drawbar_row(driver.summary(out / run["folder"]), FIGURES)})
-            driver.write("report_law_passes.csv", rows, made)
+                             **driver.drawbar_row(driver.summary(out / run["folder"]), FIGURES),
+                             "commit": made["commit"]})
+            driver.write(name, rows, made)
 
 
 def factors(seeds, finished):
@@ -191,7 +197,8 @@ def small_steps(seed, finished):
 
 def main():
     parser = driver.options(__doc__, seeds={"type": int, "nargs": "+", "default": [1, 2, 3, 4, 5]},
-                            finished={"action": "store_true"})
+                            finished={"action": "store_true"},
+                            cases={"nargs": "+", "default": list(PASSES), "help": "of passes"})
     parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors", "small_steps"])
     arguments = parser.parse_args()
     if "shear" in arguments.parts:
@@ -199,7 +206,7 @@ def main():
     if "rig" in arguments.parts:
         rig(arguments.seeds, arguments.finished)
     if "passes" in arguments.parts:
-        passes(arguments.seeds)
+        passes(arguments.cases, arguments.seeds)
     if "factors" in arguments.parts:
         factors(arguments.seeds, arguments.finished)
     if "small_steps" in arguments.parts:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The contact law of the 2016 report on the small rig: does it turn the trends of its Figs 8, 16 and 20?
 
-usage: report_law.py [shear] [rig] [passes] [factors] [small_steps] [--seeds 1 2 …] [--finished]
+usage: report_law.py [shear] [rig] [passes] [factors] [small_steps] [janosi] [--seeds 1 2 …] [--finished]
 
 `shear`: direct shear at 0.05 to 4 m/s with the report's law at three steps, and with `mindlin`, three beds each;
 writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the report's rim speed of 4 m/s on a bed of
@@ -9,12 +9,15 @@ writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the r
 report_law_resistance.csv, the resistance against time at four cohesions (Fig. 13). `passes`: three passes
 in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig. 8, one change at a time from the rig's
 runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. `small_steps`: the rig at steps of 3, 6 and 20 µs on
-the first bed, for the law as it is printed; writes report_law_small_steps.csv.
+the first bed, for the law as it is printed; writes report_law_small_steps.csv. `janosi`: the tractive effort that the
+shear strength at the speed of sliding would give, beside the rig's; runs nothing and writes report_law_janosi.csv.
 
 Expected, written down before the first run: a trend agrees with the report's if the 95 % interval of the slope over
 beds excludes zero with the report's sign: pull grows with slip (Fig. 8), tractive effort falls with cohesion (Fig. 16),
 pull grows with the number of passes (Fig. 20).
 """
+import math
+
 import driver
 import provenance
 
@@ -46,6 +49,7 @@ FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistan
            "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m"}
 OVER_TIME = {40: "cohesion 40 kPa", 60: "cohesion 60 kPa", 80: "slip 0.3", 100: "cohesion 100 kPa"}  # kPa: case
 MEAN = 0.05  # s, of a point over time
+RADIUS, SPEED, LOAD = 0.4673, 4.0, 4608.0  # of the rig: m, m/s of the rim, N
 # law, settings, step (s), cohesions (Pa), speeds (m/s)
 SHEAR = (("hertz_tanh", LAW, 60e-6, (40e3, 80e3), (0.05, 0.2, 1.0, 4.0)),
          ("hertz_tanh", LAW, 20e-6, (80e3,), (0.2, 1.0, 4.0)),
@@ -195,11 +199,41 @@ def small_steps(seed, finished):
                 driver.write("report_law_small_steps.csv", rows, made)
 
 
+def over_speed(rows, speed, column):
+    """A value of the shear tests between their speeds, linear in ln speed; the slowest and fastest beyond."""
+    points = [(math.log(float(row["speed_m_s"])), float(row[column])) for row in rows]
+    at = min(max(math.log(speed), points[0][0]), points[-1][0])
+    for (a, left), (b, right) in zip(points, points[1:]):
+        if at <= b:
+            return left + (right - left) * (at - a) / (b - a)
+
+
+def janosi(made):
+    """H = W τ/σ (1 − K/(s L) (1 − exp(−s L/K))) [Wong 2008, §2.4] with τ/σ and K at the sliding speed s v, and the
+    length of contact of a rigid wheel at the rig's sinkage z, L = √(2 R z)."""
+    shear = [row for row in provenance.read_table(driver.HERE / "report_law_shear.csv") if row["cohesion_kPa"] == "80"]
+    first_bed = [row | {"step_us": "60"} for row in provenance.read_table(driver.HERE / "report_law.csv")]
+    found = first_bed + provenance.read_table(driver.HERE / "report_law_small_steps.csv")
+    rows = []
+    for row in found:
+        tests = [test for test in shear if test["law"] == "hertz_tanh" and test["step_us"] == row["step_us"]]
+        slip = float(row["slip"])
+        if row["seed"] != "1" or not row["case"].startswith("slip ") or slip == 0 or not tests:
+            continue
+        length = math.sqrt(2 * RADIUS * 1e-3 * float(row["sinkage_mm"]))
+        ratio, k = (over_speed(tests, slip * SPEED, column) for column in ("final_shear_over_normal_stress", "K_mm"))
+        way = slip * length / (1e-3 * k)
+        rows.append({"step_us": row["step_us"], "slip": slip, "sliding_m_s": slip * SPEED, "shear_over_normal": ratio,
+                     "K_mm": k, "length_mm": 1e3 * length, "janosi_N": LOAD * ratio * (1 + math.expm1(-way) / way),
+                     "gross_N": float(row["gross_N"])})
+    driver.write("report_law_janosi.csv", rows, made)
+
+
 def main():
     parser = driver.options(__doc__, seeds={"type": int, "nargs": "+", "default": [1, 2, 3, 4, 5]},
                             finished={"action": "store_true"},
                             cases={"nargs": "+", "default": list(PASSES), "help": "of passes"})
-    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors", "small_steps"])
+    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors", "small_steps", "janosi"])
     arguments = parser.parse_args()
     if "shear" in arguments.parts:
         shear()
@@ -211,6 +245,8 @@ def main():
         factors(arguments.seeds, arguments.finished)
     if "small_steps" in arguments.parts:
         small_steps(arguments.seeds[0], arguments.finished)
+    if "janosi" in arguments.parts:
+        janosi(provenance.made_here())
 
 
 if __name__ == "__main__":

@@ -2,10 +2,11 @@
 """Figs 6, 10, 11 and 17 of the 2016 report at its size: strain of the tire and velocity of the grains, pressure in the
 patch at the largest deflection and in steady motion, and the criterion of Wong for a rigid or flexible tire.
 
-usage: patch_pressure.py [--law mindlin|report] [--seed 1]
+usage: patch_pressure.py [--law mindlin|report] [--seed 1] [--fall]
 
 Runs drawbar_pull.json (with the report's law drawbar_pull_tr.json) with frames. Adds a row to patch_pressure.csv. With
-seed 1 it also writes patch_pressure_LAW.csv, the pressure in wheel axes, and patch_pressure.png.
+seed 1 it also writes patch_pressure_LAW.csv, the pressure in wheel axes, and patch_pressure.png. --fall: as the public
+program of the report starts, 10 mm above the ground, for 0.3 s with frames every 4 ms; adds a row alone.
 
 Pressure of a node: the force on it along the surface's inward normal over a third of the area of its triangles. Angles
 count from the downward vertical, forward positive. The row across is the node's place in the meridian. The largest
@@ -29,6 +30,8 @@ RIGS = {"mindlin": "drawbar_pull.json", "report": "drawbar_pull_tr.json"}
 COLUMNS = 90  # of the mesh, around
 STEP_OF_ANGLE = 2 * math.pi / COLUMNS
 CELL = 0.015  # m, over which the velocities of grains are averaged
+FALL = {"rig.drop_height": 0.009, "rig.touchdown_damping": 0, "run.end": 0.3, "run.average_from": 0.25,
+        "output.frame_interval": 4e-3}
 WIDTH, DIAMETER = 0.254, 2 * 0.4673  # m, of the tire
 
 
@@ -121,24 +124,43 @@ def draw(maps, law, strain, grains):
     driver.save(figure, "patch_pressure" + ("" if law == "mindlin" else "_report"))
 
 
+def results_of(name, law, changed):
+    """(folder, frames, rows of the mesh, end of the touch-down, frame at the largest deflection before it)"""
+    out = driver.finished_case(name, [str(driver.ROOT / "rigs" / RIGS[law]), *driver.settings(changed)],
+                               driver.RESULTS / name)
+    frames = [read_frame(path) for path in sorted((out / "frames").glob("tire0_*.h5"))]
+    series, begin = driver.series(out), driver.read_json(out / "scenario.json")["run"]["average_from"]
+    early = series["time_s"] < begin
+    at = series["time_s"][early][np.argmin(series["loaded_radius_m"][early])]
+    return (out, frames, (len(frames[0].position) - 2) // COLUMNS, begin,
+            min(frames, key=lambda frame: abs(frame.time - at)))
+
+
+def add_row(row, made):
+    table = driver.HERE / "patch_pressure.csv"
+    others = [of for of in (provenance.read_table(table) if table.exists() else ())
+              if (of["law"], of["seed"]) != (row["law"], str(row["seed"]))]
+    driver.write("patch_pressure.csv", [*others, row], made, told=True)
+
+
+def fall(law, seed, made):
+    *_, rows, _, touch = results_of(f"patch_pressure_{law}_fall_{seed}", law, FALL | {"run.seed": seed})
+    add_row({"law": f"{law}, falls 10 mm", "seed": seed, "commit": made["commit"],
+             "largest_at_deflection_kPa": max(mean_map([touch], rows).values()) / 1e3}, made)
+
+
 def main():
     parser = driver.options(__doc__, law={"choices": list(RIGS), "default": "mindlin"},
-                            seed={"type": int, "default": 1})
+                            seed={"type": int, "default": 1}, fall={"action": "store_true"})
     arguments = parser.parse_args()
     made = provenance.made_here()
-    out = driver.finished_case(f"patch_pressure_{arguments.law}", [
-        str(driver.ROOT / "rigs" / RIGS[arguments.law]), *driver.settings({"run.seed": arguments.seed})],
-        driver.RESULTS / f"patch_pressure_{arguments.law}_{arguments.seed}")
-    frames = [read_frame(path) for path in sorted((out / "frames").glob("tire0_*.h5"))]
-    series, summary = driver.series(out), driver.summary(out)
-    scenario = driver.read_json(out / "scenario.json")
-    begin = scenario["run"]["average_from"]
-    rows = (len(frames[0].position) - 2) // COLUMNS
-    early = series["time_s"] < begin
-    deflection = np.max(series["loaded_radius_m"]) - series["loaded_radius_m"]
-    at = series["time_s"][early][np.argmax(deflection[early])]
+    if arguments.fall:
+        fall(arguments.law, arguments.seed, made)
+        return
+    out, frames, rows, begin, touch = results_of(f"patch_pressure_{arguments.law}_{arguments.seed}", arguments.law,
+                                                 {"run.seed": arguments.seed})
+    summary = driver.summary(out)
     steady = [frame for frame in frames if frame.time >= begin]
-    touch = min(frames, key=lambda frame: abs(frame.time - at))
     maps = {f"largest deflection, {touch.time:.2f} s": mean_map([touch], rows), "steady": mean_map(steady, rows)}
     last = frames[-1]
     if arguments.seed == 1:
@@ -158,10 +180,7 @@ def main():
            "largest_at_deflection_kPa": max(next(iter(maps.values())).values()) / 1e3,
            "strain_percent": 100 * float(last.strain.max()), "p_i_and_p_c_kPa": pressure_on_plate() / 1e3,
            "p_gcr_kPa": critical_pressure(load) / 1e3}
-    table = driver.HERE / "patch_pressure.csv"
-    others = [of for of in (provenance.read_table(table) if table.exists() else ())
-              if (of["law"], of["seed"]) != (arguments.law, str(arguments.seed))]
-    driver.write("patch_pressure.csv", [*others, row], made, told=True)
+    add_row(row, made)
 
 
 if __name__ == "__main__":

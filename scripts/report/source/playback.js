@@ -16,7 +16,7 @@ import { Grains } from "./grains.js";
 import { body, euler, hardGround, paint, Surface, Tire } from "./shapes.js";
 import { unpack } from "./unpack.js";
 
-const NUMBERS = 14; // of a pose: R, t, largest force, largest speed
+const NUMBERS = 15; // of a pose: R, t, largest force, speed and strain
 const root = (byte) => (byte / 255) ** 2; // share of the largest that a byte stands for
 
 const OF_GRAINS = {
@@ -30,6 +30,7 @@ const OF_TIRES = {
   pressure: ["contact pressure on the tire", "kPa", "rubber"],
   speed: ["speed of the tire's surface", "m/s", "rubber"],
   height: ["height of the tire's surface", "m", "viridis"],
+  strain: ["largest principal strain of the tire", "%", "viridis"],
 };
 
 /** Whether the browser draws without a graphics card; smooth edges and fine pixels would take too long then. */
@@ -78,11 +79,13 @@ class Player {
       };
     const forces = [],
       pressures = [],
-      speeds = [];
+      speeds = [],
+      strains = [];
     frames.tires.forEach((tires, f) =>
       tires.forEach((tire, k) => {
-        const [force, speed] = this.pose(f, k).subarray(12);
+        const [force, speed, strain] = this.pose(f, k).subarray(12);
         speeds.push(speed);
+        strains.push(strain);
         let most = 0;
         for (let i = 0; i < tire.force.length; i++)
           if (tire.force[i])
@@ -91,7 +94,14 @@ class Player {
         pressures.push(most);
       }),
     );
-    this.tireTop = { force: high(forces), pressure: high(pressures) * 0.6, speed: high(speeds), height: 1 };
+    this.tireTop = {
+      force: high(forces),
+      pressure: high(pressures) * 0.6,
+      speed: high(speeds),
+      height: 1,
+      strain: high(strains),
+    };
+    this.strained = strains.some((strain) => strain > 0);
     if (!block.bed) return;
     const surface = this.bed.surface,
       heights = [...frames.surface[0]]
@@ -240,7 +250,7 @@ class Player {
   }
 
   paintTire(tire, frame, pose) {
-    const [force, speed] = pose.subarray(12),
+    const [force, speed, strain] = pose.subarray(12),
       top = this.tireTop,
       by = this.tiresBy;
     const rim = (share) => (i) => (tire.rim[i] ? 0.02 : share(i));
@@ -249,6 +259,7 @@ class Player {
         plain: (i) => 0,
         force: (i) => (force * root(frame.force[i])) / top.force,
         speed: (i) => (speed * root(frame.speed[i])) / top.speed,
+        strain: (i) => (strain * root(frame.strain[i])) / top.strain,
         pressure: (i) => (force * root(frame.force[i])) / (tire.area[i] || Infinity) / top.pressure,
         height: (i) => (z[3 * i + 2] - tire.centre[2]) / (2 * tire.radius) + 0.5,
       }[by];
@@ -303,7 +314,7 @@ function scaleBar(player, kind) {
   const [words, unit, map] = of,
     top =
       (kind === "grains" ? player.grainTop[player.grainsBy] : player.tireTop[player.tiresBy]) *
-      (unit === "mm" ? 1e3 : unit === "kPa" ? 1e-3 : 1);
+      ({ mm: 1e3, kPa: 1e-3, "%": 100 }[unit] ?? 1);
   const ends =
     unit === "m"
       ? ["lowest", "highest"]
@@ -350,10 +361,15 @@ function controls(player, block, show, bars) {
     );
   }
   toggles.push(
-    choice("tire by", Object.keys(OF_TIRES), player.tiresBy, (v) => {
-      player.tiresBy = v;
-      again();
-    }),
+    choice(
+      "tire by",
+      Object.keys(OF_TIRES).filter((by) => by !== "strain" || player.strained),
+      player.tiresBy,
+      (v) => {
+        player.tiresBy = v;
+        again();
+      },
+    ),
   );
   if (bed) {
     toggles.push(

@@ -24,14 +24,15 @@ class Planes {
   }
 }
 
-/** Of each frame and tire: three axes of deviations, then bytes of force and speed. */
+/** Of each frame and tire: three axes of deviations, then bytes of force, speed and strain. */
 async function tireFrames(block) {
   const read = new Planes(await bytes("tires"));
   return block.times.map(() =>
     block.tires.map((tire) => {
       const deviation = [0, 1, 2].map(() => new Int16Array(tire.vertices));
       for (const axis of deviation) read.words(tire.vertices, axis);
-      return { deviation, force: read.bytes(tire.vertices), speed: read.bytes(tire.vertices) };
+      const [force, speed, strain] = [0, 1, 2].map(() => read.bytes(tire.vertices));
+      return { deviation, force, speed, strain };
     }),
   );
 }

@@ -52,18 +52,20 @@ def read_grains(path):
 
 
 def read_tire(path):
-    """(position, triangle, length of force, length of velocity, time)."""
+    """(position, triangle, length of force, length of velocity, strain, time); the strain is 0 of tires without it."""
     with h5py.File(path, "r") as file:
         position = np.nan_to_num(table(file, "position", 3).astype(float))
         triangle = table(file, "triangle", 3).astype(int)
-        vectors = [np.linalg.norm(np.nan_to_num(table(file, name, 3).astype(float)), axis=1) if name in file
-                   else np.zeros(len(position)) for name in ("force", "velocity")]
+        values = [np.linalg.norm(np.nan_to_num(table(file, name, 3).astype(float)), axis=1) if name in file
+                  else np.zeros(len(position)) for name in ("force", "velocity")]
+        values.append(np.nan_to_num(table(file, "strain", 0).astype(float)) if "strain" in file
+                      else np.zeros(len(position)))
         time = float(np.asarray(file.attrs.get("time_s", np.nan), float).ravel()[0])
     if not (0 < len(position) <= 65000 and len(triangle)) or triangle.min() < 0 or triangle.max() >= len(position):
         raise Damaged(f"{path.name} holds no surface that could be drawn")
-    if any(len(vector) != len(position) for vector in vectors) or np.abs(position).max() > 1e6:
+    if any(len(of) != len(position) for of in values) or np.abs(position).max() > 1e6:
         raise Damaged(f"{path.name} holds a damaged surface")
-    return position, triangle, *vectors, time
+    return position, triangle, *values, time
 
 
 def bytes_of(values):
@@ -161,7 +163,7 @@ class Packing:
 
     def _tire(self, k, index):
         reference, triangle, quantum = self.mesh[k]
-        position, other, force, velocity, time = read_tire(self.frames.tires[k][index])
+        position, other, *fields, time = read_tire(self.frames.tires[k][index])
         if position.shape != reference.shape or other.shape != triangle.shape:
             raise Damaged(f"the frames of tire {k} differ in the size of its surface")
         turn, shift = motion(reference, position)
@@ -170,7 +172,7 @@ class Packing:
         for axis in range(3):
             stream.add(shuffled(deviation[:, axis]))
         largest = []
-        for values in (force, velocity):
+        for values in fields:
             data, most = bytes_of(values)
             stream.add(data)
             largest.append(most)

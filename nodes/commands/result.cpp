@@ -75,8 +75,9 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
          expected_text(scenario.expected, 1, mean, number_at(summary, "sinkage_m"), number_at(summary, "rut_depth_m"));
 }
 
-/// The pull by published regressions, with those that do not hold here apart; empty without a cone index.
-std::string regressions_line(const json& wheel) {
+/// The slip from its three zeros, and the pull by published regressions, with those that do not hold here apart; empty
+/// without a cone index.
+std::string regressions_lines(const json& wheel) {
   const json found = wheel.value("regressions", json());
   if (!found.is_object()) return "";
   std::vector<std::string> within, outside;
@@ -84,9 +85,15 @@ std::string regressions_line(const json& wheel) {
     if (of.is_object() && std::isfinite(number_at(of, "net_N")))
       (of.value("in_range", false) ? within : outside)
           .push_back(fmt::format("{} {} N", of.value("name", key), digits(number_at(of, "net_N"))));
-  std::string text = fmt::format("furrow: regressions of the pull at a cone index of {} kPa: {}",
-                                 digits(1e-3 * number_at(found, "cone_index_Pa")),
-                                 within.empty() ? "none holds here" : fmt::format("{}", fmt::join(within, ", ")));
+  std::string text;
+  if (std::isfinite(number_at(wheel, "slip")))
+    text = fmt::format(
+        "furrow: slip {} from the undeformed radius, {} from rolling without torque, {} from no pull on hard ground\n",
+        digits(number_at(wheel, "slip")), digits(number_at(wheel, "slip_of_free_rolling")),
+        digits(number_at(wheel, "slip_of_no_pull")));
+  text += fmt::format("furrow: regressions of the pull at a cone index of {} kPa: {}",
+                      digits(1e-3 * number_at(found, "cone_index_Pa")),
+                      within.empty() ? "none holds here" : fmt::format("{}", fmt::join(within, ", ")));
   if (!outside.empty()) text += fmt::format("; outside of their range {}", fmt::join(outside, ", "));
   return text + "\n";
 }
@@ -243,7 +250,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
     const json& wheel = wheels[k];
     const auto millimetres = [&](const char* key) { return 1e3 * number_at(wheel, key); };
     if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
-    if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario) + regressions_line(wheel);
+    if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario) + regressions_lines(wheel);
     const auto told = [&](const char* key, const char* sem) {
       const double error = millimetres(sem);
       return std::isfinite(error) ? with_error(millimetres(key), error) : digits(millimetres(key));

@@ -178,12 +178,13 @@ def regressions_table(run):
         if isinstance(of, dict):
             because = "; ".join(map(printable, of.get("out_of_range_because") or []))
             rows.append([str(of.get("name")), *(digits(of[key]) if is_number(of.get(key)) else "–"
-                                                for key in ("gross_N", "resistance_N", "net_N")),
+                                                for key in ("gross_N", "resistance_N", "net_N", "slip")), str(of.get("range")),
                          "in range" if of.get("in_range") else f"out of range: {because}"])
     return [{"type": "fold", "title": "Published regressions of traction at this cone index", "blocks": [
-        blocks.table(["regression", "gross, N", "resistance, N", "net, N", ""], rows,
-                     note=f"At a cone index of {digits(1e-3 * found['cone_index_Pa'])} kPa. Formulas, sources and "
-                          "ranges: scripts/docs/results.md, \"Regressions\".")]}]
+        blocks.table(["regression", "gross, N", "resistance, N", "net, N", "its slip", "made for", ""], rows,
+                     note=f"At a cone index of {digits(1e-3 * found['cone_index_Pa'])} kPa. Regressions of sand count "
+                          "the slip from rolling without torque, the others from no pull on hard ground. Formulas and "
+                          "sources: scripts/docs/results.md, \"Regressions\".")]}]
 
 
 def expected_table(run):

@@ -12,6 +12,7 @@ from .student import half_interval
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, heading
 
 COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, GREY]
+BROKEN = [":", "--", "-.", (0, (6, 2, 1, 2, 1, 2)), (0, (1, 4))]  # lines that cannot be told apart by colour
 
 
 class Sweep:
@@ -133,7 +134,7 @@ def mark_failed(axis, sweep, factors):
 
 
 def regression_lines(axis, sweep):
-    """Thin lines of the net traction that published regressions expect, dotted where one does not hold."""
+    """Thin lines of the net traction that published regressions expect, grey and broken where one does not hold."""
     if not sweep.plot["x"].endswith("slip") or sweep.plot["y"] != "drawbar_pull_N.mean":
         return
     lines = {}
@@ -146,8 +147,9 @@ def regression_lines(axis, sweep):
     for i, (name, values) in enumerate(lines.items()):
         holds = all(ok for group in values.values() for _, ok in group)
         x = sorted(values)
-        axis.plot(x, [np.mean([net for net, _ in values[at]]) for at in x], lw=0.8, ls="-" if holds else ":", zorder=1,
-                  color=COLOURS[-1 - i % len(COLOURS)], label=name if holds else f"{name} (out of range)")
+        axis.plot(x, [np.mean([net for net, _ in values[at]]) for at in x], lw=0.8, zorder=1,
+                  ls="-" if holds else BROKEN[i % len(BROKEN)],
+                  color=COLOURS[-1 - i % len(COLOURS)] if holds else GREY, label=name if holds else f"{name} (out of range)")
 
 
 def curve(sweep):

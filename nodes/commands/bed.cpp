@@ -1,4 +1,5 @@
 // `furrow bed`: prepares the bed of a scenario, keeps it in the cache and prints its properties.
+#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <vector>
@@ -23,6 +24,8 @@ namespace furrow::commands {
 namespace {
 
 using json = nlohmann::ordered_json;
+
+constexpr double kEven = 0.01;  // solid fraction, by which the layers of an even bed differ from their middle
 
 json bed_json(const scenario::Scenario& s, const terrain::dem::DemOptions& o, const terrain::dem::PreparedBed& prepared,
               const terrain::dem::BedStatistics& bed, std::optional<double> denser, double wall_s) {
@@ -98,6 +101,12 @@ ExitCode make_bed(const scenario::Scenario& scenario) {
     print_warning(
         fmt::format("{}: the bed is metastable: its solid fraction is {:.4f}, and {:+.4f} under 20 % more gravity",
                     scenario.file.string(), statistics.solid_fraction_bulk, *denser));
+  const auto [loosest, densest] = std::ranges::minmax(statistics.profile);
+  if (denser && densest - loosest > 2.0 * kEven)
+    print_warning(
+        fmt::format("{}: the bed is not even: four layers of its middle have solid fractions of {:.4f} to "
+                    "{:.4f}, expected a range of at most {:g}; a deeper or wider bed, in grain radii, helps",
+                    scenario.file.string(), loosest, densest, 2.0 * kEven));
   std::cout << bed_json(scenario, grains, prepared, statistics, denser, wall).dump(2) << "\n";
   return ExitCode::done;
 }

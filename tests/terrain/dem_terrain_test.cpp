@@ -177,8 +177,9 @@ TEST_F(DemTerrain, refuses_a_material_that_its_law_cannot_use_by_name) {
 
 TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
   options_.activity = false;
-  for (const char* law : {"mindlin", "hertz_tanh"}) {
+  for (const auto& [law, rolling] : {std::pair("mindlin", 0.0), {"mindlin", 0.3}, {"hertz_tanh", 0.0}}) {
     options_.law = law;
+    options_.rolling_friction = rolling;
     const auto terrain = prepared();
     PressedSurface press = plate_on(*terrain, 1e-4);
     const TerrainState before = terrain->gather_state();
@@ -208,7 +209,7 @@ TEST_F(DemTerrain, plate_books_force_momentum_and_energy) {
     EXPECT_NEAR(to.surface_work, -press.work, 1e-12 * std::abs(press.work));
     EXPECT_NEAR(to.elastic_normal + to.cohesion, after.elastic_energy, 1e-12 * std::abs(to.cohesion));
     EXPECT_NEAR(to.kinetic + to.rotational, after.kinetic_energy, 1e-12 * to.kinetic);
-    EXPECT_GT(to.sliding_loss, to.normal_damping_loss);
+    EXPECT_GT(rolling > 0.0 ? to.rolling_loss : to.sliding_loss, 0.2 * to.losses()) << law << rolling;
     const double left = to.stored() - from.stored() + to.losses() - to.surface_work;
     RecordProperty(std::string("left_of_work_") + law, std::to_string(left / to.surface_work));
     EXPECT_LT(std::abs(left), 0.03 * to.surface_work + 3.0 * to.sample_error) << law;

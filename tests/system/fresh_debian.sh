@@ -100,7 +100,7 @@ elapsed() { awk -v a="$1" -v b="$2" 'BEGIN {printf "%.1f", b - a}'; }
 # The tutorial's blocks of commands, but those that take long (tests/system/docs_tutorial.py leaves out the build too).
 tutorial_commands() {
   awk '/^```/ {inside = !inside && $0 == "```sh" && !skip; skip = 0; next} inside {print; next}
-    {skip = /^<!-- not run: takes /}' "$system$checkout/scripts/docs/tutorial.md"
+    {skip = /^<!-- not run: (takes|as root)/}' "$system$checkout/scripts/docs/tutorial.md"
 }
 # Runs a command in the new system; its time goes to wall, the times at which packages and build were done to
 # setup_done and build_done.
@@ -132,6 +132,18 @@ read -r packages_before mb_before < <(installed)
 run first_look
 first=("$setup_s" "$build_s" "$run_s")
 read -r packages mb < <(installed)
+
+# The tutorial's line that starts the ranks by hand, as root and as a plain user.
+by_hand=$(grep -m 1 '^mpirun ' "$system$checkout/scripts/docs/tutorial.md")
+chroot "$system" useradd --create-home engineer
+for user in root engineer; do
+  line=$by_hand
+  [[ $user == engineer ]] || line=${by_hand/#mpirun/mpirun --allow-run-as-root}
+  say "$user: $line"
+  chroot "$system" runuser -l "$user" -c "PATH=\"$checkout/scripts:\$PATH\" && $line" >>"$log" 2>&1 </dev/null ||
+    { tail -n 20 "$log" >&2; say "failed as $user"; exit 1; }
+done
+
 tutorial_s=null test=(null null) tests=0
 if $short; then
   run tutorial

@@ -236,9 +236,9 @@ def draw(passages, slow, still, modes):
         force = [1e-3 * (still[place] - slow.mean["z"] - GRAVITY * slow.mass) for place in still]
         axes[0, 0].plot([-place for place in still], force, "o", ms=3.5, mfc="none", color=style.RED,
                         label="planar, 20 mm, static")
-    axes[0, 0].legend(fontsize=7.5)
-    axes[2, 0].legend(fontsize=7.5, title="vertical lines: modes on a fixed rim,\norder 0 dotted, order 1 dash-dotted",
-                      title_fontsize=7.5)
+    named = dict(zip(*reversed([sum(of, []) for of in zip(*(axis.get_legend_handles_labels() for axis in axes[0]))])))
+    figure.legend(named.values(), named, loc="outside lower center", ncols=4, title="vertical lines: modes on a fixed rim "
+                  "in the tire's colour, order 0 dotted, order 1 dash-dotted", title_fontsize=9)
     driver.save(figure, "cleat_roll", 62)
 
 

@@ -19,6 +19,7 @@ import driver
 import provenance
 import ring_targets
 from driver import RESULTS, ROOT, read_json
+from furrow.plot.style import BLUE, GREEN, ORANGE, RED
 from ring_protocol import stiffening
 
 WIDE = {"bending": (1, 1e5, 146), "shear": (1e2, 1e8, 5e4), "sidewall_1": (1e4, 1e7, 8.84e5)}
@@ -117,7 +118,7 @@ def main():
          "at_bound": p["at_bound"] or ""}
         for name, (_, result) in fits.items() for key, p in result["parameters"].items()], made)
     rows = []
-    colour = {name: f"C{k}" for k, name in enumerate(SETS)}
+    colour = dict(zip(SETS, (BLUE, ORANGE, GREEN, RED)))
     figure, charts = driver.subplots(1, 3, figsize=(14, 4.4))
     for load, chart in zip(LOADS, charts[1:]):
         x, shell = centre_line(plates[load])

@@ -13,7 +13,7 @@ import numpy as np
 import driver
 import provenance
 from driver import HERE, RESULTS, read_json
-from furrow.plot.style import BLUE, ORANGE
+from furrow.plot.style import BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 from ring_targets import PLATE
 
 
@@ -70,12 +70,15 @@ def write_pressure(result, made):
 def draw(shell, ring):
     from furrow.plot.calibrate import Calibration
     figure, (curves, pressure) = driver.subplots(1, 2, figsize=(11, 4.6))
-    for k, target in enumerate(Calibration(RESULTS / "ring_protocol").targets()):
-        look = {"color": f"C{k}"}
-        curves.plot(1e3 * target["x"], 1e-3 * target["data"], "o" if k < 5 else "s", ms=3.5, **look)
-        curves.plot(1e3 * target["x"], 1e-3 * target["model"], "--" if target["held_out"] else "-",
-                    label=target["what"], **look)
-    driver.label(curves, "deflection, mm", "force, kN", "shell (points), ring fitted (lines) and predicted (dashed)", 7)
+    colours = {}
+    for target in Calibration(RESULTS / "ring_protocol").targets():
+        ground, inflated = target["what"].rsplit(", ", 1)
+        full = inflated == "200 kPa"
+        look = {"color": colours.setdefault(ground, (BLUE, ORANGE, GREEN, RED, PURPLE, SKY)[len(colours) % 6])}
+        curves.plot(1e3 * target["x"], 1e-3 * target["data"], "o" if full else "s", ms=3.5, **look)
+        curves.plot(1e3 * target["x"], 1e-3 * target["model"],
+                    ("--" if full else ":") if target["held_out"] else "-", label=target["what"], **look)
+    driver.label(curves, "deflection, mm", "force, kN", "shell (points), ring fitted (lines) and predicted (broken)", 7)
     pressure.plot(1e3 * shell[:, 0], 1e-3 * shell[:, 1], "o", ms=3.5, color=BLUE, label="shell")
     pressure.plot(1e3 * ring["x_m"], 1e-3 * ring["pressure_Pa"], "-", color=ORANGE, label="ring")
     driver.label(pressure, "along, mm", "pressure, kPa", f"centre line under {1e-3 * PLATE[-1]:.3g} kN", 10,

@@ -177,8 +177,9 @@ def regressions_table(run):
     for of in found.values():
         if isinstance(of, dict):
             because = "; ".join(map(printable, of.get("out_of_range_because") or []))
-            rows.append([str(of.get("name")), *(digits(of[key]) if is_number(of.get(key)) else "–"
-                                                for key in ("gross_N", "resistance_N", "net_N", "slip")), str(of.get("range")),
+            numbers = [digits(of[key]) if is_number(of.get(key)) else "–"
+                       for key in ("gross_N", "resistance_N", "net_N", "slip")]
+            rows.append([str(of.get("name")), *numbers, str(of.get("range")),
                          "in range" if of.get("in_range") else f"out of range: {because}"])
     return [{"type": "fold", "title": "Published regressions of traction at this cone index", "blocks": [
         blocks.table(["regression", "gross, N", "resistance, N", "net, N", "its slip", "made for", ""], rows,

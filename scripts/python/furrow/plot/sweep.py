@@ -147,9 +147,10 @@ def regression_lines(axis, sweep):
     for i, (name, values) in enumerate(lines.items()):
         holds = all(ok for group in values.values() for _, ok in group)
         x = sorted(values)
+        name = name if holds else f"{name} (out of range)"
         axis.plot(x, [np.mean([net for net, _ in values[at]]) for at in x], lw=0.8, zorder=1,
                   ls="-" if holds else BROKEN[i % len(BROKEN)],
-                  color=COLOURS[-1 - i % len(COLOURS)] if holds else GREY, label=name if holds else f"{name} (out of range)")
+                  color=COLOURS[-1 - i % len(COLOURS)] if holds else GREY, label=name)
 
 
 def curve(sweep):

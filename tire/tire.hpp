@@ -25,6 +25,7 @@ struct TireShape {
   MassProperties mass;
   double radius = 0.0;       // m
   double tread_width = 0.0;  // m
+  int tread_vertices = 0;    // the first of them, without grousers; 0: all
 };
 
 class Tire {
@@ -36,8 +37,10 @@ class Tire {
   MassProperties mass_properties() const { return shape_.mass; }
   double radius() const { return shape_.radius; }            // of the undeformed contact surface, m
   double tread_width() const { return shape_.tread_width; }  // m
-  Vec3 gravity() const { return gravity_; }                  // W, m/s²
-  virtual int coordinates() const = 0;                       // unknowns
+  /// How many of the first vertices are of the wheel beneath its grousers.
+  int tread_vertices() const { return shape_.tread_vertices > 0 ? shape_.tread_vertices : shape_.mesh.vertex_count; }
+  Vec3 gravity() const { return gravity_; }  // W, m/s²
+  virtual int coordinates() const = 0;       // unknowns
 
   /// Gauge pressure from now on, Pa. Ignored by tires without air.
   virtual void set_pressure(double) {}

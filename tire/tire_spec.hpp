@@ -32,6 +32,9 @@ struct TireOptions {
   int elements_width = 0;            // 0: the file's; split over the sections in the file's proportions
   double structural_damping = -1.0;  // s; negative: the file's
   bool rigid = false;                // same surface, no deformation
+  int grousers = 0;                  // of a rigid tire
+  double grouser_height = -1.0;      // m; negative: not given
+  double grouser_thickness = -1.0;   // m; negative: not given
   bool contact_tangent = false;      // contact forces follow the tire's motion within the step
   int substeps = 1;                  // of the tire in one communication step
 
@@ -74,6 +77,13 @@ void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
         key("structural_damping", "s", from(0, 10).usual(1e-5, 0.2).or_null(),
             "Time constant τ of the Kelvin–Voigt law, the factor of the strain rate. null: as in the tire file."));
   visit(s.rigid, key("rigid", "", "Hold the tire rigid: same surface and mass, but no deformation."));
+  visit(s.grousers, key("grousers", "", from(0, 1000),
+                        "Number of straight grousers across the tread of a rigid tire, evenly spaced. Radius, slip and "
+                        "sinkage stay those of the tread beneath; mass and inertia those of the file."));
+  visit(s.grouser_height, key("grouser_height", "m", above(0).to(1).usual(1e-3, 0.1).or_null(),
+                              "Height of the grousers beyond the tread. Needed with grousers."));
+  visit(s.grouser_thickness, key("grouser_thickness", "m", above(0).to(1).usual(5e-4, 0.1).or_null(),
+                                 "Thickness of the grousers along the circumference. Needed with grousers."));
   visit(s.contact_tangent,
         key("contact_tangent", "",
             "Contact tangents: with each contact force the terrain sends how it changes with the tire's motion, and "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,28 @@ void check(const PressureSchedule& schedule, const std::string& key, const std::
   }
 }
 
+void check_grousers(const TireOptions& o, const TireDescription& tire, const ReadContext& context) {
+  const auto refuse = [&](const char* key, const std::string& what) {
+    throw input_error(context.file, context.key(key), what);
+  };
+  const bool height = o.grouser_height > 0.0, thickness = o.grouser_thickness > 0.0;
+  if (o.grousers == 0) {
+    if (height || thickness)
+      refuse(height ? "grouser_height" : "grouser_thickness", "is given, expected the number of 'grousers' as well");
+    return;
+  }
+  if (std::ranges::find(tire.takes, "grousers") == tire.takes.end())
+    refuse("grousers", fmt::format("is {}, expected 0 for a tire that is not rigid (tire.rigid)", o.grousers));
+  if (!height || !thickness)
+    refuse(height ? "grouser_thickness" : "grouser_height", "is not given, expected above 0 m for grousers");
+  if (o.grouser_height >= tire.radius)
+    refuse("grouser_height", fmt::format("is {} m, expected less than the radius of {} m",
+                                         number_text(o.grouser_height), number_text(tire.radius)));
+  if (const double pitch = 2.0 * std::numbers::pi * tire.radius / o.grousers; o.grouser_thickness >= pitch)
+    refuse("grouser_thickness", fmt::format("is {} m, expected less than the pitch of {} grousers, {:.4g} m",
+                                            number_text(o.grouser_thickness), o.grousers, pitch));
+}
+
 }  // namespace
 
 std::span<const TireModel> tire_models() { return kModels; }
@@ -116,6 +139,7 @@ std::shared_ptr<const TireSpec> read_tire(const json& section, const ReadContext
   options.file = find_file(options.file.string(), context.key("file"), context.file);
   check(options.pressure, context.key("pressure"), context.file);
   std::shared_ptr<const TireSpec> spec = read_tire(options);
+  check_grousers(options, spec->describe(), context);
   if (!options.contact_tangent) return spec;
   if (const TireDescription tire = spec->describe(); !tire.takes_tangents)
     throw input_error(

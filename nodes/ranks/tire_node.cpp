@@ -8,6 +8,7 @@
 // A prompt tire that does not follow its rim computes its contact while it moves. It moves before it states the forces.
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "nodes/output/frames.hpp"
@@ -232,8 +233,8 @@ class TireNode : public Node {
     report_.newton_iterations = static_cast<std::int64_t>(figures.of("newton_iterations"));
     report_.factorizations = static_cast<std::int64_t>(figures.of("factorizations"));
     report_.residual = figures.of("residual");
-    report_.lowest_point = motion_.surface.position.front().z();
-    for (const Vec3& x : motion_.surface.position) report_.lowest_point = std::min(report_.lowest_point, x.z());
+    const auto tread = std::span(motion_.surface.position).first(static_cast<std::size_t>(tire_->tread_vertices()));
+    report_.lowest_point = std::ranges::min(tread, {}, [](const Vec3& x) { return x.z(); }).z();
     if (!std::isfinite(report_.lowest_point + report_.spindle.force.sum()))
       throw physics_error(to_string(Address{Role::tire, index_}) + ": the state is not finite");
   }

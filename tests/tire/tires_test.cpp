@@ -162,6 +162,32 @@ TEST_F(TiresTest, a_rigid_tire_takes_no_contact_tangents) {
             "test.json: key 'tires.1.contact_tangent': is true, expected false for a rigid tire");
 }
 
+TEST_F(TiresTest, grousers_need_a_rigid_tire_a_height_and_a_thickness) {
+  const auto told = [](const json& more) {
+    json section = {{"file", TIRE_DATA "/rigid_drum.json"}, {"rigid", true}};
+    section.update(more);
+    return refusal(ExitCode::bad_input, [&] { read_tire(section, ReadContext{"test.json", "tire"}); });
+  };
+  const json whole = {{"grousers", 24}, {"grouser_height", 0.005}, {"grouser_thickness", 0.002}};
+  const auto with = [&](const char* key, const json& value) {
+    json changed = whole;
+    changed[key] = value;
+    return told(changed);
+  };
+  EXPECT_EQ(told(whole), "");
+  EXPECT_EQ(with("rigid", false),
+            "test.json: key 'tire.grousers': is 24, expected 0 for a tire that is not rigid (tire.rigid)");
+  EXPECT_EQ(with("grouser_height", nullptr),
+            "test.json: key 'tire.grouser_height': is not given, expected above 0 m for grousers");
+  EXPECT_EQ(with("grouser_height", 0.06),
+            "test.json: key 'tire.grouser_height': is 0.06 m, expected less than the radius of 0.058 m");
+  EXPECT_EQ(
+      with("grouser_thickness", 0.02),
+      "test.json: key 'tire.grouser_thickness': is 0.02 m, expected less than the pitch of 24 grousers, 0.01518 m");
+  EXPECT_EQ(told({{"grouser_height", 0.005}}),
+            "test.json: key 'tire.grouser_height': is given, expected the number of 'grousers' as well");
+}
+
 TEST_F(TiresTest, pressure_tables_run_forward_in_time) {
   const json section = {{"file", TIRE_DATA "/hmmwv_layered.json"}, {"pressure", json::array({{0.5, 2e5}, {0.5, 1e5}})}};
   EXPECT_EQ(refusal(ExitCode::bad_input,

@@ -9,6 +9,7 @@
 #include "protocol/files/nearest_words.hpp"
 #include "protocol/files/reader_fields.hpp"
 #include "tire/cylinder.hpp"
+#include "tire/rigid/grousers.hpp"
 #include "tire/rigid/rigid_tire.hpp"
 #include "tire/tire_file_chrono.hpp"
 
@@ -18,6 +19,16 @@ namespace {
 constexpr int kFacets = 96, kRows = 7;  // of a cylinder
 
 constexpr const char* kRigid = "rigid";
+
+/// What the options change of a rigid tire: its grousers.
+void take_grousers(const TireOptions& options, TireDescription& d) {
+  d.vertices += options.grousers * kGrouserVertices;
+  d.takes.insert(d.takes.end(), {"grousers", "grouser_height", "grouser_thickness"});
+}
+TireShape with_grousers(TireShape shape, const TireOptions& options) {
+  if (options.grousers > 0) add_grousers(shape, options.grousers, options.grouser_height, options.grouser_thickness);
+  return shape;
+}
 
 class RigidSpec final : public TireSpec {
  public:
@@ -35,12 +46,13 @@ class RigidSpec final : public TireSpec {
     d.vertical_stiffness = d.grip_stiffness = d.grip_damping = 0.0;
     d.static_only.clear();
     d.damping_time = d.step_share = 0.0;
+    take_grousers(options(), d);
     return d;
   }
   std::unique_ptr<Tire> make(const TireContext& context) const override {
-    return std::make_unique<RigidTire>(flexible_->shape(), context.gravity);
+    return std::make_unique<RigidTire>(shape(), context.gravity);
   }
-  TireShape shape() const override { return flexible_->shape(); }
+  TireShape shape() const override { return with_grousers(flexible_->shape(), options()); }
   std::vector<std::filesystem::path> files() const override { return flexible_->files(); }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     return flexible_->unlikely_values();
@@ -79,6 +91,7 @@ class RigidWheelSpec final : public TireSpec {
     d.deflects = false;
     d.follows_rim = true;
     d.takes = {"friction"};
+    take_grousers(options(), d);
     return d;
   }
   std::unique_ptr<Tire> make(const TireContext& context) const override {
@@ -89,7 +102,7 @@ class RigidWheelSpec final : public TireSpec {
     shape.material = file_.contact;
     options().apply_to(shape.material);
     shape.mass = mass();
-    return shape;
+    return with_grousers(std::move(shape), options());
   }
   std::vector<std::pair<std::string, std::string>> unlikely_values() const override {
     auto odd = unusual_values(file_);

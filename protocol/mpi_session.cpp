@@ -139,10 +139,4 @@ int Communicator::size() const {
   return size;
 }
 
-int Communicator::rank() const {
-  int rank = 0;
-  MPI_Comm_rank(comm_, &rank);
-  return rank;
-}
-
 }  // namespace furrow

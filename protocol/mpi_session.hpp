@@ -49,7 +49,6 @@ class Communicator {
 
   MPI_Comm get() const { return comm_; }
   int size() const;
-  int rank() const;
 
  private:
   explicit Communicator(MPI_Comm comm) : comm_(comm) {}

@@ -68,7 +68,7 @@ void RimTrajectory::extend(const RimState& received, double duration, const Vec3
 
 RimKinematics RimTrajectory::at(double s) const {
   FURROW_ASSERT(s >= 0.0 && s <= 1.0, s);
-  if (s >= 1.0 && duration_ == 0.0) return {end_, Vec3::Zero(), Vec3::Zero()};
+  if (s >= 1.0 && duration_ == 0.0) return {end_, Vec3::Zero()};
   const Hermite x = hermite(start_.position, start_.velocity, end_.position, end_.velocity, duration_, s);
   const Hermite phi = hermite(Vec3::Zero(), start_.angular_velocity, turn_, end_.angular_velocity, duration_, s);
   RimKinematics k;
@@ -78,7 +78,6 @@ RimKinematics RimTrajectory::at(double s) const {
   k.state.orientation = end_.orientation;
   if (s < 1.0) k.state.orientation = (rotation(phi.value) * start_.orientation).normalized();
   k.state.angular_velocity = phi.rate;
-  k.angular_acceleration = phi.second;
   return k;
 }
 

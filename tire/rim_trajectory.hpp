@@ -9,11 +9,10 @@
 
 namespace furrow::tire {
 
-/// Rim motion with accelerations at one instant, W.
+/// Rim motion with its acceleration at one instant, W.
 struct RimKinematics {
   RimState state;
-  Vec3 acceleration = Vec3::Zero();          // m/s²
-  Vec3 angular_acceleration = Vec3::Zero();  // rad/s²
+  Vec3 acceleration = Vec3::Zero();  // m/s²
 };
 
 class RimTrajectory {

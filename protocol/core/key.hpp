@@ -91,13 +91,11 @@ namespace allowed {
 inline constexpr Allowed any;
 constexpr Allowed from(double least, double most = any.high) { return any.from(least, most); }
 constexpr Allowed above(double bound) { return any.above(bound); }
-constexpr Allowed to(double most) { return any.to(most); }
 constexpr Allowed below(double bound) { return any.below(bound); }
 constexpr Allowed words(const char* list) { return any.words(list); }
 constexpr Allowed shaped(const char* json) { return any.shaped(json); }
 constexpr Allowed required() { return any.required(); }
 constexpr Allowed optional() { return any.optional(); }
-constexpr Allowed or_null() { return any.or_null(); }
 constexpr Allowed not_empty() { return any.not_empty(); }
 }  // namespace allowed
 

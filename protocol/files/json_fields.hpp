@@ -13,15 +13,15 @@
 
 namespace furrow {
 
-/// Reads every field that has all `roles` and whose key is present and not null; the others keep their values.
+/// Reads every field with role::key whose key is present and not null; the others keep their values.
 /// @pre the object was checked against the schema: a value of another type throws nlohmann::json::exception
 template <HasFields T>
-void read_fields(const nlohmann::json& object, T& target, unsigned roles = role::key) {
+void read_fields(const nlohmann::json& object, T& target) {
   FURROW_ASSERT(object.is_object(), object.type_name());
   visit_fields(target, [&](auto& value, const Field& field) {
     using Value = std::remove_reference_t<decltype(value)>;
     if constexpr (requires { object.begin()->template get<Value>(); }) {
-      if (!field.is(roles)) return;
+      if (!field.is(role::key)) return;
       const auto entry = object.find(field.name);
       if (entry != object.end() && !entry->is_null()) value = entry->template get<Value>();
     }

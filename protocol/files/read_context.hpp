@@ -2,15 +2,12 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace furrow {
 
 struct ReadContext {
   std::string file;     // the scenario, for messages
   std::string section;  // "terrain": prefix of each key in messages
-  /// Keys that the command line sets, with their sections: "terrain.engine".
-  std::vector<std::string> set_keys = {};
 
   std::string key(const std::string& name) const { return section.empty() ? name : section + "." + name; }
 };

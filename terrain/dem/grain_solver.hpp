@@ -67,7 +67,7 @@ struct Accounts {
   Vec3 surface_impulse = Vec3::Zero();  // N s
   double floor_force = 0.0;             // last step, N
   double kinetic = 0.0;                 // now, J
-  double height = 0.0;                  // Σ m h / m₀ now, h along GrainSolver::up(), m
+  double height = 0.0;                  // Σ m h / m₀ now, h against gravity, m
   Vec3 velocity = Vec3::Zero();         // Σ m v / m₀ now, m/s
   std::int64_t contacts = 0;            // last step
   double max_overlap = 0.0;             // largest since reset, m
@@ -152,8 +152,6 @@ class GrainSolver {
   /// Wakes the parcel of a grain whose motion was set from outside.
   void wake(int grain);
   void wake_all();
-  /// The direction against gravity, a unit vector, along which heights are measured; z without gravity.
-  const Vec3& up() const { return up_; }
   /// Σ m / m₀ of all grains.
   double relative_mass() const;
   /// Current index of the grain with this id. @pre there is one
@@ -240,7 +238,7 @@ class GrainSolver {
   void reduce(const StepPart& part, Wanted wanted);
 
   SolverParams params_;
-  Vec3 up_;
+  Vec3 up_;  // unit vector against gravity, along which heights are measured; z without gravity
   SolverCoefficients coefficients_;
   double drag_ = 0.0;
   Grains grains_;

@@ -46,7 +46,7 @@ struct MotionTotals {
   double net_force = 0.0;      // Σ |contact forces + weight| of grains, N, when measured
   double kinetic = 0.0;        // J
   double spin2 = 0.0;          // Σ I ω² / I₀, rad²/s²
-  double height = 0.0;         // Σ m h / m₀, h along GrainSolver::up(), m
+  double height = 0.0;         // Σ m h / m₀, h against gravity, m
   Quad velocity;               // Σ m v / m₀, m/s
   double step_work = 0.0;      // Σ F·a + T·α: half of it times dt² belongs to the power at mid-step, N²/kg
   Quad fastest2;               // largest squares of each component of v, m²/s²

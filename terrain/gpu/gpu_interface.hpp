@@ -14,7 +14,7 @@
 namespace furrow::terrain::gpu {
 
 /// Changes with this header; a library made for another number is refused.
-inline constexpr int kAbi = 2;
+inline constexpr int kAbi = 3;
 /// The library's only symbol: a function of type GetApi.
 inline constexpr char kApiSymbol[] = "furrow_gpu_api";
 
@@ -117,19 +117,18 @@ struct Hardest {
 
 /// Sums over all grains and contacts at the present positions, except as stated.
 struct Sums {
-  double speed2, spin2;           // Σ v², Σ ω², m²/s², rad²/s²
-  double speed[3], place[3];      // Σ v, Σ x, m/s, m
-  double elastic;                 // normal springs and cohesion, J
-  double contacts, listed;        // pairs and others that touch, pairs in lists
-  double contact_force;           // Σ |F| over contacts, N
-  double net_force;               // Σ |F + m g| over grains, N
-  double cohesion, tangential;    // stored, J
-  double losses[5];               // W, in the order of dem::Losses; with the step `dt`
-  double floor_force;             // in the last step, N
-  std::int64_t rebuilds;          // of the lists, since the library's engine was made
-  std::int64_t bytes;             // of device memory
-  std::int64_t slots, max_slots;  // of a grain's list, and the most that were used
-  double top;                     // height that no grain exceeds, m
+  double speed2, spin2;         // Σ v², Σ ω², m²/s², rad²/s²
+  double speed[3], place[3];    // Σ v, Σ x, m/s, m
+  double elastic;               // normal springs and cohesion, J
+  double contacts, listed;      // pairs and others that touch, pairs in lists
+  double contact_force;         // Σ |F| over contacts, N
+  double net_force;             // Σ |F + m g| over grains, N
+  double cohesion, tangential;  // stored, J
+  double losses[5];             // W, in the order of dem::Losses; with the step `dt`
+  double floor_force;           // in the last step, N
+  std::int64_t rebuilds;        // of the lists, since the library's engine was made
+  std::int64_t bytes;           // of device memory
+  double top;                   // height that no grain exceeds, m
 };
 
 /// Sums over one surface since the last call.

@@ -6,6 +6,7 @@
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
+#include "tire/ancf/inflation.hpp"
 #include "tire/surface_strain.hpp"
 
 namespace furrow::tire {
@@ -62,7 +63,8 @@ void AncfTire::set_pressure(double pressure) {
 
 void AncfTire::do_place(const RimState& rim) {
   const ShellLayout& layout = integrator_.layout();
-  const Field shape = inflate(integrator_.shell(), ring_, inflation_, alive_);
+  InflationReport inflation;
+  const Field shape = inflate(integrator_.shell(), ring_, inflation, alive_);
   const Mat3 turn = rim.orientation.toRotationMatrix();
   Field q(layout.size()), v(layout.size());
   for (int j = 0; j < layout.rows; ++j)

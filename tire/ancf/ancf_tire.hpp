@@ -3,10 +3,10 @@
 // forces on it act on the rim.
 #pragma once
 
+#include <functional>
 #include <utility>
 #include <vector>
 
-#include "tire/ancf/inflation.hpp"
 #include "tire/ancf/rim_clearance.hpp"
 #include "tire/ancf/shell_integrator.hpp"
 
@@ -30,7 +30,6 @@ class AncfTire final : public Tire {
   void save(Archive& archive) const override;
 
   const ShellIntegrator& integrator() const { return integrator_; }
-  const InflationReport& inflation() const { return inflation_; }
 
  private:
   void do_place(const RimState& rim) override;
@@ -43,7 +42,6 @@ class AncfTire final : public Tire {
   double undeformed_volume_ = 0.0;  // m³
   RimClearance clearance_;
   ShellIntegrator integrator_;
-  InflationReport inflation_;
   // ∫ (V − V₀) dp since the tire was placed, J: change of the potential −p (V − V₀) by a changing pressure, which does
   // no work on the tire.
   double pressure_work_ = 0.0;

@@ -145,7 +145,6 @@ Field inflate(const ShellCarcass& shell, const ShellMesh& mesh, InflationReport&
     creep.set_pressure(shell.pressure() * std::min(1.0, (report.steps + 1.0) / kRampSteps));
     if (!creep.step(h)) {
       h *= 0.5;
-      ++report.shrunk;
       if (h < 1e-7) break;
       continue;
     }

@@ -13,7 +13,6 @@ namespace furrow::tire {
 
 struct InflationReport {
   int steps = 0;
-  int shrunk = 0;         // repetitions of a step with a smaller h
   double residual = 0.0;  // of the static equations, relative to the pressure forces
 };
 

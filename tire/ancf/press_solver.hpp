@@ -54,7 +54,6 @@ class PressSolver {
   std::vector<PressSample> footprint() const;
   /// S at the last point. @param tangential s above; 0: the ground slides. @pre press() has found an equilibrium
   GroundStiffness ground_stiffness(double tangential = 1.0);
-  const Field& q() const { return q_; }
 
  private:
   struct Linear;

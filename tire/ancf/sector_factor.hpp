@@ -51,8 +51,6 @@ class SectorFactor {
     const ShellContact& contact;
   };
 
-  int unknowns() const { return factor_.unknowns(); }
-
   /// Starts without a factor and counts from zero.
   void start();
   /// Renews the factor for a step in sectors that are too old. Attempt 1, after a failure, renews all sectors that have

@@ -19,7 +19,6 @@ class ShellFactor {
  public:
   explicit ShellFactor(const ShellLayout& layout);
 
-  int unknowns() const { return factor_.pattern().size(); }
   int sectors() const { return layout_.batches(); }
   /// Forgets the elements of a sector. @pre 0 ≤ sector < sectors(), here and in what follows
   void clear(int sector);

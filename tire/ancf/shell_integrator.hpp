@@ -68,8 +68,6 @@ class ShellIntegrator {
   const ShellLayout& layout() const { return layout_; }
   const ShellCarcass& shell() const { return shell_; }
   const ShellMass& mass() const { return mass_; }
-  const ShellIntegratorParams& params() const { return params_; }
-  int unknowns() const { return factor_.unknowns(); }
 
   double elastic_energy() const { return elastic_; }         // with what relaxing branches store, J
   double dissipation() const { return dissipation_; }        // J, cumulative

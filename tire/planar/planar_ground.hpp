@@ -28,7 +28,6 @@ class PlanarGround {
   /// Flat at z = 0 up to x = 0 and at `height` from there on; extends by `length` to both sides.
   static PlanarGround curb(double height, double length);
 
-  const std::vector<PlanarPoint>& points() const { return points_; }
   double top() const { return top_; }  // of all points, m
 
   PlanarDepth depth(double x, double z) const;

@@ -22,7 +22,6 @@ class RingGround {
   /// A bar with its top at z = 0, from −width/2 to width/2 about `position`. @pre width > 0
   static RingGround bar(double width, double position);
 
-  const std::vector<GroundPoint>& points() const { return points_; }
   /// Points that can carry the belt between segments.
   const std::vector<GroundPoint>& corners() const { return corners_; }
   double top() const { return top_; }  // m

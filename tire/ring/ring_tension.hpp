@@ -25,7 +25,6 @@ class RingTension {
 
   /// σ p T, N/m.
   void set(double strength) { strength_ = strength; }
-  double strength() const { return strength_; }
   /// Approximate largest entry of the tangent, N/m.
   double stiffest() const;
 

@@ -20,9 +20,8 @@ class WheelMotor {
   WheelMotor(System& system, const std::string& name, int shaft, const WheelMotorOptions& options);
 
   void set_command(double command);  // −1 to 1
-  double command() const { return *command_; }
-  double torque(const System& system) const { return system.rate_state(row_).torque; }  // mean over the last step, N m
-  double work(const System& system) const { return system.rate_state(row_).work; }      // since the start, J
+  /// Since the start, J.
+  double work(const System& system) const { return system.rate_state(row_).work; }
 
   void save(Archive& archive) const { archive.put("command", *command_); }
   void restore(const Archive& archive) { *command_ = archive.get_double("command"); }

@@ -6,12 +6,6 @@
 
 namespace furrow::vehicle {
 
-std::vector<std::string> lane_change_names() {
-  std::vector<std::string> names;
-  for (const LaneChangeTrack& track : kLaneChangeTracks) names.emplace_back(track.name);
-  return names;
-}
-
 std::array<Lane, 3> lanes_of(const std::string& name, double vehicle_width) {
   const auto track = std::find_if(kLaneChangeTracks.begin(), kLaneChangeTracks.end(),
                                   [&](const LaneChangeTrack& t) { return name == t.name; });

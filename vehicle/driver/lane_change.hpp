@@ -13,7 +13,6 @@
 
 #include <array>
 #include <string>
-#include <vector>
 
 namespace furrow::vehicle {
 
@@ -36,9 +35,6 @@ inline constexpr std::array<LaneChangeTrack, 2> kLaneChangeTracks = {{
     {"iso_3888_2", {{{12, 1.1, 0.25, 0}, {11, 1.0, 1.0, 0}, {12, 1.3, 0.25, 3.0}}}, {13.5, 12.5}, 1.0, true},
 }};
 
-/// Names of the tracks, for messages.
-std::vector<std::string> lane_change_names();
-
 /// A lane between cones, from the track's start along x and from the first lane's centre line along y, m.
 struct Lane {
   double start = 0.0, end = 0.0;  // x
@@ -46,7 +42,7 @@ struct Lane {
   double width = 0.0;
 };
 
-/// @pre the track is one of lane_change_names()
+/// @pre the track is one of kLaneChangeTracks
 std::array<Lane, 3> lanes_of(const std::string& track, double vehicle_width);
 
 }  // namespace furrow::vehicle

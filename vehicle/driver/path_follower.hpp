@@ -52,7 +52,6 @@ class PathFollower {
  public:
   PathFollower(const PathSpec& spec, const DriverCar& car);
 
-  const Path& path() const { return path_; }
   /// Sets the steering and the record's values of the path. @pre view.time ≥ state.time
   void steer(const DriverView& view, PathState& state, DriverRecord& record) const;
 

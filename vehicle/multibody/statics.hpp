@@ -42,7 +42,7 @@ Eigen::VectorXd shortest_solution(const Eigen::MatrixXd& matrix, const Eigen::Ve
 class Statics {
  public:
   /// @pre the system was assembled; it outlives this
-  explicit Statics(System& system, std::vector<HeldRow> held = {}) : system_(system), held_(std::move(held)) {}
+  explicit Statics(System& system) : system_(system) {}
 
   int hold(HeldRow row) {
     held_.push_back(std::move(row));

@@ -29,7 +29,6 @@ class Table {
   double slope(double x) const;
   double integral(double x) const;  // from 0 to x
   double first() const { return x_.front(); }
-  double last() const { return x_.back(); }
 
  private:
   std::size_t interval(double x) const;

@@ -45,13 +45,11 @@ class DriveTrain {
 
   /// Index of a shaft in the system. @pre there is one of this name
   int shaft(const std::string& name) const;
-  int shaft_count() const { return static_cast<int>(shafts_.size()); }
   const std::optional<Engine>& engine() const { return engine_; }
   const std::optional<TorqueConverter>& converter() const { return converter_; }
   const std::optional<FrictionCoupling>& clutch() const { return clutch_; }
   const std::optional<Gearbox>& gearbox() const { return gearbox_; }
   const std::vector<FrictionCoupling>& locks() const { return locks_; }
-  const std::vector<WheelMotor>& motors() const { return motors_; }  // two for each axle that has them: left, right
   /// Work of engine and motors since the start, J, and energy dissipated by converter, clutches and gearbox.
   double work(const System& system) const;
   double loss(const System& system) const;

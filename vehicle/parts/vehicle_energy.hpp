@@ -20,7 +20,6 @@ struct VehicleEnergy {
   double brake_heat = 0.0;
   double shock_heat = 0.0;
 
-  double stored() const { return kinetic + gravity + springs; }
   double lost() const { return converter_heat + clutch_heat + shift_heat + brake_heat + shock_heat; }
 };
 void visit_fields(FieldsOf<VehicleEnergy> auto& s, auto&& visit) {

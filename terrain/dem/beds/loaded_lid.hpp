@@ -28,8 +28,6 @@ class LoadedLid {
         damping_(area * std::sqrt(density * std::cbrt(young_modulus * young_modulus * pressure))) {}
 
   double velocity() const { return velocity_; }  // m/s, up
-  double mass() const { return mass_; }          // kg
-  double damping() const { return damping_; }    // N s/m
 
   /// @param force of the grains, up, N; @param load down, N. Returns the velocity for the coming step.
   double step(double force, double load, double dt) {
@@ -39,7 +37,7 @@ class LoadedLid {
   }
 
  private:
-  double mass_, damping_;
+  double mass_, damping_;  // kg, N s/m
   double velocity_ = 0.0;
 };
 

@@ -129,10 +129,6 @@ class SurfaceContacts {
   /// Means over the interval. @pre one entry of forces and sums for each surface; duration > 0
   void finish(double duration, std::span<NodalForces> forces, std::span<ContactSums> sums);
 
-  SurfaceBox bounds(int k) const {
-    FURROW_ASSERT(in_range(k, count()), k, count());
-    return surfaces_[k].collider.bounds();
-  }
   SurfaceBox swept_bounds(int k) const {
     FURROW_ASSERT(in_range(k, count()), k, count());
     return surfaces_[k].collider.swept_bounds();

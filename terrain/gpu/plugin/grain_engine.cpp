@@ -506,7 +506,6 @@ Sums GrainEngine::sums(bool losses, double dt) {
     out.floor_force = all.floor, out.listed = all.listed;
   }
   out.rebuilds = rebuilds_, out.bytes = device_.bytes();
-  out.slots = slots_, out.max_slots = max_slots_;
   out.top = top_height_ + setup_.skin;
   return out;
 }

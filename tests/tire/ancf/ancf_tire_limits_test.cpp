@@ -9,6 +9,7 @@
 
 #include "small_tire.hpp"
 #include "tests/refusal.hpp"
+#include "tire/ancf/inflation.hpp"
 
 namespace furrow::test {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "small_tire.hpp"
+#include "tire/ancf/inflation.hpp"
 
 namespace furrow::test {
 namespace {

@@ -308,7 +308,6 @@ bool StaticPath::newton(double lambda, Vector& q) {
   auto stress = patch_.stresses(patch_.strains(q));
   const double size = q.cwiseAbs().maxCoeff();
   for (int n = 0; n < kMaxIterations; ++n) {
-    ++iterations_;
     const Sparse k = patch_.tangent(q, stress);
     const Vector r = lambda * load_ - patch_.forces(q) - k * change;
     const Sparse part = restrict_to(k, free_);

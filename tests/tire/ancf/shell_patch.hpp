@@ -126,7 +126,6 @@ class StaticPath {
 
   const Vector& q() const { return q_; }
   double lambda() const { return lambda_; }
-  int iterations() const { return iterations_; }
   /// Internal forces minus loads: zero on free coordinates, reactions on the others.
   Vector reactions() const { return patch_.forces(q_) - lambda_ * load_; }
 
@@ -140,7 +139,6 @@ class StaticPath {
   Eigen::SimplicialLDLT<Sparse> solver_;
   bool analyzed_ = false;
   double lambda_ = 0.0;
-  int iterations_ = 0;
 };
 
 /// Solution of K u = f on the free coordinates, zero elsewhere.

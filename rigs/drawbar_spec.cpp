@@ -138,11 +138,11 @@ class DrawbarSpec final : public RigSpec {
     d.from = rig.start;
     d.to = rig.start + rig.travel_sign * travel(rig, tire.radius, duration);
     const double c = std::cos(rig.toe_angle), s = std::abs(std::sin(rig.toe_angle));
-    const double half =
-        0.5 * tire.width * std::cos(rig.camber_angle) + tire.radius * std::abs(std::sin(rig.camber_angle));
-    d.along = tire.radius * c + half * s;
-    if (rig.toe_time > 0.0) d.along = std::max(d.along, tire.radius);  // straight ahead at first
-    d.across = half * c + tire.radius * s;
+    const double reach = tire.radius + tire.beyond,
+                 half = 0.5 * tire.width * std::cos(rig.camber_angle) + reach * std::abs(std::sin(rig.camber_angle));
+    d.along = reach * c + half * s;
+    if (rig.toe_time > 0.0) d.along = std::max(d.along, reach);  // straight ahead at first
+    d.across = half * c + reach * s;
     d.toe_angle = rig.toe_angle;
     d.camber_angle = rig.camber_angle;
     if (rig.mode != "free_rolling") d.slip = rig.slip;

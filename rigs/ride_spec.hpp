@@ -92,7 +92,7 @@ class RideSpec : public RigSpec {
     wheel.start_offset = offsets_[k];
     wheel.from = rig_.start + offsets_[k];
     wheel.to = rig_.start + rig_.speed * (moving - 0.5 * std::min(rig_.ramp, moving)) + offsets_[k];
-    wheel.along = tire.radius;
+    wheel.along = tire.radius + tire.beyond;
     wheel.across = 0.5 * tire.width;
     wheel.carried_mass = carried_mass(k);
     wheel.unsprung_mass = unsprung_mass(k);

@@ -21,6 +21,7 @@ namespace furrow::rigs {
 struct WheelSize {
   double radius = 0.0;  // undeformed, m
   double width = 0.0;   // overall, m
+  double beyond = 0.0;  // that grousers reach beyond the radius, m
 };
 
 /// Values that a rig may take from a tire if the scenario leaves them open.

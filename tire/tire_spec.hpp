@@ -102,6 +102,7 @@ struct TireDescription {
   double width = 0.0;              // overall, m
   double tread_width = 0.0;        // m
   double section_height = 0.0;     // from the rim to the tread, undeformed, m; 0: not known
+  double grouser_height = 0.0;     // beyond the radius, m
   int coordinates = 0;             // unknowns
   int vertices = 0;                // of the contact surface
   int facets = 0;                  // equal pieces around the circumference

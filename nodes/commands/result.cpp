@@ -45,6 +45,29 @@ std::string step_line(const json& summary, const scenario::Scenario& scenario) {
       number_text(scenario.run.step));
 }
 
+/// The slip from its three zeros, and the pull by published regressions, with those that do not hold here apart; empty
+/// without a cone index.
+std::string regressions_lines(const json& wheel) {
+  const json found = wheel.value("regressions", json());
+  if (!found.is_object()) return "";
+  std::vector<std::string> within, outside;
+  for (const auto& [key, of] : found.items())
+    if (of.is_object() && std::isfinite(number_at(of, "net_N")))
+      (of.value("in_range", false) ? within : outside)
+          .push_back(fmt::format("{} {} N", of.value("name", key), digits(number_at(of, "net_N"))));
+  std::string text;
+  if (std::isfinite(number_at(wheel, "slip")))
+    text = fmt::format(
+        "furrow: slip {} from the undeformed radius, {} from rolling without torque, {} from no pull on hard ground\n",
+        digits(number_at(wheel, "slip")), digits(number_at(wheel, "slip_of_free_rolling")),
+        digits(number_at(wheel, "slip_of_no_pull")));
+  text += fmt::format("furrow: regressions of the pull at a cone index of {} kPa: {}",
+                      digits(1e-3 * number_at(found, "cone_index_Pa")),
+                      within.empty() ? "none holds here" : fmt::format("{}", fmt::join(within, ", ")));
+  if (!outside.empty()) text += fmt::format("; outside of their range {}", fmt::join(outside, ", "));
+  return text + "\n";
+}
+
 std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
   const json pull = summary.value("drawbar_pull_N", json::object());
   const double mean = number_at(pull, "mean"), load = number_at(summary, "vertical_load_N");
@@ -72,30 +95,8 @@ std::string pull_line(const json& summary, const scenario::Scenario& scenario) {
     text += ends ? " and a longer terrain.length\n" : "\n";
   }
   return text +
-         expected_text(scenario.expected, 1, mean, number_at(summary, "sinkage_m"), number_at(summary, "rut_depth_m"));
-}
-
-/// The slip from its three zeros, and the pull by published regressions, with those that do not hold here apart; empty
-/// without a cone index.
-std::string regressions_lines(const json& wheel) {
-  const json found = wheel.value("regressions", json());
-  if (!found.is_object()) return "";
-  std::vector<std::string> within, outside;
-  for (const auto& [key, of] : found.items())
-    if (of.is_object() && std::isfinite(number_at(of, "net_N")))
-      (of.value("in_range", false) ? within : outside)
-          .push_back(fmt::format("{} {} N", of.value("name", key), digits(number_at(of, "net_N"))));
-  std::string text;
-  if (std::isfinite(number_at(wheel, "slip")))
-    text = fmt::format(
-        "furrow: slip {} from the undeformed radius, {} from rolling without torque, {} from no pull on hard ground\n",
-        digits(number_at(wheel, "slip")), digits(number_at(wheel, "slip_of_free_rolling")),
-        digits(number_at(wheel, "slip_of_no_pull")));
-  text += fmt::format("furrow: regressions of the pull at a cone index of {} kPa: {}",
-                      digits(1e-3 * number_at(found, "cone_index_Pa")),
-                      within.empty() ? "none holds here" : fmt::format("{}", fmt::join(within, ", ")));
-  if (!outside.empty()) text += fmt::format("; outside of their range {}", fmt::join(outside, ", "));
-  return text + "\n";
+         expected_text(scenario.expected, 1, mean, number_at(summary, "sinkage_m"), number_at(summary, "rut_depth_m")) +
+         regressions_lines(summary);
 }
 
 /// Time of each rank; a table if there are more than rig, one tire and terrain.
@@ -250,7 +251,7 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
     const json& wheel = wheels[k];
     const auto millimetres = [&](const char* key) { return 1e3 * number_at(wheel, key); };
     if (wheels.size() > 1) text += fmt::format("furrow: wheel {}\n", k);
-    if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario) + regressions_lines(wheel);
+    if (wheel.contains("drawbar_pull_N")) text += pull_line(wheel, scenario);
     const auto told = [&](const char* key, const char* sem) {
       const double error = millimetres(sem);
       return std::isfinite(error) ? with_error(millimetres(key), error) : digits(millimetres(key));

@@ -16,7 +16,7 @@ std::vector<tire::TireDescription> describe_tires(const Scenario& scenario) {
 
 std::vector<rigs::WheelSize> wheel_sizes(const std::vector<tire::TireDescription>& tires) {
   std::vector<rigs::WheelSize> sizes;
-  for (const tire::TireDescription& tire : tires) sizes.push_back({tire.radius, tire.width});
+  for (const tire::TireDescription& tire : tires) sizes.push_back({tire.radius, tire.width, tire.grouser_height});
   return sizes;
 }
 

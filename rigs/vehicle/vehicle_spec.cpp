@@ -264,7 +264,7 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   d.from = plan_.options.start + at.x();
   d.to = d.from + std::cos(psi) * travel(duration);
   const double s = std::abs(std::sin(angle)), half = 0.5 * tire.width;
-  d.along = tire.radius + half * s;
+  d.along = tire.radius + tire.beyond + half * s;
   d.across = half + tire.radius * s;
   if (length_ && stop_before_wall() > 0.0) {
     const double reach = d.along + stop_before_wall();

@@ -175,6 +175,13 @@ TEST_F(TiresTest, grousers_need_a_rigid_tire_a_height_and_a_thickness) {
     return told(changed);
   };
   EXPECT_EQ(told(whole), "");
+  TireOptions options;
+  options.file = TIRE_DATA "/rigid_drum.json";
+  options.rigid = true;
+  const TireDescription smooth = read_tire(options)->describe();
+  options.grousers = 24, options.grouser_height = 0.005, options.grouser_thickness = 0.002;
+  EXPECT_EQ(read_tire(options)->describe().grouser_height, 0.005);
+  EXPECT_EQ(read_tire(options)->describe().radius, smooth.radius);
   EXPECT_EQ(with("rigid", false),
             "test.json: key 'tire.grousers': is 24, expected 0 for a tire that is not rigid (tire.rigid)");
   EXPECT_EQ(with("grouser_height", nullptr),

@@ -23,6 +23,7 @@ constexpr const char* kRigid = "rigid";
 /// What the options change of a rigid tire: its grousers.
 void take_grousers(const TireOptions& options, TireDescription& d) {
   d.vertices += options.grousers * kGrouserVertices;
+  if (options.grousers > 0) d.grouser_height = options.grouser_height;
   d.takes.insert(d.takes.end(), {"grousers", "grouser_height", "grouser_thickness"});
 }
 TireShape with_grousers(TireShape shape, const TireOptions& options) {

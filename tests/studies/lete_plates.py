@@ -2,7 +2,7 @@
 """Does the grains' LETE sand bear plates as Wong's table says? Strips of 100 and 200 mm are pushed into beds of three
 packings. Writes lete_plates.csv beside this script; a test that is finished is used again.
 
-A row is one packing and width: pressure at five sinkages, mean over three beds with half of its 95 % interval; n of the
+A row is one packing and width: pressure at six sinkages, mean over three beds with half of its 95 % interval; n of the
 fit p = (k_c/b + k_phi) z^n and k_c, k_phi, with standard errors; heaved over displaced volume. Rows without a solid
 fraction are Wong's table (terrain/data/lete_sand.json): k_c 102 kN/m^(n+1), k_phi 5301 kN/m^(n+2),
 n 0.79.
@@ -16,7 +16,7 @@ RIG = "rigs/drawbar_pull_small.json"
 ANEW = {"terrain.settling_friction": None, "terrain.settling_cohesion": None}
 PACKINGS = {"0.52": {"terrain.solid_fraction": 0.52} | ANEW, "as fitted": {},
             "0.60": {"terrain.solid_fraction": 0.6} | ANEW}
-SINKAGES = (10, 20, 30, 50, 70)  # mm
+SINKAGES = (10, 15, 20, 30, 50, 70)  # mm
 NEAR = 0.0025  # m, over which pressures are averaged
 K_C, K_PHI, N = 102e3, 5301e3, 0.79
 

@@ -160,7 +160,9 @@ def passes(cases, seeds):
             study = {"format_version": 1, "scenario": RIG, "set": LAW | FAST | changed | {"run.seed": seed},
                      "passes": 3, "rest": rest}
             out = driver.kept(folder_of("report_law_passes", case, seed), "sweep", scenario=study)
-            rows = [row for row in provenance.read_table(driver.HERE / name)
+            before = provenance.read_origin(driver.HERE / name)
+            made |= {key: before[key] for key in ("note",) if key in before}
+            rows = [{"commit": before["commit"]} | row for row in provenance.read_table(driver.HERE / name)
                     if (row["case"], row["seed"]) != (case, str(seed))]
             for run in provenance.read_table(out / "sweep.csv"):
                 rows.append({"case": case, "seed": seed, "pass": run["pass"],
@@ -221,11 +223,15 @@ def janosi(made):
         if row["seed"] != "1" or not row["case"].startswith("slip ") or slip == 0 or not tests:
             continue
         length = math.sqrt(2 * RADIUS * 1e-3 * float(row["sinkage_mm"]))
-        ratio, k = (over_speed(tests, slip * SPEED, column) for column in ("final_shear_over_normal_stress", "K_mm"))
-        way = slip * length / (1e-3 * k)
+
+        def thrust(speed):
+            ratio, k = (over_speed(tests, speed, column) for column in ("final_shear_over_normal_stress", "K_mm"))
+            way = slip * length / (1e-3 * k)
+            return ratio, k, LOAD * ratio * (1 + math.expm1(-way) / way)
+        ratio, k, force = thrust(slip * SPEED)
         rows.append({"step_us": row["step_us"], "slip": slip, "sliding_m_s": slip * SPEED, "shear_over_normal": ratio,
-                     "K_mm": k, "length_mm": 1e3 * length, "janosi_N": LOAD * ratio * (1 + math.expm1(-way) / way),
-                     "gross_N": float(row["gross_N"])})
+                     "K_mm": k, "length_mm": 1e3 * length, "janosi_N": force,
+                     "janosi_at_the_speed_of_slip_0.1_N": thrust(0.1 * SPEED)[2], "gross_N": float(row["gross_N"])})
     driver.write("report_law_janosi.csv", rows, made)
 
 

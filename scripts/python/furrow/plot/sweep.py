@@ -150,7 +150,7 @@ def regression_lines(axis, sweep):
         name = name if holds else f"{name} (out of range)"
         axis.plot(x, [np.mean([net for net, _ in values[at]]) for at in x], lw=0.8, zorder=1,
                   ls="-" if holds else BROKEN[i % len(BROKEN)],
-                  color=COLOURS[-1 - i % len(COLOURS)] if holds else GREY, label=name)
+                  color=COLOURS[-2 - i % (len(COLOURS) - 1)] if holds else GREY, label=name)
 
 
 def curve(sweep):

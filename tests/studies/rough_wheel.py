@@ -5,7 +5,7 @@ lock between them as between glued half-grains.
 
 usage: rough_wheel.py [--seeds 1 2 …] [--slips 0 0.3 0.6]     writes rough_wheel.csv beside this script
 
-A row is one run, with the torque over load × radius.
+A row is one run. Of the rough wheel, torque over load × radius and slip are also those of the tips of its grousers.
 Expected, written down before the first run: if grains that roll along the tread limit the thrust, the rough wheel has
 more torque than the smooth one of friction 0.8; if the soil limits it, both have the same.
 """
@@ -36,8 +36,10 @@ def main():
                 if not driver.done_run(words, out):
                     continue
                 row = driver.drawbar_row(driver.summary(out), FIGURES)
-                rows.append({"surface": surface.replace(",", ""), "slip": slip, "seed": seed,
-                             "torque_over_load_radius": row["torque_Nm"] / (LOAD * RADIUS), **row})
+                tips = RADIUS + changed.get("tire.grouser_height", 0.0)
+                rows.append({"surface": surface.replace(",", ""), "slip": slip,
+                             "slip_of_tips": 1 - (1 - slip) * RADIUS / tips, "seed": seed,
+                             "torque_over_load_radius": row["torque_Nm"] / (LOAD * tips), **row})
                 driver.write("rough_wheel.csv", rows, made, told=True)
 
 

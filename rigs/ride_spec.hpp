@@ -46,7 +46,7 @@ class RideSpec : public RigSpec {
     if (start_given_) return;
     rig_.start = 0.0;
     for (std::size_t k = 0; length && k < tires.size(); ++k)
-      rig_.start = std::max(rig_.start, tires[k].radius + margins[k] - offsets_[k]);
+      rig_.start = std::max(rig_.start, tires[k].radius + tires[k].beyond + margins[k] - offsets_[k]);
   }
 
  protected:

@@ -137,6 +137,8 @@ class TerrainSpec {
   /// @param width overall, of one tire, m
   /// @throws Error(bad_input) naming the key of the terrain that does not allow such a tire
   virtual void check_tire_width(double) const {}
+  /// @param thickness of a wheel's grousers, m @throws Error(bad_input) where the terrain cannot tell them from gaps
+  virtual void check_grousers(double /*thickness*/) const {}
 
   /// The grains, for tools that work on them (beds, soil tests, passes); null if this terrain has none.
   virtual const dem::DemOptions* grains() const { return nullptr; }

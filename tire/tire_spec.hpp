@@ -95,22 +95,22 @@ void visit_fields(FieldsOf<TireOptions> auto& s, auto&& visit) {
 
 /// Properties of a tire before its model is made. The reach of the inflated tire needs the model (reach.hpp).
 struct TireDescription {
-  std::string kind;                // in results: "ancf", "rigid"
-  std::string name;                // for people: "layered shell"
-  std::string details;             // for people: mesh, unknowns, pressure
-  double radius = 0.0;             // undeformed, m
-  double width = 0.0;              // overall, m
-  double tread_width = 0.0;        // m
-  double section_height = 0.0;     // from the rim to the tread, undeformed, m; 0: not known
-  double grouser_height = 0.0;     // beyond the radius, m
-  int coordinates = 0;             // unknowns
-  int vertices = 0;                // of the contact surface
-  int facets = 0;                  // equal pieces around the circumference
-  MassProperties mass;             // undeformed, about the rim's centre
-  double memory = 0.0;             // that the model needs, bytes
-  double saved_bytes = 0.0;        // in a checkpoint
-  bool takes_tangents = false;     // contact forces may follow its motion
-  bool deflects = true;            // false: no load deforms it
+  std::string kind;                                      // in results: "ancf", "rigid"
+  std::string name;                                      // for people: "layered shell"
+  std::string details;                                   // for people: mesh, unknowns, pressure
+  double radius = 0.0;                                   // undeformed, m
+  double width = 0.0;                                    // overall, m
+  double tread_width = 0.0;                              // m
+  double section_height = 0.0;                           // from the rim to the tread, undeformed, m; 0: not known
+  double grouser_height = 0.0, grouser_thickness = 0.0;  // beyond the tread; along it, m
+  int coordinates = 0;                                   // unknowns
+  int vertices = 0;                                      // of the contact surface
+  int facets = 0;                                        // equal pieces around the circumference
+  MassProperties mass;                                   // undeformed, about the rim's centre
+  double memory = 0.0;                                   // that the model needs, bytes
+  double saved_bytes = 0.0;                              // in a checkpoint
+  bool takes_tangents = false;                           // contact forces may follow its motion
+  bool deflects = true;                                  // false: no load deforms it
   bool follows_rim = false;        // its surface is a function of the rim's state alone: Tire::surface_on
   std::vector<std::string> takes;  // names in TireOptions that the model uses: "pressure"
   /// Why the tire computes its contact by a law of its own (Tire::stated_contact): "its forces are those of …". Empty

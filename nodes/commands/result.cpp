@@ -162,8 +162,8 @@ std::string subject_lines(const json& summary, double average_from) {
   return text;
 }
 
-/// Warning for a wheel in a place where no wheel drives. @param yields  the ground gives way, so no wheel can climb it
-std::string place_warning(const json& wheel, bool yields) {
+/// Warning for a wheel in a place where no wheel drives. @param grousers  their height, m @param yields  the ground gives way, so no wheel can climb it
+std::string place_warning(const json& wheel, double grousers, bool yields) {
   if (number_at(wheel, "interface_work_J") == 0.0) return "";  // it has not touched the ground yet
   const double share = number_at(wheel, "sinkage_m") / number_at(wheel, "tire_radius_m");
   if (share > kDeep)
@@ -171,7 +171,7 @@ std::string place_warning(const json& wheel, bool yields) {
         "furrow: WARNING: the wheel has sunk in by {:.2g} radii: the ground does not bear its load, or it spins itself "
         "in; see whether it comes to rest with less load (rig.carrier_mass), slip or run.step, or on stronger soil\n",
         share);
-  if (yields && share < -kHigh)
+  if (yields && share + grousers / number_at(wheel, "tire_radius_m") < -kHigh)
     return fmt::format(
         "furrow: WARNING: the wheel is {:.2g} radii above the ground as it was: it bounces or was thrown off; take a "
         "smaller run.step or ground less stiff for its step, and look at its height in the plots\n",
@@ -262,7 +262,8 @@ std::string result_text(const std::filesystem::path& run, const scenario::Scenar
                           digits(millimetres("rut_width_m")));
     else if (const json why = wheel.value("rut_missing_because", json()); why.is_string())
       text += ", no rut measured: " + why.get<std::string>();
-    text += "\n" + place_warning(wheel, scenario.terrain->describe().yields);
+    text +=
+        "\n" + place_warning(wheel, scenario.tires[k]->describe().grouser_height, scenario.terrain->describe().yields);
   }
   if (const double added = number_at(summary, "substeps_added"); added > 0.0)
     text += fmt::format(

@@ -47,12 +47,13 @@ struct WheelInput {
   const NodeCard& card() const { return run.cards[1 + wheel]; }
 };
 
-/// Settlement of tire and ground under the load, m.
+/// Settlement of tire and ground under the load, m; of grousers, that of their tips.
 double settlement(const WheelInput& in, const Window& w) {
+  const double tips = in.run.scenario.tires[in.wheel]->describe().grouser_height;
   const auto given = [&](const WheelRow& r) {
     return r.sinkage + in.card().tire_radius - (r.axle_height - r.lowest_point);
   };
-  return w.mean(given);
+  return w.mean(given) + tips;
 }
 
 Json pull_statistics(const WheelInput& in, const Window& w, const SeriesStatistics& sinkage) {

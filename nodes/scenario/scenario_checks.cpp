@@ -181,7 +181,10 @@ class Checks {
   }
 
   void room() {
-    for (const tire::TireDescription& tire : tires_) s_.terrain->check_tire_width(tire.width);
+    for (const tire::TireDescription& tire : tires_) {
+      s_.terrain->check_tire_width(tire.width);
+      if (tire.grouser_height > 0.0) s_.terrain->check_grousers(tire.grouser_thickness);
+    }
     if (!terrain_.bounds) return;
     const rigs::RigDescription rig = describe();
     for (std::size_t k = 0; k < tires_.size(); ++k) {
@@ -371,7 +374,8 @@ class Checks {
     const std::vector<rigs::WheelDescription> wheels = describe().wheels;
     for (std::size_t k = 1; k < tires_.size(); ++k)
       for (std::size_t i = 0; i < k; ++i) {
-        const double along = tires_[i].radius + tires_[k].radius, across = 0.5 * (tires_[i].width + tires_[k].width);
+        const auto reach = [&](std::size_t of) { return tires_[of].radius + tires_[of].grouser_height; };
+        const double along = reach(i) + reach(k), across = 0.5 * (tires_[i].width + tires_[k].width);
         if (std::abs(wheels[i].lateral - wheels[k].lateral) >= across) continue;
         const double from = wheels[k].from - wheels[i].from, to = wheels[k].to - wheels[i].to;
         if (std::min(std::abs(from), std::abs(to)) >= along && from * to > 0.0) continue;

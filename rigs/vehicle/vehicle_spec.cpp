@@ -265,7 +265,7 @@ WheelDescription VehicleRigSpec::wheel(std::size_t k, const WheelSize& tire, dou
   d.to = d.from + std::cos(psi) * travel(duration);
   const double s = std::abs(std::sin(angle)), half = 0.5 * tire.width;
   d.along = tire.radius + tire.beyond + half * s;
-  d.across = half + tire.radius * s;
+  d.across = half + (tire.radius + tire.beyond) * s;
   if (length_ && stop_before_wall() > 0.0) {
     const double reach = d.along + stop_before_wall();
     const double last = d.to >= d.from ? std::max(d.from, *length_ - reach) : std::min(d.from, reach);

@@ -100,6 +100,13 @@ class ScmSpec final : public TerrainSpec {
     return 1.0 + options_.bekker_k_c / (b * options_.bekker_k_phi);
   }
   void check_tire_width(double width) const override { check_scm_width(options_, width); }
+  void check_grousers(double thickness) const override {
+    if (options_.grid_spacing > 0.5 * thickness)
+      throw input_error(options_.scenario, "terrain.grid_spacing",
+                        fmt::format("is {:g} m, expected at most {:g} m, half of tire.grouser_thickness: a node of the "
+                                    "soil meets a thinner plate by chance",
+                                    options_.grid_spacing, 0.5 * thickness));
+  }
   std::unique_ptr<Terrain> make(const TerrainContext& context) const override {
     ScmOptions options = options_;
     static_cast<TerrainContext&>(options) = context;

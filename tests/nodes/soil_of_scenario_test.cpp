@@ -208,6 +208,16 @@ TEST(SoilOfScenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
             ": key 'terrain': has keys of other engines alone (bekker_n), expected some of engine 'dem'");
 }
 
+TEST(SoilOfScenario, empirical_soil_needs_a_grid_finer_than_grousers) {
+  const ScenarioFile file(R"({"rig": {"slip": 0.2}, "run": {"step": 1e-4}, "terrain": {"engine": "scm"},
+      "tire": {"file": "rigid_drum.json", "rigid": true, "grousers": 24, "grouser_height": 0.005,
+               "grouser_thickness": 0.004}})");
+  EXPECT_EQ(file.complaint({{"terrain.grid_spacing", "0.0021"}}),
+            ": key 'terrain.grid_spacing': is 0.0021 m, expected at most 0.002 m, half of tire.grouser_thickness: a "
+            "node of the soil meets a thinner plate by chance");
+  EXPECT_EQ(file.complaint({{"terrain.grid_spacing", "0.002"}}), "");
+}
+
 TEST(SoilOfScenario, bulk_density_determines_the_density_of_the_grains) {
   const ScenarioFile file(kSmallest);
   const auto loaded = file.load({{"terrain.solid_fraction", "0.56"}, {"terrain.bulk_density", "1400"}});

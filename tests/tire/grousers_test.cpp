@@ -50,5 +50,20 @@ TEST(Grousers, tips_are_the_reach_of_the_wheel_and_the_discs_stay_last) {
   EXPECT_EQ(surface.position[surface.position.size() - 2], Vec3(0.0, 0.5 * kWidth, 0.0));
 }
 
+TEST(Grousers, plates_follow_a_crowned_tread) {
+  TireShape shape = cylinder(72, kRadius, kWidth, 5);
+  for (Vec3& x : shape.vertex) {
+    const double share = 1.0 - 0.2 * std::pow(x.y() / kWidth, 2);
+    x = Vec3(share * x.x(), x.y(), share * x.z());
+  }
+  const TireShape smooth = shape;
+  add_grousers(shape, 3, kHeight, kThickness);
+  for (int k = 0; k < 3 * kGrouserVertices; ++k) {
+    const Vec3 at = shape.vertex[smooth.vertex.size() - 2 + k];
+    const double tread = kRadius * (1.0 - 0.2 * std::pow(at.y() / kWidth, 2));
+    EXPECT_NEAR(std::abs(std::hypot(at.x(), at.z()) - tread), kHeight, 1e-5) << at.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace furrow::tire

@@ -1,7 +1,10 @@
 #include "tire/rigid/grousers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "protocol/core/assert.hpp"
 
@@ -15,6 +18,11 @@ void add_grousers(TireShape& shape, int number, double height, double thickness)
   for (auto& triangle : shape.mesh.triangles)
     for (int& corner : triangle)
       if (corner >= first) corner += added;
+  const auto radius_at = [&](double y) {
+    const std::span wheel = std::span(shape.vertex).first(static_cast<std::size_t>(first));
+    const Vec3 nearest = std::ranges::min(wheel, {}, [y](const Vec3& x) { return std::abs(x.y() - y); });
+    return std::hypot(nearest.x(), nearest.z());
+  };
   std::vector<Vec3> plates;
   for (int k = 0; k < number; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / number;
@@ -25,11 +33,12 @@ void add_grousers(TireShape& shape, int number, double height, double thickness)
       shape.mesh.triangles.push_back({a, b, c});
       shape.mesh.triangles.push_back({a, c, d});
     };
-    for (int i = 0; i <= kGrouserCells; ++i)
+    for (int i = 0; i <= kGrouserCells; ++i) {
+      const double y = (0.5 - static_cast<double>(i) / kGrouserCells) * shape.tread_width, radius = radius_at(y);
       for (const double side : {-0.5, 0.5})
         for (const double beyond : {-height, height})
-          plates.push_back((shape.radius + beyond) * outward + side * thickness * along +
-                           Vec3(0.0, (0.5 - static_cast<double>(i) / kGrouserCells) * shape.tread_width, 0.0));
+          plates.push_back((radius + beyond) * outward + side * thickness * along + y * Vec3::UnitY());
+    }
     for (int i = 0; i < kGrouserCells; ++i) {
       quad(at(i, 1, 0), at(i, 1, 1), at(i + 1, 1, 1), at(i + 1, 1, 0));  // ahead
       quad(at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1), at(i, 0, 0));  // behind

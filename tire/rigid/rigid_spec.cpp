@@ -1,6 +1,7 @@
 #include "tire/rigid/rigid_spec.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include <fmt/format.h>
@@ -23,7 +24,11 @@ constexpr const char* kRigid = "rigid";
 /// What the options change of a rigid tire: its grousers.
 void take_grousers(const TireOptions& options, TireDescription& d) {
   d.vertices += options.grousers * kGrouserVertices;
-  if (options.grousers > 0) d.grouser_height = options.grouser_height;
+  if (options.grousers > 0) {
+    d.grouser_height = options.grouser_height;
+    d.grouser_thickness = options.grouser_thickness;
+    d.facets = std::gcd(d.facets, options.grousers);
+  }
   d.takes.insert(d.takes.end(), {"grousers", "grouser_height", "grouser_thickness"});
 }
 TireShape with_grousers(TireShape shape, const TireOptions& options) {

@@ -209,7 +209,7 @@ TEST(SoilOfScenario, each_engine_takes_from_a_soil_file_what_is_its_own) {
 }
 
 TEST(SoilOfScenario, empirical_soil_needs_a_grid_finer_than_grousers) {
-  const ScenarioFile file(R"({"rig": {"slip": 0.2}, "run": {"step": 1e-4}, "terrain": {"engine": "scm"},
+  const ScenarioFile file(R"({"rig": {"slip": 0.2, "load": 24.5}, "run": {"step": 1e-4}, "terrain": {"engine": "scm"},
       "tire": {"file": "rigid_drum.json", "rigid": true, "grousers": 24, "grouser_height": 0.005,
                "grouser_thickness": 0.004}})");
   EXPECT_EQ(file.complaint({{"terrain.grid_spacing", "0.0021"}}),

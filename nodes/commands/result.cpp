@@ -162,7 +162,8 @@ std::string subject_lines(const json& summary, double average_from) {
   return text;
 }
 
-/// Warning for a wheel in a place where no wheel drives. @param grousers  their height, m @param yields  the ground gives way, so no wheel can climb it
+/// Warning for a wheel in a place where no wheel drives.
+/// @param grousers  their height, m @param yields  the ground gives way, so no wheel can climb it
 std::string place_warning(const json& wheel, double grousers, bool yields) {
   if (number_at(wheel, "interface_work_J") == 0.0) return "";  // it has not touched the ground yet
   const double share = number_at(wheel, "sinkage_m") / number_at(wheel, "tire_radius_m");

@@ -102,6 +102,7 @@ def known_run(folder, count=FRAMES, grains=GRAINS, shake=0.0):
             file["position"], file["triangle"] = points.astype("f4"), triangle.astype("i4")
             file["force"] = np.tile([3.0, 0.0, 4.0], (len(points), 1)).astype("f4")
             file["velocity"] = np.zeros((len(points), 3), "f4")
+            file["strain"] = np.full(len(points), 0.02, "f4")
     return kept
 
 
@@ -193,15 +194,15 @@ class Page(SystemTest):
         tire, data = block["tires"][0], part("tires")
         count = tire["vertices"]
         reference = array(about, numbers, tire["reference"]).reshape(-1, 3)
-        poses = array(about, numbers, block["poses"]).reshape(FRAMES, 14)
+        poses = array(about, numbers, block["poses"]).reshape(FRAMES, 15)
         for k in range(FRAMES):
-            at = 8 * count * k
+            at = 9 * count * k  # positions, force, speed, strain
             deviation = np.column_stack([planes(data[at + 2 * count * a:at + 2 * count * (a + 1)],
                                                 count, 2).view("<i2").ravel() for a in range(3)])
             shown = reference @ poses[k, :9].reshape(3, 3).T + poses[k, 9:12] + tire["quantum"] * deviation
             points, _ = wheel(0.7 * k, [0.5 + 0.1 * k, 0.0, 0.5], 0.02 * k)
             np.testing.assert_allclose(shown, points, atol=tire["quantum"])
-            self.assertAlmostEqual(float(poses[k, 12]), 5.0, places=5)
+            np.testing.assert_allclose(poses[k, 12:], [5.0, 0.0, 0.02], rtol=1e-6)
 
     def test_frames_are_left_out_until_the_rest_fits(self):
         run = Run(self.run_folder)

@@ -238,8 +238,8 @@ def draw(passages, slow, still, modes):
                         label="planar, 20 mm, static")
     named = dict(zip(*reversed([sum(of, []) for of in zip(*(axis.get_legend_handles_labels() for axis in axes[0]))])))
     figure.get_layout_engine().set(rect=(0, 0.07, 1, 0.93))
-    figure.legend(named.values(), named, loc="lower center", ncols=4, title_fontsize=9, title="vertical lines: modes on "
-                  "a fixed rim in the tire's colour, order 0 dotted, order 1 dash-dotted")
+    figure.legend(named.values(), named, loc="lower center", ncols=4, title_fontsize=9, title="vertical lines: modes "
+                  "on a fixed rim in the tire's colour, order 0 dotted, order 1 dash-dotted")
     driver.save(figure, "cleat_roll", 62)
 
 

@@ -1,6 +1,7 @@
 #include "tire/rigid/grousers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -18,11 +19,13 @@ void add_grousers(TireShape& shape, int number, double height, double thickness)
   for (auto& triangle : shape.mesh.triangles)
     for (int& corner : triangle)
       if (corner >= first) corner += added;
-  const auto radius_at = [&](double y) {
-    const std::span wheel = std::span(shape.vertex).first(static_cast<std::size_t>(first));
+  const std::span wheel = std::span(shape.vertex).first(static_cast<std::size_t>(first));
+  std::array<double, kGrouserCells + 1> across, radius;  // of a plate's vertices: y, and the tread there
+  for (std::size_t i = 0; i < across.size(); ++i) {
+    const double y = across[i] = (0.5 - static_cast<double>(i) / kGrouserCells) * shape.tread_width;
     const Vec3 nearest = std::ranges::min(wheel, {}, [y](const Vec3& x) { return std::abs(x.y() - y); });
-    return std::hypot(nearest.x(), nearest.z());
-  };
+    radius[i] = std::hypot(nearest.x(), nearest.z());
+  }
   std::vector<Vec3> plates;
   for (int k = 0; k < number; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / number;
@@ -33,12 +36,10 @@ void add_grousers(TireShape& shape, int number, double height, double thickness)
       shape.mesh.triangles.push_back({a, b, c});
       shape.mesh.triangles.push_back({a, c, d});
     };
-    for (int i = 0; i <= kGrouserCells; ++i) {
-      const double y = (0.5 - static_cast<double>(i) / kGrouserCells) * shape.tread_width, radius = radius_at(y);
+    for (std::size_t i = 0; i < across.size(); ++i)
       for (const double side : {-0.5, 0.5})
         for (const double beyond : {-height, height})
-          plates.push_back((radius + beyond) * outward + side * thickness * along + y * Vec3::UnitY());
-    }
+          plates.push_back((radius[i] + beyond) * outward + side * thickness * along + across[i] * Vec3::UnitY());
     for (int i = 0; i < kGrouserCells; ++i) {
       quad(at(i, 1, 0), at(i, 1, 1), at(i + 1, 1, 1), at(i + 1, 1, 0));  // ahead
       quad(at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1), at(i, 0, 0));  // behind

@@ -236,7 +236,7 @@ def draw(passages, slow, still, modes):
         force = [1e-3 * (still[place] - slow.mean["z"] - GRAVITY * slow.mass) for place in still]
         axes[0, 0].plot([-place for place in still], force, "o", ms=3.5, mfc="none", color=style.RED,
                         label="planar, 20 mm, static")
-    named = dict(zip(*reversed([sum(of, []) for of in zip(*(axis.get_legend_handles_labels() for axis in axes[0]))])))
+    named = {label: line for axis in axes[0] for line, label in zip(*axis.get_legend_handles_labels())}
     figure.get_layout_engine().set(rect=(0, 0.07, 1, 0.93))
     figure.legend(named.values(), named, loc="lower center", ncols=4, title_fontsize=9, title="vertical lines: modes "
                   "on a fixed rim in the tire's colour, order 0 dotted, order 1 dash-dotted")

@@ -4,21 +4,18 @@ packings. Writes lete_plates.csv beside this script; a test that is finished is 
 
 A row is one packing and width: pressure at six sinkages, mean over three beds with half of its 95 % interval; n of the
 fit p = (k_c/b + k_phi) z^n and k_c, k_phi, with standard errors; heaved over displaced volume. Rows without a solid
-fraction are Wong's table (terrain/data/lete_sand.json): k_c 102 kN/m^(n+1), k_phi 5301 kN/m^(n+2),
-n 0.79.
+fraction are Wong's k_c, k_phi and n, of terrain/data/lete_sand.json.
 """
 import statistics
 
 import driver
 import provenance
+from lete_sand import ANEW, RIG
 
-RIG = "rigs/drawbar_pull_small.json"
-ANEW = {"terrain.settling_friction": None, "terrain.settling_cohesion": None}
 PACKINGS = {"0.52": {"terrain.solid_fraction": 0.52} | ANEW, "as fitted": {},
             "0.60": {"terrain.solid_fraction": 0.6} | ANEW}
 SINKAGES = (10, 15, 20, 30, 50, 70)  # mm
 NEAR = 0.0025  # m, over which pressures are averaged
-K_C, K_PHI, N = 102e3, 5301e3, 0.79
 
 
 def tested(packing, changed):
@@ -53,9 +50,11 @@ def main():
                 row |= {key: bed[key], f"{key}_se": bed["standard_error"][key]}
             rows.append(row | {"heaved_share": plate["heaved_share"],
                                "heaved_share_se": plate["standard_error"]["heaved_share"]})
+    wong = driver.read_json(driver.ROOT / "terrain" / "data" / "lete_sand.json")["terrain"]
+    n, k_c, k_phi = (wong[f"bekker_{key}"] for key in ("n", "k_c", "k_phi"))
     for width in (0.1, 0.2):
-        rows.append({"packing": "Wong's table", "width_mm": 1e3 * width, "n": N, "k_c": K_C, "k_phi": K_PHI}
-                    | {f"at_{z}_mm_kPa": 1e-3 * (K_C / width + K_PHI) * (1e-3 * z) ** N for z in SINKAGES})
+        rows.append({"packing": "Wong's table", "width_mm": 1e3 * width, "n": n, "k_c": k_c, "k_phi": k_phi}
+                    | {f"at_{z}_mm_kPa": 1e-3 * (k_c / width + k_phi) * (1e-3 * z) ** n for z in SINKAGES})
     driver.write("lete_plates.csv", rows, made)
 
 

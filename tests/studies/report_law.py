@@ -161,7 +161,8 @@ def passes(cases, seeds):
                      "passes": 3, "rest": rest}
             out = driver.kept(folder_of("report_law_passes", case, seed), "sweep", scenario=study)
             before = provenance.read_origin(driver.HERE / name)
-            made |= {key: before[key] for key in ("note",) if key in before}
+            if "note" in before:
+                made["note"] = before["note"]
             rows = [{"commit": before["commit"]} | row for row in provenance.read_table(driver.HERE / name)
                     if (row["case"], row["seed"]) != (case, str(seed))]
             for run in provenance.read_table(out / "sweep.csv"):

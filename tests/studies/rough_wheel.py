@@ -13,7 +13,7 @@ import driver
 import provenance
 
 RIG = str(driver.ROOT / "rigs" / "small_wheel.json")
-RADIUS, LOAD, HALF = 0.058, 24.5, 0.0035  # m, N, half of a grain's diameter, m
+HALF = 0.0035  # of a grain's diameter, m
 FIGURES = {"pull_N": "drawbar_pull_N", "torque_Nm": "drive_torque_Nm", "sinkage_mm": "sinkage_m"}
 ALWAYS = {"output.frame_interval": 0}
 SURFACES = {
@@ -35,11 +35,13 @@ def main():
                 out = driver.RESULTS / "rough_wheel" / f"{surface}_{slip:g}_{seed}".replace(" ", "_").replace(",", "")
                 if not driver.done_run(words, out):
                     continue
-                row = driver.drawbar_row(driver.summary(out), FIGURES)
-                tips = RADIUS + changed.get("tire.grouser_height", 0.0)
+                summary = driver.summary(out)
+                row, radius = driver.drawbar_row(summary, FIGURES), summary["tire_radius_m"]
+                load = driver.mean_of(summary["vertical_load_N"])
+                tips = radius + changed.get("tire.grouser_height", 0.0)
                 rows.append({"surface": surface.replace(",", ""), "slip": slip,
-                             "slip_of_tips": 1 - (1 - slip) * RADIUS / tips, "seed": seed,
-                             "torque_over_load_radius": row["torque_Nm"] / (LOAD * tips), **row})
+                             "slip_of_tips": 1 - (1 - slip) * radius / tips, "seed": seed,
+                             "torque_over_load_radius": row["torque_Nm"] / (load * tips), **row})
                 driver.write("rough_wheel.csv", rows, made, told=True)
 
 

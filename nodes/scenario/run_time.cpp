@@ -30,7 +30,8 @@ constexpr double kRolls = 1.35;        // a grain-step with rolling resistance o
 constexpr double kDouble = 1.5;        // a grain-step in double precision over one in mixed
 constexpr double kSettling = 0.6;      // simulated time in which a new bed settles, s
 constexpr double kJoints = 0.15;       // settling of joints between tiles, as if all grains were awake
-constexpr double kAwake = 2.0;         // tire radii around an axle within which grains are awake
+constexpr double kAwake = 2.0;         // tire radii around an axle within which grains are awake,
+constexpr double kParcel = 4.0;        // and grain radii beyond them: half a parcel
 constexpr double kMeshExponent = 1.1;  // of a tire's step time over its unknowns
 constexpr double kRigidTire = 4e-5;    // of a step: moving the surface, s
 constexpr double kMessages = 8e-5;     // for each tire, in its rank and the rig's: send, receive and write, s
@@ -60,7 +61,7 @@ double awake_share(const Scenario& s, const std::vector<tire::TireDescription>& 
       for (std::size_t k = 0; k < tires.size(); ++k) {
         const rigs::WheelDescription& wheel = rig.wheels[k];
         const double axle = wheel.from + (wheel.to - wheel.from) * place / (kPlaces - 1.0);
-        const double reach = std::min(kAwake * tires[k].radius, o.width);
+        const double reach = std::min(kAwake * tires[k].radius + kParcel * o.radius, o.width);
         if (std::hypot(x - axle, y - wheel.lateral) > reach) continue;
         ++near;
         break;

@@ -1,23 +1,5 @@
 // Contact between spheres and a moving triangulated surface (a tire): finds the points of the surface that a grain
-// touches, how deep, and the share of the contact law that each of them carries.
-//
-// A triangle i that the sphere (c, r) intersects gives one candidate: its point p_i closest to c (face, edge or
-// vertex region), overlap δ_i = r − |c − p_i| and direction n_i = (c − p_i)/|c − p_i|. On one flat face cut into
-// triangles, and on every convex crease, only the deepest candidate may count; in a sharp corner both walls must.
-// Both follow from one rule: the push-out D is the shortest vector that clears all candidates,
-//
-//   D = argmin |D|²  with  D·n_i ≥ δ_i  for all i,      D = Σ λ_i n_i,  λ_i ≥ 0,                              (1)
-//
-// and candidate i carries the share s_i = λ_i/δ̂_i of the contact law:  F = Σ s_i f(δ̂_i) n_i.                   (2)
-//
-// δ̂_i is δ_i, except that walls of nearly one direction share the depth of the deepest (surface_geometry.hpp). On flat
-// or convex surfaces s = 1 for the deepest candidate and 0 for all others. In the middle of a valley whose face normals
-// differ by θ, each has s = 1/(1 + cos θ), and |F| = f(δ)/cos(θ/2): the plane's force as θ → 0, and f(δ) on each wall
-// at θ = 90°. D, hence F, is continuous in c and in the vertices because p_i is.
-//
-// The rule needs δ < r/2. If contact is deeper (an emergency), the other candidates fade out from δ = 0.4 r to 0.5 r,
-// and the nearest point alone counts. A grain whose centre is behind the surface, by the pseudo-normal of the
-// nearest feature [Bærentzen & Aanæs 2005, doi:10.1109/TVCG.2005.49], has δ = r + depth, down to a depth of r.
+// touches, how deep, and the share of the contact law that each of them carries (facets.hpp).
 #pragma once
 
 #include <array>
@@ -26,6 +8,7 @@
 #include <vector>
 
 #include "protocol/core/surface.hpp"
+#include "terrain/surface/facets.hpp"
 
 namespace furrow::terrain {
 
@@ -34,13 +17,11 @@ namespace furrow::terrain {
 struct SurfaceHit {
   Vec3 point = Vec3::Zero();   // on the surface, m, W
   Vec3 normal = Vec3::Zero();  // unit, from the surface towards the outside (the grain), W
-  double overlap = 0.0;        // δ̂ > 0 of Eq. (2), m
+  double overlap = 0.0;        // δ̂ > 0 of facets.hpp, Eq. (2), m
   double share = 1.0;          // s of Eq. (2), in (0, 1]
   int triangle = -1;
   std::array<double, 3> weight{};  // barycentric: point = Σ weight · vertex, Σ weight = 1, each ≥ 0
 };
-
-inline constexpr int kMaxSurfaceHits = 6;
 
 /// Axis-aligned box, m.
 struct SurfaceBox {

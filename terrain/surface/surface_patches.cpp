@@ -1,11 +1,9 @@
 #include "terrain/surface/surface_patches.hpp"
 
 #include <algorithm>
-#include <limits>
-
-#include <Eigen/Eigenvalues>
 
 #include "terrain/surface/surface_topology.hpp"
+#include "terrain/surface/surface_vectors.hpp"
 
 namespace furrow::terrain {
 namespace {
@@ -36,39 +34,26 @@ SurfacePatches::SurfacePatches(const SurfaceMesh& mesh, std::span<const Vec3> po
   }
 }
 
-PatchTurn::PatchTurn(std::span<const int> patch, std::span<const Vec3> position) : patch_(patch), position_(position) {
+PatchTurn::PatchTurn(std::span<const int> patch, std::span<const Vec3> position)
+    : vertices_{patch.data(), static_cast<int>(patch.size()), flat(position)},
+      centre_(vertices_.centre()),
+      inverse_(vertices_.inverse(centre_)) {
   FURROW_ASSERT(patch.size() >= 3, patch.size());
-  for (const int v : patch) centre_ += position[v];
-  centre_ /= static_cast<double>(patch.size());
-  Mat3 j = Mat3::Zero();
-  for (const int v : patch) {
-    const Vec3 x = position[v] - centre_;
-    j += x.squaredNorm() * Mat3::Identity() - x * x.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(j);
-  const Vec3& values = axes.eigenvalues();
-  for (int k = 0; k < 3; ++k)
-    if (values[k] > 4.0 * std::numeric_limits<double>::epsilon() * values[2])
-      inverse_ += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose() / values[k];
 }
 
 Vec3 PatchTurn::spin(std::span<const Vec3> velocity) const {
-  Vec3 circulation = Vec3::Zero();
-  for (const int v : patch_) circulation += (position_[v] - centre_).cross(velocity[v]);
-  return solved(circulation);
+  return vec(vertices_.spin(centre_, inverse_, flat(velocity)));
 }
 
-Vec3 PatchTurn::moment_of(const Vec3& turn) const {
-  Vec3 moment = Vec3::Zero();
-  for (const int v : patch_) {
-    const Vec3 x = position_[v] - centre_;
-    moment += x.cross(turn.cross(x));
-  }
-  return moment;
+PatchCouple PatchTurn::couple(const Vec3& moment) const {
+  return {moment, vec(vertices_.solved(centre_, inverse_, triple(moment))), vec(centre_)};
 }
 
 Mat3 PatchTurn::resistance(int vertex, const Mat3& of_couple) const {
-  const Mat3 turn = inverse_ * cross_matrix(position_[vertex] - centre_);
+  const Symmetric& j = inverse_;
+  Mat3 inverse;
+  inverse << j.xx, j.xy, j.xz, j.xy, j.yy, j.yz, j.xz, j.yz, j.zz;
+  const Mat3 turn = inverse * cross_matrix(vec(PatchVertices::of(vertices_.position, vertex) - centre_));
   return turn.transpose() * of_couple * turn;
 }
 

@@ -12,6 +12,8 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
+#include "terrain/surface/facets.hpp"
+#include "terrain/surface/patch_turn.hpp"
 
 namespace furrow::terrain {
 
@@ -56,22 +58,14 @@ class PatchTurn {
   /// ω_s, rad/s.
   Vec3 spin(std::span<const Vec3> velocity) const;
   /// If the vertices lie on one line, no moment about that line can act.
-  PatchCouple couple(const Vec3& moment) const { return {moment, solved(moment), centre_}; }
+  PatchCouple couple(const Vec3& moment) const;
   /// −∂f/∂u of one vertex if the others do not move, where M = −K ω: [x]ᵀ J⁻¹ K J⁻¹ [x].
   Mat3 resistance(int vertex, const Mat3& of_couple) const;
 
  private:
-  Vec3 moment_of(const Vec3& turn) const;
-  /// J⁻¹ b, with one step of iterative refinement, because J of a sliver is ill-conditioned.
-  Vec3 solved(const Vec3& b) const {
-    const Vec3 first = inverse_ * b;
-    return first + inverse_ * (b - moment_of(first));
-  }
-
-  std::span<const int> patch_;
-  std::span<const Vec3> position_;
-  Vec3 centre_ = Vec3::Zero();   // m
-  Mat3 inverse_ = Mat3::Zero();  // 1/m²
+  PatchVertices vertices_;
+  Vector centre_;      // m
+  Symmetric inverse_;  // 1/m²
 };
 
 }  // namespace furrow::terrain

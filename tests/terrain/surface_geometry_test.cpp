@@ -1,17 +1,33 @@
-// Closest points of a triangle against brute force and by region; the push-out problem against its own conditions.
-#include "terrain/surface/surface_geometry.hpp"
+// Closest points of a triangle against brute force and by region; the push-out problem against its own conditions;
+// angles against atan2.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <vector>
+
+#include "terrain/surface/facets.hpp"
+#include "terrain/surface/surface_vectors.hpp"
 
 namespace furrow::terrain {
 namespace {
 
 const Vec3 kA(0.0, 0.0, 0.0), kB(1.0, 0.0, 0.0), kC(0.0, 1.0, 0.0);
+
+TrianglePoint closest(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return closest_point(triple(p), triple(a), triple(b), triple(c));
+}
+std::vector<Vector> triples(const std::vector<Vec3>& of) {
+  std::vector<Vector> out;
+  for (const Vec3& v : of) out.push_back(triple(v));
+  return out;
+}
+int solve_push_out(const std::vector<Vec3>& normal, const std::vector<double>& overlap, std::span<double> lambda) {
+  return push_out(triples(normal).data(), overlap.data(), static_cast<int>(normal.size()), lambda.data());
+}
 
 TEST(ClosestPoint, names_each_of_the_seven_regions) {
   struct Case {
@@ -28,11 +44,11 @@ TEST(ClosestPoint, names_each_of_the_seven_regions) {
       {{-0.1, 1.4, 0.1}, kC, TriangleRegion::vertex_2},
   };
   for (const Case& one : cases) {
-    const TrianglePoint found = closest_point(one.from, kA, kB, kC);
+    const TrianglePoint found = closest(one.from, kA, kB, kC);
     EXPECT_EQ(found.region, one.region) << one.from.transpose();
-    EXPECT_LT((found.point - one.expected).norm(), 1e-15) << found.point.transpose();
+    EXPECT_LT((vec(found.point) - one.expected).norm(), 1e-15) << vec(found.point).transpose();
     const Vec3 rebuilt = found.weight[0] * kA + found.weight[1] * kB + found.weight[2] * kC;
-    EXPECT_LT((rebuilt - found.point).norm(), 1e-15);
+    EXPECT_LT((rebuilt - vec(found.point)).norm(), 1e-15);
   }
 }
 
@@ -42,8 +58,8 @@ TEST(ClosestPoint, is_nearer_than_every_point_of_a_fine_sampling) {
   auto point = [&] { return Vec3(any(random), any(random), any(random)); };
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3 a = point(), b = point(), c = point(), p = 2.0 * point();
-    const TrianglePoint found = closest_point(p, a, b, c);
-    const double distance = (p - found.point).norm();
+    const TrianglePoint found = closest(p, a, b, c);
+    const double distance = (p - vec(found.point)).norm();
     double sampled = 1e9;
     const int n = 40;
     for (int i = 0; i <= n; ++i)
@@ -124,10 +140,17 @@ TEST(PushOut, shares_the_depth_of_walls_of_one_direction_only) {
   const std::vector<Vec3> normal{Vec3::UnitZ(), Vec3(0.1, 0.0, 1.0).normalized(), Vec3::UnitX()};
   const std::vector<double> overlap{3e-4, 1e-4, 2e-4};
   double shared[3];
-  share_depth(normal, overlap, shared);
+  share_depth(triples(normal).data(), overlap.data(), 3, shared);
   EXPECT_EQ(shared[0], 3e-4);
   EXPECT_NEAR(shared[1], 3e-4, 1e-18);
   EXPECT_EQ(shared[2], 2e-4);
+}
+
+TEST(Facets, angle_is_that_of_atan2) {
+  for (int k = 1; k < 4000; ++k) {
+    const double phi = M_PI * k / 4000.0, scale = std::pow(10.0, k % 13 - 6.0);
+    EXPECT_NEAR(angle_of(scale * std::sin(phi), scale * std::cos(phi)), phi, 2e-11) << phi;
+  }
 }
 
 }  // namespace

@@ -5,12 +5,13 @@
 #include "terrain/dem/quad.hpp"
 #include "terrain/surface/surface_collider.hpp"
 #include "terrain/surface/surface_forces.hpp"
+#include "terrain/surface/surface_vectors.hpp"
 
 namespace furrow::terrain::dem {
 
-inline Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+using terrain::triple;
+using terrain::vec;
 inline Triple<double> triple(const Quad& q) { return {q.x, q.y, q.z}; }
-inline Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 
 /// Cosine of 60°: history passes between points whose normals differ by less.
 inline constexpr double kSameNormal = 0.5;

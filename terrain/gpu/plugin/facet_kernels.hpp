@@ -6,12 +6,14 @@
 #pragma once
 
 #include "terrain/dem/contact/kinematics.hpp"
-#include "terrain/gpu/plugin/facet_geometry.hpp"
 #include "terrain/gpu/plugin/grain_data.hpp"
 #include "terrain/gpu/plugin/measure.hpp"
+#include "terrain/gpu/plugin/patches.hpp"
 #include "terrain/gpu/plugin/wall_kernel.hpp"
 
 namespace furrow::terrain::gpu {
+
+FURROW_HD inline Vector opposite(const Vector& v) { return {-v.x, -v.y, -v.z}; }
 
 struct FacetSpring {
   double normal[3], t[3], root, r[3];  // -, N, √m, N m
@@ -37,7 +39,7 @@ struct SurfaceView {
   i64* impulse;  // [vertex * 3 + axis], on the surface, 2^−50 N s
   // Of each entry, a grain near the surface:
   const u32* grain;
-  FacetSpring* spring;  // [entry * kHits + point]
+  FacetSpring* spring;  // [entry * kMaxSurfaceHits + point]
   u32* touched;         // points, and how many of them slide, times 2^16
   i64* sums;            // [entry * kFacetSums + sum], 2^−50 N s and N m s
 };
@@ -61,17 +63,14 @@ struct PlaneKernel {
   FURROW_HD void operator()(int k) const {
     if (control->stop) return;
     const i32 t = s.grid.listed[k];
-    const Vector area = s.facets.twice_area(t);
-    const double size = length(area);
-    s.plane[t].normal = size > 1e-30 ? (1.0 / size) * area : Vector{0, 0, 0};
-    s.plane[t].offset = dot(s.plane[t].normal, s.position[s.facets.triangle[t][0]]);
+    s.plane[t] = s.facets.plane_of(t);
     if (rolls) s.patch[t] = s.patches.of(t);
   }
 };
 
 /// Spin of a triangle about n: half the circulation of its vertices' velocities over its area.
 FURROW_HD inline double spin_about(const SurfaceView& s, i32 triangle, const Vector& n) {
-  const i32* const t = s.facets.triangle[triangle];
+  const i32* const t = s.facets.corners(triangle);
   const Vector twice = s.facets.twice_area(triangle);
   const double area2 = length(twice);
   if (area2 == 0.0) return 0.0;
@@ -91,7 +90,7 @@ struct FacetParams {
 
 /// Points of one grain on a surface.
 struct Touches {
-  FacetHit hit[kHits];
+  FacetHit hit[kMaxSurfaceHits];
   int count;
 };
 FURROW_HD inline void find_touches(const SurfaceView& s, const Vector& centre, double radius, Touches& out) {
@@ -108,7 +107,7 @@ FURROW_HD inline void find_touches(const SurfaceView& s, const Vector& centre, d
 FURROW_HD inline dem::ContactMotion<double> motion_at(const SurfaceView& s, bool rolls, const FacetHit& hit,
                                                       const Vector& arm, const Motion& m) {
   dem::ContactMotion<double> motion = dem::motion_on_surface(hit.normal, hit.overlap, arm, triple(m.v), triple(m.w));
-  const i32* const t = s.facets.triangle[hit.triangle];
+  const i32* const t = s.facets.corners(hit.triangle);
   motion.velocity = motion.velocity - (hit.weight[0] * s.velocity[t[0]] + hit.weight[1] * s.velocity[t[1]] +
                                        hit.weight[2] * s.velocity[t[2]]);
   motion.spin += 0.5 * spin_about(s, hit.triangle, hit.normal);
@@ -156,8 +155,8 @@ struct FacetKernel {
     find_touches(s, centre, p.radius, touches);
     const int old_count = static_cast<int>(s.touched[e] & 0xffffU);
     u32 sliding = 0;
-    FacetSpring old[kHits];
-    FacetSpring* const spring = s.spring + static_cast<i64>(e) * kHits;
+    FacetSpring old[kMaxSurfaceHits];
+    FacetSpring* const spring = s.spring + static_cast<i64>(e) * kMaxSurfaceHits;
     if (touches.count > 0)
       for (int k = 0; k < old_count; ++k) old[k] = spring[k];
     for (int h = 0; h < touches.count; ++h) {
@@ -182,7 +181,7 @@ struct FacetKernel {
 
       const Vector total = opposite(loads.push + loads.drag);
       Vector nodal_moment{0, 0, 0}, moment{0, 0, 0};
-      const i32* const t = s.facets.triangle[hit.triangle];
+      const i32* const t = s.facets.corners(hit.triangle);
       for (int k = 0; k < 3; ++k) push(t[k], hit.weight[k] * total, nodal_moment, hit.point);
       if (rolls) {
         const Patch& patch = s.patch[hit.triangle];
@@ -231,7 +230,7 @@ struct CarryFacetsKernel {
     const u32 touched = old == ~0U ? 0 : from_touched[old];
     to_touched[e] = touched;
     for (u32 k = 0; k < (touched & 0xffffU); ++k)
-      to[static_cast<i64>(e) * kHits + k] = from[static_cast<i64>(old) * kHits + k];
+      to[static_cast<i64>(e) * kMaxSurfaceHits + k] = from[static_cast<i64>(old) * kMaxSurfaceHits + k];
     for (int k = 0; k < kFacetSums; ++k) sums[static_cast<i64>(e) * kFacetSums + k] = 0;
   }
 };
@@ -268,7 +267,7 @@ struct MeasureFacetsKernel {
     Touches touches;
     find_touches(s, centre, p.radius, touches);
     const int old_count = static_cast<int>(s.touched[e] & 0xffffU);
-    const FacetSpring* const old = s.spring + static_cast<i64>(e) * kHits;
+    const FacetSpring* const old = s.spring + static_cast<i64>(e) * kMaxSurfaceHits;
     Measured& sums = to[g.low[i].id];
     u32 taken = 0;
     for (int h = 0; h < touches.count; ++h) {
@@ -303,7 +302,7 @@ struct HardFacetsKernel {
     for (int h = 0; h < touches.count; ++h) {
       const FacetHit& hit = touches.hit[h];
       if (!(hit.overlap > find.above)) continue;
-      const i32* const t = s.facets.triangle[hit.triangle];
+      const i32* const t = s.facets.corners(hit.triangle);
       const Vector surface_v =
           hit.weight[0] * s.velocity[t[0]] + hit.weight[1] * s.velocity[t[1]] + hit.weight[2] * s.velocity[t[2]];
       find.add(hit.overlap, dot(triple(g.motion[i].v) - surface_v, hit.normal), g.low[i].id, surface, 2);

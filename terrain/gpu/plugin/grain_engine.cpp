@@ -90,9 +90,9 @@ FacetParams<Law> GrainEngine::facet_params(const TireSurface& s, double dt, doub
 
 SurfaceView GrainEngine::TireSurface::view() const {
   SurfaceView v{};
-  v.facets = {triangle.data(), neighbour.data(), boundary.data(), around_first.data(),
-              around.data(),   position.data(),  plane.data()};
-  v.patches = {patch_first.data(), patch_vertex.data(), position.data(), velocity.data()};
+  v.facets = {*triangle.data(), *neighbour.data(),   boundary.data(), around_first.data(),
+              around.data(),    &position.data()->x, plane.data()};
+  v.patches = {patch_first.data(), patch_vertex.data(), &position.data()->x, &velocity.data()->x};
   v.position = position.data(), v.velocity = velocity.data();
   v.start = start.data(), v.end = end.data();
   v.plane = plane.data(), v.patch = patch.data();
@@ -302,7 +302,8 @@ void GrainEngine::find_near_surface(TireSurface& s, const u32* order) {
   NearSurface& now = s.near;
   now.count = list_marked(now.grain, now.entry_of);
   const auto n = static_cast<std::size_t>(now.count);
-  now.spring.reserve(device_, n * kHits), now.touched.reserve(device_, n), now.sums.reserve(device_, n * kFacetSums);
+  now.spring.reserve(device_, n * kMaxSurfaceHits), now.touched.reserve(device_, n),
+      now.sums.reserve(device_, n * kFacetSums);
   device_.launch(now.count, CarryFacetsKernel{order, spare_near_.count > 0 ? spare_near_.entry_of.data() : nullptr,
                                               now.grain.data(), spare_near_.spring.data(), spare_near_.touched.data(),
                                               now.spring.data(), now.touched.data(), now.sums.data()});

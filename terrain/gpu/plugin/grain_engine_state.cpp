@@ -119,12 +119,12 @@ void GrainEngine::read_histories() {
     if (s.count == 0) continue;
     const auto m = static_cast<std::size_t>(s.count);
     const std::vector<u32> entry_of = s.entry_of.get(device_, n), touched = s.touched.get(device_, m);
-    const std::vector<FacetSpring> springs = s.spring.get(device_, m * kHits);
+    const std::vector<FacetSpring> springs = s.spring.get(device_, m * kMaxSurfaceHits);
     for (const u32 g : place_of) {
       const u32 e = entry_of[g];
       if (e == ~0U) continue;
       for (u32 h = 0; h < (touched[e] & 0xffffU); ++h) {
-        const FacetSpring& from = springs[static_cast<std::size_t>(e) * kHits + h];
+        const FacetSpring& from = springs[static_cast<std::size_t>(e) * kMaxSurfaceHits + h];
         FacetTouch f{};
         f.grain = static_cast<i32>(low[g].id), f.surface = static_cast<i32>(k);
         for (int a = 0; a < 3; ++a)
@@ -187,17 +187,17 @@ void GrainEngine::remember(i64 pair_count, const Pair* pair, i64 wall_count, con
     NearSurface& near = s.near;
     near.count = list_marked(near.grain, near.entry_of);
     const auto m = static_cast<std::size_t>(near.count);
-    near.spring.reserve(device_, m * kHits), near.touched.reserve(device_, m),
+    near.spring.reserve(device_, m * kMaxSurfaceHits), near.touched.reserve(device_, m),
         near.sums.reserve(device_, m * kFacetSums);
     if (m == 0) continue;
     const std::vector<u32> entry_of = near.entry_of.get(device_, n);
-    std::vector<FacetSpring> springs(m * kHits);
+    std::vector<FacetSpring> springs(m * kMaxSurfaceHits);
     std::vector<u32> touched(m, 0);
     for (i64 f = 0; f < facet_count; ++f) {
       if (facet[f].surface != static_cast<i32>(k)) continue;
       const u32 e = entry_of[place_of[facet[f].grain]];
-      if (touched[e] == static_cast<u32>(kHits)) continue;
-      FacetSpring& to = springs[static_cast<std::size_t>(e) * kHits + touched[e]++];
+      if (touched[e] == static_cast<u32>(kMaxSurfaceHits)) continue;
+      FacetSpring& to = springs[static_cast<std::size_t>(e) * kMaxSurfaceHits + touched[e]++];
       std::copy_n(facet[f].normal, 3, to.normal), std::copy_n(facet[f].tangential, 3, to.t);
       std::copy_n(facet[f].rolling, 3, to.r);
       to.root = facet[f].root_overlap;

@@ -1,5 +1,5 @@
-// The spin of a patch of vertices, and couples on it as forces (surface_patches.hpp). Like facets.hpp, for the processor
-// and for a GPU.
+// The spin of a patch of vertices, and couples on it as forces (surface_patches.hpp). Like facets.hpp, for the
+// processor and for a GPU.
 #pragma once
 
 #include <cstdint>

@@ -84,14 +84,20 @@ bool taken_whole(const SoilFile& soil, const json& terrain) {
   return true;
 }
 
-/// Checks whether the soil's strength depends on the size of its grains, and the scenario has another size. @returns
-/// the measured size, m; null: the strength does not depend on it, or the sizes are equal
-json other_radius(const SoilFile& soil, const json& terrain) {
-  const json radius = terrain.value("radius", json());
+/// Radius of the grains with which the soil's strength was measured, if it depends on their size, m; otherwise none.
+std::optional<double> measured_radius(const SoilFile& soil) {
   const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
-  if (!radius.is_number() || !with.is_number() || !(with.get<double>() > 0.0)) return {};
-  if (std::abs(radius.get<double>() / with.get<double>() - 1.0) <= kSameSize) return {};
-  return soil.values.value("cohesion", 0.0) == 0.0 ? json() : with;  // no length without cohesion
+  const bool has_length = soil.values.value("cohesion", 0.0) != 0.0;
+  if (!has_length || !with.is_number() || !(with.get<double>() > 0.0)) return {};
+  return with.get<double>();
+}
+
+/// measured_radius() if the scenario has grains of another size.
+std::optional<double> other_radius(const SoilFile& soil, const json& terrain) {
+  const json radius = terrain.value("radius", json());
+  const std::optional<double> with = measured_radius(soil);
+  if (!radius.is_number() || !with || std::abs(radius.get<double>() / *with - 1.0) <= kSameSize) return {};
+  return with;
 }
 
 /// Values for the engine from the soil named in the scenario; null if none is named.
@@ -116,6 +122,10 @@ bool is_set(const Settings& settings, const std::string& key) {
 
 json read_soil_material(const std::filesystem::path& file) { return read_soil_file(file).values; }
 
+std::optional<double> measured_grain_radius(const std::filesystem::path& file) {
+  return measured_radius(read_soil_file(file));
+}
+
 void apply_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const json soil = named_material(document, scenario, engine);
   for (const auto& [key, value] : soil.items())
@@ -136,8 +146,7 @@ void fill_cone_index(json& completed, const std::filesystem::path& scenario) {
   json& terrain = completed.at("terrain");
   if (!terrain.contains(kConeIndexKey) || !terrain[kConeIndexKey].is_null()) return;
   const std::optional<SoilFile> soil = soil_of(terrain, scenario);
-  if (!soil || !soil->measured.is_object() || !taken_whole(*soil, terrain) || !other_radius(*soil, terrain).is_null())
-    return;
+  if (!soil || !soil->measured.is_object() || !taken_whole(*soil, terrain) || other_radius(*soil, terrain)) return;
   const json index = soil->measured.value("cone_index_Pa", json());
   const json mean = index.is_object() ? index.value("mean", json()) : json();
   if (mean.is_number() && mean.get<double>() > 0.0) terrain[kConeIndexKey] = mean;
@@ -164,13 +173,13 @@ std::string other_grains_warning(const json& completed, const std::filesystem::p
   const json& terrain = completed.at("terrain");
   const std::optional<SoilFile> soil = soil_of(terrain, scenario);
   if (!soil || !taken_whole(*soil, terrain)) return {};  // no soil, or a changed one
-  const json with = other_radius(*soil, terrain);
-  if (with.is_null()) return {};
+  const std::optional<double> with = other_radius(*soil, terrain);
+  if (!with) return {};
   return input_error(
              scenario.string(), "terrain.radius",
              "is {} m, but the strength of '{}' was measured with grains of radius {} m: cohesion changes with the "
              "size of grains",
-             number_text(terrain["radius"]), terrain[kSoilKey].get<std::string>(), number_text(with))
+             number_text(terrain["radius"]), terrain[kSoilKey].get<std::string>(), number_text(*with))
       .what();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,6 +17,10 @@ inline constexpr const char* kSoilKey = "material";
 /// The values of a soil file by their key in `terrain`.
 /// @throws Error(io) if it cannot be read, Error(bad_input) naming file and key.
 nlohmann::json read_soil_material(const std::filesystem::path& file);
+
+/// Radius of the grains with which the strength of a cohesive soil was measured, m; none where it does not matter or is
+/// not stated. Throws like read_soil_material().
+std::optional<double> measured_grain_radius(const std::filesystem::path& file);
 
 /// Puts the values of the soil named by `terrain.material` into a scenario; the scenario's own values take precedence.
 /// `scenario`: its file, for messages and as the first place to search. `engine`: its keys are used.

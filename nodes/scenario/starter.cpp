@@ -37,7 +37,8 @@ constexpr double kCohesion = 80e3, kModulus = 2.49e7, kPressure = 155e3;  // Pa
 // In tire radii.
 constexpr double kGrain = 1.0 / 45.0, kAhead = 2.2, kBehind = 1.2, kBeside = 0.4;
 constexpr double kAcross = 11.0,
-                 kAlong = 14.0;  // grain radii in a tread's width, at least, and in a contact's length
+                 kAlong = 14.0;   // grain radii in a tread's width, at least, and in a contact's length
+constexpr double kCoarser = 0.7;  // of the radius with which a soil was measured: from there on that is taken
 constexpr int kLayers = 14, kMostLayers = 120;
 constexpr double kDepth = 8.5;                  // sinkages
 constexpr double kTreadSpeed = 0.93;            // √(g R)
@@ -70,6 +71,7 @@ struct Scales {
   double first = 0.0, last = 0.0;    // axles, x, m
   double across = 0.0;               // of the outermost point of any wheel, |y|, m
   bool meshed = false;               // the tire is a shell with a mesh that the scenario may set
+  double measured_with = 0.0;        // grain radius for which the soil's strength is known, m
   // On the soil; first guesses until a bed was described.
   double pressure = kPressure;  // under the wheel that presses most, Pa
   double sinkage = 0.0;         // of the wheel with the largest sinkage, m
@@ -200,7 +202,9 @@ Json terrain_section(const StarterOptions& o, const nlohmann::json& soil, const 
   }
   // The contact of a vehicle's wheel has the same size, but the bed is many times as long and wide.
   const double coarse = o.vehicle.empty() ? 1.0 : 2.0;
-  terrain["radius"] = rounded(std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross));
+  const double wanted = std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross);
+  // Somewhat coarser grains are better than a strength that nobody has measured.
+  terrain["radius"] = s.measured_with > 0.0 && wanted > kCoarser * s.measured_with ? s.measured_with : rounded(wanted);
   // Scales with the pressure of the small rig: stiffer grains need shorter steps, softer ones overlap more.
   if (!soil.contains("young_modulus"))
     terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));
@@ -310,7 +314,12 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   document["terrain"]["engine"] = "rigid";
   const Scenario first = checked(file, document);
   nlohmann::json soil;
-  if (!o.soil.empty()) soil = read_soil_material(find_file(o.soil, "terrain.material", file));
+  std::optional<double> measured_with;
+  if (!o.soil.empty()) {
+    const std::filesystem::path soil_file = find_file(o.soil, "terrain.material", file);
+    soil = read_soil_material(soil_file);
+    measured_with = measured_grain_radius(soil_file);
+  }
   const Ground ground = ground_of(o, soil, first);
   scales = scales_of(first);
   document["description"] = std::string(o.vehicle.empty() ? "A wheel on " : "A vehicle on ") +
@@ -319,6 +328,7 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   scales = scales_of(checked(file, document));  // the mesh decides the width of the tread
   scales.ground = ground;
+  scales.measured_with = measured_with.value_or(0.0);
   const double travel = o.vehicle.empty()
                             ? (1.0 - slip_of(scales)) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;

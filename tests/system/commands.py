@@ -164,7 +164,10 @@ class Commands(SystemTest):
                 self.assertEqual(report["warnings"], [])
                 self.assertIn(f'"engine": "{engine}"', (self.folder / f"{name}.json").read_text())
         self.output("new", "fitted", "--soil", "grains_lete_sand.json")
-        self.assertNotIn('"young_modulus"', (self.folder / "fitted.json").read_text(), "the soil gives it")
+        fitted = (self.folder / "fitted.json").read_text()
+        self.assertNotIn('"young_modulus"', fitted, "the soil gives it")
+        self.assertIn('"radius": 0.01,', fitted, "with which its strength was measured")
+        self.assertEqual(json.loads(self.output("validate", "fitted.json", "--json"))["warnings"], [])
         self.furrow("new", "wrong", "--tire", "hmmwv_handling.json", "--soil", "loose_sand.json", code=2,
                     says="--soil': is given, expected none: the file of 'hmmwv_handling.json' holds for hard "
                     "ground; with --rigid")

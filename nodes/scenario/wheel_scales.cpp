@@ -117,7 +117,7 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
   g.pressure = load / (width * g.contact_length);
   g.grains_wide = width / diameter;
   g.grains_long = g.contact_length / diameter;
-  g.depth_ratio = height / g.sinkage;
+  g.depth_ratio = height / (g.sinkage + tire.grouser_height);
   if (!o.periodic_y()) g.beside = 0.5 * o.width - std::abs(wheel.lateral) - wheel.across;
   const bool forward = wheel.to >= wheel.from;
   g.ahead = (forward ? o.length - wheel.to : wheel.to) - wheel.along;

@@ -236,6 +236,20 @@ TEST(Scales, sinkage_by_cone_index_is_that_of_brixius_and_near_that_of_the_runs)
   EXPECT_EQ(sinkage("0.3", "340e3", "80e3"), sinkage("0.3", "170e3", "80e3"));  // of cohesive soil it is not used
 }
 
+TEST(Scales, bed_is_compared_with_the_depth_that_grousers_reach) {
+  const auto of = [](const char* grousers, const char* height) {
+    return *scenario::wheel_scales(
+                scenario::load_scenario(
+                    data_folder() / "rigs" / "small_wheel.json",
+                    {{"tire.grousers", grousers}, {"tire.grouser_height", height}, {"tire.grouser_thickness", height}}))
+                .front()
+                .grains;
+  };
+  const auto smooth = of("0", "null"), lugged = of("12", "0.01");
+  EXPECT_EQ(lugged.sinkage, smooth.sinkage);
+  EXPECT_NEAR(lugged.depth_ratio * (smooth.sinkage + 0.01), smooth.depth_ratio * smooth.sinkage, 1e-12);
+}
+
 TEST(Scales, a_report_for_programs_holds_them_for_each_wheel) {
   const auto report =
       scenario::validation_report(scenario::load_scenario(data_folder() / "rigs" / "four_wheels.json", {}));

@@ -158,7 +158,8 @@ void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
                   g.grains_long, g.grains_wide, kGrains));
   to.add(g.depth_ratio < kDeepEnough, "terrain.layers",
          fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or more: the "
-                     "floor carries too; at 5 to 6 times a bed twice as deep gave 43 % more sinkage and 8 % less pull",
+                     "floor carries too; a bed twice as deep gave 43 % more sinkage and 8 % less pull on cohesive "
+                     "grains, one 1.5 times as deep 16 % more sinkage and 11 % more pull on LETE sand",
                      g.depth_ratio, digits(1e3 * g.sinkage), kDeepEnough));
   to.add(g.beside && *g.beside < kBesideTread * width, "terrain.width",
          fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or terrain.sides "

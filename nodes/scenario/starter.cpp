@@ -37,8 +37,8 @@ constexpr double kCohesion = 80e3, kModulus = 2.49e7, kPressure = 155e3;  // Pa
 // In tire radii.
 constexpr double kGrain = 1.0 / 45.0, kAhead = 2.2, kBehind = 1.2, kBeside = 0.4;
 constexpr double kAcross = 11.0,
-                 kAlong = 14.0;   // grain radii in a tread's width, at least, and in a contact's length
-constexpr double kCoarser = 0.7;  // of the radius with which a soil was measured: from there on that is taken
+                 kAlong = 14.0;                 // grain radii in a tread's width, at least, and in a contact's length
+constexpr double kCoarser = 0.7, kFiner = 2.0;  // of the radius with which a soil was measured: between, that is taken
 constexpr int kLayers = 14, kMostLayers = 120;
 constexpr double kDepth = 8.5;                  // sinkages
 constexpr double kTreadSpeed = 0.93;            // √(g R)
@@ -128,7 +128,7 @@ void add_soil(Scales& scales, const Scenario& s) {
     if (!all[k].grains) continue;
     scales.pressure = std::max(scales.pressure, all[k].grains->pressure);
     scales.contact = std::min(scales.contact, all[k].grains->contact_length);
-    scales.sinkage = std::max(scales.sinkage, all[k].grains->sinkage);
+    scales.sinkage = std::max(scales.sinkage, all[k].grains->reach);
     scales.near_wall = std::max(scales.near_wall,
                                 all[k].grains->near_end * std::abs(wheels[k].speed) * (s.run.end - s.run.average_from));
   }
@@ -203,8 +203,9 @@ Json terrain_section(const StarterOptions& o, const nlohmann::json& soil, const 
   // The contact of a vehicle's wheel has the same size, but the bed is many times as long and wide.
   const double coarse = o.vehicle.empty() ? 1.0 : 2.0;
   const double wanted = std::min(std::max(coarse * kGrain * s.radius, s.contact / kAlong), s.tread / kAcross);
-  // Somewhat coarser grains are better than a strength that nobody has measured.
-  terrain["radius"] = s.measured_with > 0.0 && wanted > kCoarser * s.measured_with ? s.measured_with : rounded(wanted);
+  // Grains of another size are better than a strength that nobody has measured, up to what they cost.
+  terrain["radius"] =
+      wanted > kCoarser * s.measured_with && wanted < kFiner * s.measured_with ? s.measured_with : rounded(wanted);
   // Scales with the pressure of the small rig: stiffer grains need shorter steps, softer ones overlap more.
   if (!soil.contains("young_modulus"))
     terrain["young_modulus"] = rounded(kModulus * std::min(1.0, s.pressure / kPressure));

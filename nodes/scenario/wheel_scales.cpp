@@ -117,7 +117,8 @@ WheelScales::OnGrains on_grains(const Scenario& s, const DemOptions& o, const ti
   g.pressure = load / (width * g.contact_length);
   g.grains_wide = width / diameter;
   g.grains_long = g.contact_length / diameter;
-  g.depth_ratio = height / (g.sinkage + tire.grouser_height);
+  g.reach = g.sinkage + tire.grouser_height;
+  g.depth_ratio = height / g.reach;
   if (!o.periodic_y()) g.beside = 0.5 * o.width - std::abs(wheel.lateral) - wheel.across;
   const bool forward = wheel.to >= wheel.from;
   g.ahead = (forward ? o.length - wheel.to : wheel.to) - wheel.along;
@@ -156,11 +157,12 @@ void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
       fmt::format("the contact is about {:.1f} grains long and {:.1f} wide, expected {:g} or more: under a wheel of "
                   "58 mm radius on dry sand grains of 2.5 instead of 3.5 mm radius changed the pull by 8 % of the load",
                   g.grains_long, g.grains_wide, kGrains));
-  to.add(g.depth_ratio < kDeepEnough, "terrain.layers",
-         fmt::format("the bed is about {:.1f} times as deep as the wheel will sink ({} mm), expected {:g} or more: the "
-                     "floor carries too; a bed twice as deep gave 43 % more sinkage and 8 % less pull on cohesive "
-                     "grains, one 1.5 times as deep 16 % more sinkage and 11 % more pull on LETE sand",
-                     g.depth_ratio, digits(1e3 * g.sinkage), kDeepEnough));
+  to.add(
+      g.depth_ratio < kDeepEnough, "terrain.layers",
+      fmt::format("the bed is about {:.1f} times as deep as the wheel will reach ({} mm), expected {:g} or more: the "
+                  "floor carries too; a bed twice as deep gave 43 % more sinkage and 8 % less pull on cohesive "
+                  "grains, one 1.5 times as deep 11 % more pull on LETE sand",
+                  g.depth_ratio, digits(1e3 * g.reach), kDeepEnough));
   to.add(g.beside && *g.beside < kBesideTread * width, "terrain.width",
          fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or terrain.sides "
                      "periodic: with 0.6 tread widths left, a bin half as wide again changed the pull by -4.6 ± 5.2 %",

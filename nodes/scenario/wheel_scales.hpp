@@ -46,7 +46,8 @@ struct WheelScales {
     double pressure = 0.0;         // W/(b ℓ), Pa
     double grains_wide = 0.0;      // tread width in grain diameters
     double grains_long = 0.0;      // contact length in grain diameters
-    double depth_ratio = 0.0;      // bed height over sinkage, that of grousers' tips
+    double reach = 0.0;            // sinkage, with grousers that of their tips, m
+    double depth_ratio = 0.0;      // bed height over reach
     std::optional<double> beside;  // from the wheel to the nearest side wall, m; none: periodic
     double ahead = 0.0;            // from the wheel to the end wall at the end of its travel, m
     double near_end = 0.0;         // share of the averaging window in which the end wall is within reach

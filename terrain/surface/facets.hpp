@@ -21,6 +21,9 @@
 // nearest feature [Bærentzen & Aanæs 2005, doi:10.1109/TVCG.2005.49], has δ = r + depth, down to a depth of r.
 #pragma once
 
+#include <cstdint>
+
+#include "protocol/core/triple.hpp"
 #include "terrain/surface/push_out.hpp"
 #include "terrain/surface/triangle_point.hpp"
 

@@ -17,6 +17,7 @@ namespace {
 constexpr double kSkinShare = 0.5;  // skin / reach
 
 void take(SurfaceHit& to, const FacetHit& from) {
+  FURROW_ASSERT(from.share > 0.0 && from.overlap > 0.0, from.share, from.overlap);
   to.point = vec(from.point);
   to.normal = vec(from.normal);
   to.overlap = from.overlap;

@@ -12,7 +12,6 @@
 #include "protocol/core/assert.hpp"
 #include "protocol/core/fields.hpp"
 #include "protocol/core/surface.hpp"
-#include "terrain/surface/facets.hpp"
 #include "terrain/surface/patch_turn.hpp"
 
 namespace furrow::terrain {
@@ -64,8 +63,8 @@ class PatchTurn {
 
  private:
   PatchVertices vertices_;
-  Vector centre_;      // m
-  Symmetric inverse_;  // 1/m²
+  PatchVertices::Vector centre_;  // m
+  Symmetric inverse_;             // 1/m²
 };
 
 }  // namespace furrow::terrain

@@ -79,8 +79,9 @@ PARTS = [("pairs", r"PairFurrow::evaluate"),
                    r"RankContacts::lists_made"),
          ("motion", r"FixFurrow::(move|final_integrate)|GrainMotion|force_clear|memset|Verlet::"),
          ("walls", r"WallContacts|RankContacts::add_forces|Carried"),
-         ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|solve_push_out|share_depth|"
-                          r"NodalForceSum|SurfaceTopology|on_edge|spin_about|RankContacts::(begin_|look|any_near)"),
+         ("tire_contact", r"SurfaceCollider|SurfaceGrid|touch_tire|closest_point|Facets::|push_out|ActiveWalls|"
+                          r"angle_of|pseudo_inverse|share_depth|NodalForceSum|SurfaceTopology|on_edge|spin_about|"
+                          r"RankContacts::(begin_|look|any_near)"),
          ("accounts", r"sample_of|SampleLanes|LiggghtsTerrain::state|state_report|terrain_state|EnergyAccounts|"
                       r"RankContacts::end_step|held"),
          ("border_grains", r"Comm::forward_comm|pack_comm|unpack_comm"),

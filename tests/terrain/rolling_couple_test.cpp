@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
 
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/constants.hpp"
@@ -57,6 +60,45 @@ TEST(SurfacePatches, couple_is_handed_over_without_a_resultant_and_with_its_powe
       for (int a = 0; a < 3; ++a) v[a] = Vec3(3.0, -2.0, 1.0) + turn.cross(x[a]);
       ASSERT_LT((patch.spin(v) - turn).norm(), 1e-10 * turn.norm() / (thin * thin)) << thin;
     }
+  }
+}
+
+/// J⁻¹ by Eigen's decomposition, for patches of 3 to 11 vertices from nearly flat to thick, far from the origin.
+TEST(SurfacePatches, turn_as_an_independent_solution_says) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int count = 3 + trial % 9;
+    const double flat = trial % 3 == 0 ? 1e-9 : trial % 3 == 1 ? 1e-2 : 1.0;
+    std::vector<Vec3> x, v;
+    std::vector<int> all;
+    Vec3 centre = Vec3::Zero();
+    for (int k = 0; k < count; ++k) {
+      x.emplace_back(0.02 * any(random) + 9.0, 0.02 * any(random), 0.02 * flat * any(random));
+      v.emplace_back(any(random), any(random), any(random));
+      all.push_back(k);
+      centre += x.back() / count;
+    }
+    Mat3 j = Mat3::Zero();
+    Vec3 circulation = Vec3::Zero();
+    for (int k = 0; k < count; ++k) {
+      const Vec3 arm = x[k] - centre;
+      j += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
+      circulation += arm.cross(v[k]);
+    }
+    const PatchTurn patch(all, x);
+    const Eigen::SelfAdjointEigenSolver<Mat3> axes(j);
+    ASSERT_EQ(axes.info(), Eigen::Success);
+    const auto solved = [&](const Vec3& b) {
+      const Vec3 along = axes.eigenvectors().transpose() * b;
+      return Vec3(axes.eigenvectors() * along.cwiseQuotient(axes.eigenvalues()));
+    };
+    const Vec3 spin = solved(circulation), couple(any(random), any(random), any(random)), turn = solved(couple);
+    EXPECT_LT((patch.spin(v) - spin).norm(), 1e-8 * spin.norm()) << trial;
+    EXPECT_LT((patch.couple(couple).turn - turn).norm(), 1e-8 * turn.norm()) << trial;
+    const Given given(all, couple, x, v);
+    EXPECT_LT(given.force.norm(), 1e-9 * turn.norm() * 0.02 * count) << trial;
+    EXPECT_LT((given.moment - couple).norm(), 1e-7) << trial;
   }
 }
 

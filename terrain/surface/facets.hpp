@@ -63,6 +63,10 @@ struct FacetPlane {
 
   FURROW_HD bool is_nothing() const { return normal.x == 0.0 && normal.y == 0.0 && normal.z == 0.0; }
   FURROW_HD double height(const Vector& x) const { return dot(normal, x) - offset; }
+  FURROW_HD double distance(const Vector& x) const {
+    const double h = height(x);
+    return h < 0.0 ? -h : h;
+  }
 };
 
 /// A surface at its present position. Entries of three numbers follow each other.
@@ -91,8 +95,7 @@ class Facets {
     return {normal, dot(normal, at(corners(t)[0]))};
   }
   FURROW_HD bool off_plane(std::int32_t t, const Vector& centre, double radius) const {
-    const double height = plane[t].height(centre);
-    return (height < 0.0 ? -height : height) >= radius;
+    return plane[t].distance(centre) >= radius;
   }
 
   /// Touched points of a sphere, the deepest first; returns their number, at most `room`.
@@ -158,8 +161,7 @@ class Facets {
     const std::int32_t* const v = corners(t);
     Candidate one{closest_point(centre, at(v[0]), at(v[1]), at(v[2])), plane[t].normal, 0.0, t};
     if (one.at.region == TriangleRegion::face) {
-      const double height = plane[t].height(centre);
-      one.distance = height < 0.0 ? -height : height;
+      one.distance = plane[t].distance(centre);
     } else {
       const Vector offset = centre - one.at.point;
       const double squared = dot(offset, offset);

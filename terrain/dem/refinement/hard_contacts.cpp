@@ -8,12 +8,13 @@
 
 #include "protocol/core/assert.hpp"
 #include "terrain/dem/close_pairs.hpp"
+#include "terrain/surface/surface_vectors.hpp"
 
 namespace furrow::terrain::dem {
 namespace {
 
+using terrain::vec;
 Vec3 vec(const Quad& q) { return {q.x, q.y, q.z}; }
-Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
 
 /// Collects the hardest contacts, in the order in which contacts are visited.
 class Search {

@@ -13,8 +13,6 @@
 
 namespace furrow::terrain::gpu {
 
-FURROW_HD inline Vector opposite(const Vector& v) { return {-v.x, -v.y, -v.z}; }
-
 struct FacetSpring {
   double normal[3], t[3], root, r[3];  // -, N, √m, N m
 };
@@ -179,7 +177,7 @@ struct FacetKernel {
       add(g.load[i].f, loads.push + loads.drag);
       add(g.load[i].t, loads.torque);
 
-      const Vector total = opposite(loads.push + loads.drag);
+      const Vector total = -1.0 * (loads.push + loads.drag);
       Vector nodal_moment{0, 0, 0}, moment{0, 0, 0};
       const i32* const t = s.facets.corners(hit.triangle);
       for (int k = 0; k < 3; ++k) push(t[k], hit.weight[k] * total, nodal_moment, hit.point);
@@ -192,8 +190,8 @@ struct FacetKernel {
           push(v, cross(turn, s.position[v] - patch.centre), nodal_moment, hit.point);
         }
       }
-      count(e, 0, opposite(loads.push));
-      count(e, 3, opposite(loads.drag));
+      count(e, 0, -1.0 * loads.push);
+      count(e, 3, -1.0 * loads.drag);
       count(e, 6, nodal_moment - moment);
       i64* const scale = s.sums + static_cast<i64>(e) * kFacetSums + 9;
       scale[0] += nearest(kPerImpulse * (p.kick * length(total)));

@@ -43,10 +43,7 @@ json values_for(const std::string& engine, const json& soil, const std::string& 
   return own;
 }
 
-struct SoilFile {
-  json values;    // by their key in `terrain`
-  json measured;  // null: nothing
-};
+}  // namespace
 
 SoilFile read_soil_file(const std::filesystem::path& file) {
   const std::string name = file.string();
@@ -70,6 +67,15 @@ SoilFile read_soil_file(const std::filesystem::path& file) {
   return {alone["terrain"], soil.value("measured", json())};
 }
 
+std::optional<double> measured_radius(const SoilFile& soil) {
+  const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
+  const bool has_length = soil.values.value("cohesion", 0.0) != 0.0;
+  if (!has_length || !with.is_number() || !(with.get<double>() > 0.0)) return {};
+  return with.get<double>();
+}
+
+namespace {
+
 /// The soil file that a completed scenario names; none if it names none.
 std::optional<SoilFile> soil_of(const json& terrain, const std::filesystem::path& scenario) {
   const json name = terrain.value(kSoilKey, json());
@@ -82,14 +88,6 @@ bool taken_whole(const SoilFile& soil, const json& terrain) {
   for (const auto& [key, value] : soil.values.items())
     if (terrain.contains(key) && terrain[key] != value) return false;
   return true;
-}
-
-/// Radius of the grains with which the soil's strength was measured, if it depends on their size, m; otherwise none.
-std::optional<double> measured_radius(const SoilFile& soil) {
-  const json with = soil.measured.is_object() ? soil.measured.value("grain_radius_m", json()) : json();
-  const bool has_length = soil.values.value("cohesion", 0.0) != 0.0;
-  if (!has_length || !with.is_number() || !(with.get<double>() > 0.0)) return {};
-  return with.get<double>();
 }
 
 /// measured_radius() if the scenario has grains of another size.
@@ -121,10 +119,6 @@ bool is_set(const Settings& settings, const std::string& key) {
 }  // namespace
 
 json read_soil_material(const std::filesystem::path& file) { return read_soil_file(file).values; }
-
-std::optional<double> measured_grain_radius(const std::filesystem::path& file) {
-  return measured_radius(read_soil_file(file));
-}
 
 void apply_soil_material(json& document, const std::filesystem::path& scenario, const std::string& engine) {
   const json soil = named_material(document, scenario, engine);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "nodes/scenario/scenario.hpp"
 
@@ -14,13 +14,17 @@ namespace furrow::scenario {
 
 inline constexpr const char* kSoilKey = "material";
 
-/// The values of a soil file by their key in `terrain`.
+struct SoilFile {
+  nlohmann::json values;    // by their key in `terrain`
+  nlohmann::json measured;  // null: nothing
+};
 /// @throws Error(io) if it cannot be read, Error(bad_input) naming file and key.
+SoilFile read_soil_file(const std::filesystem::path& file);
+/// The values of a soil file alone. Throws like read_soil_file().
 nlohmann::json read_soil_material(const std::filesystem::path& file);
 
-/// Radius of the grains with which the strength of a cohesive soil was measured, m; none where it does not matter or is
-/// not stated. Throws like read_soil_material().
-std::optional<double> measured_grain_radius(const std::filesystem::path& file);
+/// Radius of the grains with which the soil's strength was measured, if it depends on their size, m; otherwise none.
+std::optional<double> measured_radius(const SoilFile& soil);
 
 /// Puts the values of the soil named by `terrain.material` into a scenario; the scenario's own values take precedence.
 /// `scenario`: its file, for messages and as the first place to search. `engine`: its keys are used.

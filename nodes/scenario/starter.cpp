@@ -314,14 +314,9 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   document["terrain"]["engine"] = "rigid";
   const Scenario first = checked(file, document);
-  nlohmann::json soil;
-  std::optional<double> measured_with;
-  if (!o.soil.empty()) {
-    const std::filesystem::path soil_file = find_file(o.soil, "terrain.material", file);
-    soil = read_soil_material(soil_file);
-    measured_with = measured_grain_radius(soil_file);
-  }
-  const Ground ground = ground_of(o, soil, first);
+  SoilFile soil;
+  if (!o.soil.empty()) soil = read_soil_file(find_file(o.soil, "terrain.material", file));
+  const Ground ground = ground_of(o, soil.values, first);
   scales = scales_of(first);
   document["description"] = std::string(o.vehicle.empty() ? "A wheel on " : "A vehicle on ") +
                             (ground == Ground::hard ? "hard ground." : "soil.");
@@ -329,13 +324,13 @@ void write(const std::filesystem::path& file, const StarterOptions& o) {
   if (const Json tire = tire_section(o, scales); !tire.empty()) document["tire"] = tire;
   scales = scales_of(checked(file, document));  // the mesh decides the width of the tread
   scales.ground = ground;
-  scales.measured_with = measured_with.value_or(0.0);
+  scales.measured_with = measured_radius(soil).value_or(0.0);
   const double travel = o.vehicle.empty()
                             ? (1.0 - slip_of(scales)) * tread_speed(scales) * (kEnd - kMoveFrom) * time_scale(scales)
                             : 8.0 * scales.radius;
   for (int pass = 0; pass < 2; ++pass) {  // the sinkage on the first bed decides the depth of the second
     document["rig"] = rig_section(o, scales);
-    document["terrain"] = terrain_section(o, soil, scales, travel);
+    document["terrain"] = terrain_section(o, soil.values, scales, travel);
     document["run"] = run_section(o, scales);
     if (pass == 0) add_soil(scales, checked(file, document));
   }

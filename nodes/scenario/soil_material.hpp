@@ -15,8 +15,8 @@ namespace furrow::scenario {
 inline constexpr const char* kSoilKey = "material";
 
 struct SoilFile {
-  nlohmann::json values;    // by their key in `terrain`
-  nlohmann::json measured;  // null: nothing
+  nlohmann::json values = nlohmann::json::object();  // by their key in `terrain`
+  nlohmann::json measured;                           // null: nothing
 };
 /// @throws Error(io) if it cannot be read, Error(bad_input) naming file and key.
 SoilFile read_soil_file(const std::filesystem::path& file);

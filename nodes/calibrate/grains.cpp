@@ -190,8 +190,10 @@ class GrainModel final : public CalibrationModel {
       for (OrderedJsonReader& reader : input.targets[set]) {
         if (reader.has("disc") || reader.has("strip"))
           read_curve(reader, input.study, set);
-        else
+        else if (reader.has("quantity"))
           read(reader, input.study, set);
+        else
+          reader.fail("quantity", "is missing, expected it, or for a plate's curve 'disc' or 'strip' with its size, m");
       }
     leave_out_small_K(input);
   }

@@ -221,6 +221,7 @@ TEST_F(CalibrateGrainsOnCurves, wrong_curves_are_refused_with_file_and_key) {
                      {"/targets/0/depth", 0.05, "plate.csv: key 'sinkage_m': ends at 0.05 m, expected less than half"},
                      {"/targets/0/strip", 0.1, "key 'targets[0].disc': expected either 'disc', a diameter, or 'strip'"},
                      {"/targets/0/disc", -1, "key 'targets[0].disc'"},
+                     {"/targets/0/disc", nullptr, "key 'targets[0].quantity': is missing, expected it, or for a"},
                      {"/targets/0/points", 1, "key 'targets[0].points': is 1, expected a whole number from 2 to 20"},
                      {"/targets/0/data", "other.csv",
                       "other.csv: has 0 points of this plate on a bed of this depth with a sinkage of 0 or more"},

@@ -70,13 +70,15 @@ endif()
 # Flags of code whose speed does not count: it compiles in half of the time. Physics and its loops stay at -O3.
 set(FURROW_QUICK $<$<CONFIG:Release,RelWithDebInfo>:-Og>)
 
-# furrow_reuse_headers(<name> <target> [HEADERS <file>…] [FLAGS <flag>…] [LIBS <target>…]): lets a target use the
-# precompiled headers <name>, which are made with these flags and libraries where they are first asked for.
-function(furrow_reuse_headers name target)
+# furrow_compile(<target> <name> [HEADERS <file>…] [FLAGS <flag>…] [LIBS <target>…]): compiles a target with these flags
+# and with the precompiled headers <name>, which are made with the same flags and libraries where they are first asked
+# for: under other flags the compiler would pass them over.
+function(furrow_compile target name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;FLAGS;LIBS" ${ARGN})
+  target_compile_options(${target} PRIVATE ${ARG_FLAGS})
   if(NOT FURROW_PCH)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "HEADERS;FLAGS;LIBS" ${ARGN})
   if(NOT TARGET ${name})
     add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
     target_link_libraries(${name} PRIVATE furrow_options ${ARG_LIBS})
@@ -101,22 +103,24 @@ function(furrow_targets variable types)
   set(${variable} ${found} PARENT_SCOPE)
 endfunction()
 
-# furrow_precompile(<folder>...): lets the libraries and programs made in these folders use the precompiled headers.
+# furrow_precompile(<folder>...): lets the libraries and programs made in these folders use the precompiled headers,
+# but for those that use others already.
 function(furrow_precompile)
   furrow_targets(targets "STATIC_LIBRARY|OBJECT_LIBRARY|EXECUTABLE" ${ARGN})
-  list(REMOVE_ITEM targets furrow_cpu_check ${FURROW_QUICK_TARGETS})
+  list(REMOVE_ITEM targets furrow_cpu_check)
   foreach(target ${targets})
-    furrow_reuse_headers(furrow_pch ${target})
+    get_target_property(others ${target} PRECOMPILE_HEADERS_REUSE_FROM)
+    if(NOT others)
+      furrow_compile(${target} furrow_pch)
+    endif()
   endforeach()
 endfunction()
 
 # furrow_quick(<target>...): compiles these libraries and programs with FURROW_QUICK.
 function(furrow_quick)
   foreach(target ${ARGN})
-    target_compile_options(${target} PRIVATE ${FURROW_QUICK})
-    furrow_reuse_headers(furrow_quick_pch ${target} FLAGS ${FURROW_QUICK})
+    furrow_compile(${target} furrow_quick_pch FLAGS ${FURROW_QUICK})
   endforeach()
-  set(FURROW_QUICK_TARGETS ${FURROW_QUICK_TARGETS} ${ARGN} PARENT_SCOPE)
 endfunction()
 
 # furrow_batch(<folder>...): compiles the sources of the libraries of these folders sixteen at a time, in a third of the
@@ -156,8 +160,7 @@ function(furrow_test name)
   add_executable(${name} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   target_link_libraries(${name} PRIVATE furrow_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
-  target_compile_options(${name} PRIVATE ${FURROW_QUICK})
-  furrow_reuse_headers(furrow_test_pch ${name} HEADERS <gtest/gtest.h> FLAGS ${FURROW_QUICK} LIBS GTest::gtest)
+  furrow_compile(${name} furrow_test_pch HEADERS <gtest/gtest.h> FLAGS ${FURROW_QUICK} LIBS GTest::gtest)
   add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)  # finds what hangs, however busy the machine is

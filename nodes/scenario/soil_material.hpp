@@ -14,10 +14,12 @@ namespace furrow::scenario {
 
 inline constexpr const char* kSoilKey = "material";
 
+/// What a soil file gives.
 struct SoilFile {
   nlohmann::json values = nlohmann::json::object();  // by their key in `terrain`
   nlohmann::json measured;                           // null: nothing
 };
+
 /// @throws Error(io) if it cannot be read, Error(bad_input) naming file and key.
 SoilFile read_soil_file(const std::filesystem::path& file);
 /// The values of a soil file alone. Throws like read_soil_file().

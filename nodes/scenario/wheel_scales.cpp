@@ -161,7 +161,7 @@ void add_bin(const WheelScales::OnGrains& g, double width, Bounds& to) {
       g.depth_ratio < kDeepEnough, "terrain.layers",
       fmt::format("the bed is about {:.1f} times as deep as the wheel will reach ({} mm), expected {:g} or more: the "
                   "floor carries too; a bed twice as deep gave 43 % more sinkage and 8 % less pull on cohesive "
-                  "grains, one 1.5 times as deep 11 % more pull on LETE sand",
+                  "grains, one 1.5 times as deep 15 % more sinkage and 10 % more pull on LETE sand",
                   g.depth_ratio, digits(1e3 * g.reach), kDeepEnough));
   to.add(g.beside && *g.beside < kBesideTread * width, "terrain.width",
          fmt::format("{} m are left between wheel and side wall, expected half a tread width, {} m, or terrain.sides "

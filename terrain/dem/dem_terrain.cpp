@@ -28,7 +28,8 @@ namespace {
 
 using namespace dem;
 
-constexpr double kMostGrains = 2e9;            // grains are counted in 32 bits
+constexpr double kMostGrains = 2e9;  // grains are counted in 32 bits
+constexpr double kGrainsOfThread = 2500.0;
 constexpr double kLooseFraction = 0.50;        // estimated solid fraction of a bed that settled with cohesion
 constexpr double kBytesPerGrain = 900.0;       // state, list with history, and the copies of a rebuild
 constexpr double kBytesPerFrameGrain = 20.0;   // position, speed, radius in single precision
@@ -251,6 +252,11 @@ void check_dem_run(const DemOptions& options) {
 std::unique_ptr<Terrain> make_dem_terrain(const DemOptions& options, std::function<void()> each_substep) {
   check_dem_run(options);
   return std::make_unique<DemTerrain>(options, std::move(each_substep));
+}
+
+int useful_threads(int threads, double grains) {
+  FURROW_ASSERT(threads > 0, threads);
+  return static_cast<int>(std::fmax(1.0, std::fmin(grains / kGrainsOfThread, threads)));
 }
 
 TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options) {

@@ -190,10 +190,12 @@ class Planner {
   void add(int s, const Bed& bed, std::type_identity_t<std::span<const Test>> tests, double test_steps,
            Result (*run)(const Specimen&, const Test&, const WorkCall&), std::vector<Tested<Result>>& to) {
     to.resize(o_.seeds * tests.size());
+    const double grains = grains_in(bed.box, bed.material);
+    most_grains = std::max(most_grains, grains);
     const auto go = [=, this, &to](const Job& job, const WorkCall& call) {
       const std::uint64_t seed = o_.material.seed + static_cast<std::uint64_t>(s);
       dem::DemOptions material = bed.material;
-      material.threads = grains_.threads;
+      material.threads = useful_threads(grains_.threads, grains);
       const WorkCall settling = job.settle_call(call);
       const Specimen specimen(material, bed.exact ? to_depth(material, bed.box, seed, settling) : bed.box, seed,
                               settling);
@@ -203,8 +205,6 @@ class Planner {
         to[s * tests.size() + k] = {facts(specimen), run(specimen, tests[k], mine)};
       }
     };
-    const double grains = grains_in(bed.box, bed.material);
-    most_grains = std::max(most_grains, grains);
     jobs.push_back({kSettleSteps * grains, test_steps * grains, go});
   }
 

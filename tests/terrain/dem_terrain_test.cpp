@@ -330,5 +330,12 @@ TEST_F(DemTerrain, bad_values_are_refused_by_key) {
   }
 }
 
+TEST(UsefulThreads, small_beds_have_one_and_nobody_gets_more_than_asked_for) {
+  EXPECT_EQ(useful_threads(8, 0.0), 1);
+  EXPECT_EQ(useful_threads(8, 2623.0), 1);
+  EXPECT_EQ(useful_threads(8, 5249.0), 2);
+  EXPECT_EQ(useful_threads(8, 1e6), 8);
+}
+
 }  // namespace
 }  // namespace furrow::terrain

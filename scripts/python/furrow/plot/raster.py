@@ -44,7 +44,7 @@ class Buffers:
     def __init__(self, camera, depth_only=False):
         self.camera = camera
         pixels = camera.width * camera.height
-        self.depth = np.full(pixels, np.inf)
+        self.depth = np.full(pixels, np.inf, np.float32)
         self.depth_only = depth_only
         if not depth_only:
             self.normal = np.zeros((pixels, 3), np.float32)
@@ -53,6 +53,7 @@ class Buffers:
 
     def put(self, pixel, depth, normal=None, colour=None, gloss=0.0):
         """Fragments with columns in common; the nearest of each pixel stays."""
+        depth = depth.astype(np.float32)
         nearer = depth < self.depth[pixel]
         order = np.flatnonzero(nearer)
         # of equal pixels the last assignment, the nearest, stays
@@ -169,21 +170,22 @@ def box_blur(image, half):
     """Mean over a square of 2 half + 1 pixels, edges repeated."""
     for axis in (0, 1):
         padded = np.pad(image, [(half + 1, half) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
-        total, n = np.cumsum(padded, axis).swapaxes(0, axis), image.shape[axis]
+        total, n = np.cumsum(padded, axis, float).swapaxes(0, axis), image.shape[axis]
         image = ((total[2 * half + 1:] - total[:n]) / (2 * half + 1)).swapaxes(0, axis)
     return image
 
 
 def occlusion(buffers, sizes, depth_scale):
-    """How much of the sky is hidden by what is in front nearby, 0…1, from the depth buffer alone."""
+    """How much of the sky is hidden by what is in front nearby, 0…1, from the depth buffer alone. Computed at half the
+    resolution, for `sizes` in pixels of that."""
     camera = buffers.camera
-    depth = buffers.depth.reshape(camera.height, camera.width)
+    depth = buffers.depth.reshape(camera.height, camera.width)[::2, ::2]
     far = np.isfinite(depth)
     filled = np.where(far, depth, depth[far].max() if far.any() else 1.0)
     hidden = np.zeros_like(filled)
     for half in sizes:
         hidden += np.clip((filled - box_blur(filled, half)) / depth_scale, 0.0, 1.0) / len(sizes)
-    return hidden.ravel()
+    return hidden.repeat(2, 0).repeat(2, 1).ravel()
 
 
 def shadow(buffers, light_buffers, bias):
@@ -192,31 +194,30 @@ def shadow(buffers, light_buffers, bias):
     pixel = np.flatnonzero(np.isfinite(buffers.depth))
     point = camera.world(pixel % camera.width + 0.5, pixel // camera.width + 0.5, buffers.depth[pixel])
     column, row, depth, _ = light.project(point)
-    lit = np.zeros(len(pixel))
+    lit = np.zeros(len(pixel), np.float32)
     for dy in (-1, 0, 1):
         for dx in (-1, 0, 1):
             x = np.clip(column.astype(int) + dx, 0, light.width - 1)
             y = np.clip(row.astype(int) + dy, 0, light.height - 1)
             lit += (depth <= light_buffers.depth[y * light.width + x] + bias) / 9.0
-    result = np.ones(len(buffers.depth))
+    result = np.ones(len(buffers.depth), np.float32)
     result[pixel] = lit
     return result
 
 
 def shade(buffers, light_direction, light_share, hidden, background):
-    """The picture, (height, width, 3) sRGB 0…1. `light_direction` points to the light."""
+    """The picture, (height, width, 3) linear RGB 0…1. `light_direction` points to the light."""
     camera = buffers.camera
-    seen = np.isfinite(buffers.depth)
+    seen = np.flatnonzero(np.isfinite(buffers.depth))
     normal = buffers.normal[seen]
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-    light_share = np.broadcast_to(light_share, seen.shape)[seen]
-    lambert = np.clip(normal @ light_direction, 0.0, 1.0) * light_share
+    normal /= np.maximum(np.sqrt(np.einsum("ij,ij->i", normal, normal)), np.float32(1e-9))[:, None]
+    light_share = np.broadcast_to(np.float32(light_share), len(buffers.depth))[seen]
+    lambert = np.clip(normal @ light_direction.astype(np.float32), 0.0, 1.0) * light_share
     sky = 0.5 + 0.5 * normal[:, 2]
     ambient = (0.20 + 0.30 * sky) * (1.0 - 0.85 * hidden[seen])
     half = light_direction - camera.forward
-    half /= np.linalg.norm(half)
+    half = (half / np.linalg.norm(half)).astype(np.float32)
     specular = buffers.gloss[seen] * np.clip(normal @ half, 0.0, 1.0) ** 30 * light_share
-    linear = buffers.colour[seen] * (ambient + 0.85 * lambert)[:, None] + specular[:, None]
-    image = background.reshape(-1, 3).copy()
-    image[seen] = np.clip(linear, 0.0, 1.0).astype(np.float32) ** np.float32(1.0 / 2.2)
+    image = background.reshape(-1, 3).astype(np.float32)
+    image[seen] = np.clip(buffers.colour[seen] * (ambient + 0.85 * lambert)[:, None] + specular[:, None], 0.0, 1.0)
     return image.reshape(camera.height, camera.width, 3)

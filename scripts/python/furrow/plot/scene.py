@@ -8,6 +8,7 @@ from .raster import Buffers, Camera, occlusion, shade, shadow
 from .run_data import Missing, read_grains, read_surface
 
 WIDTH, HEIGHT = 1500, 860  # pixels of the picture; rendered at twice that
+GAMMA = 2.2
 BEHIND, AHEAD = 1.45, 0.75  # m of the bed that are shown, from the axle of a tire as high as this one:
 TIRE_HEIGHT = 0.935  # m; scenes of other sizes are drawn at another scale
 LIGHT = np.array([0.35, -0.55, 0.76])  # towards the light, for travel along +x
@@ -132,16 +133,17 @@ def render(tire, soil, colours, centre, sign, ground):
 
 
 def picture(camera, draw_in, light, from_light, bias, depth):
-    """sRGB pixels at half the camera's resolution. `light` points to the light, which sees `from_light`, None: all;
-    `bias` of its shadows and `depth` of the occlusion, m."""
+    """sRGB pixels, of 8 bits, at half the camera's resolution. `light` points to the light, which sees `from_light`,
+    None: all; `bias` of its shadows and `depth` of the occlusion, m."""
     buffers = Buffers(camera)
     draw_in(buffers)
     lit = 1.0 if from_light is None else shadow(buffers, from_light, bias=bias)
     row = np.linspace(0.0, 1.0, camera.height)[:, None, None]
-    background = np.broadcast_to((1 - row) * [0.80, 0.86, 0.92] + row * [0.97, 0.97, 0.96],
+    background = np.broadcast_to(((1 - row) * [0.80, 0.86, 0.92] + row * [0.97, 0.97, 0.96]) ** GAMMA,
                                  (camera.height, camera.width, 3))
-    image = shade(buffers, light, lit, occlusion(buffers, (6, 16, 40), depth), background)
-    return image.reshape(camera.height // 2, 2, camera.width // 2, 2, 3).mean((1, 3))
+    image = shade(buffers, light, lit, occlusion(buffers, (3, 8, 20), depth), background)
+    image = image[::2, ::2] + image[1::2, ::2] + image[::2, 1::2] + image[1::2, 1::2]
+    return np.uint8(255.0 * (0.25 * image) ** np.float32(1.0 / GAMMA) + 0.5)
 
 
 def scale_of(height):
@@ -202,7 +204,7 @@ def scene(run):
     annotate(axis, run, time, camera, centre, sign, ground, scale)
     if soil is not None:
         bar = figure.add_axes([0.72, 0.075, 0.25, 0.018])
-        map_ = mpl.colors.LinearSegmentedColormap.from_list("soil", np.array(SOIL) ** (1 / 2.2))
+        map_ = mpl.colors.LinearSegmentedColormap.from_list("soil", np.array(SOIL) ** (1 / GAMMA))
         colourbar = figure.colorbar(mpl.cm.ScalarMappable(mpl.colors.Normalize(-1e3 * span / scale, 1e3 * span / scale),
                                                           map_), cax=bar, orientation="horizontal")
         colourbar.set_label("height of grains about the undisturbed surface, mm", fontsize=9)

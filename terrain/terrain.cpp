@@ -43,6 +43,8 @@ Outcome Terrain::advance(std::span<const SurfaceState> targets, double duration,
   return do_advance(targets, duration, substeps, forces, contact);
 }
 
+void Terrain::set_threads(int threads) { FURROW_ASSERT(threads > 0, threads); }
+
 void Terrain::restore(const Archive& archive) {
   do_restore(archive);
   prepared_ = true;

@@ -64,6 +64,10 @@ class Terrain {
   Outcome advance(std::span<const SurfaceState> targets, double duration, int substeps, std::span<NodalForces> forces,
                   std::span<ContactSums> contact);
 
+  /// Computes with this number of threads from now on, where the engine has threads. Results do not depend on it.
+  /// @pre threads > 0
+  virtual void set_threads(int threads);
+
   virtual TerrainState gather_state() const = 0;
   /// Each rank gets its share of the frame, or the leader gets all of it.
   virtual void gather_frame(TerrainFrame& out) const = 0;

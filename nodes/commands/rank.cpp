@@ -160,6 +160,7 @@ ExitCode run_this_node(Transport& transport, const scenario::Scenario& scenario,
     launch::apply(plan);
     if (!plan.note.empty()) reporter.note(plan.note);
     context.threads = plan.threads;
+    if (!scenario.terrain->describe().core_per_rank) context.other_threads = plan.other;
     context.profile = arguments.profile;
     context.stop_requested = [] { return launch::stop_signalled(); };
     context.note = [&](const std::string& text) { reporter.note(text); };

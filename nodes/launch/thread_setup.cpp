@@ -107,6 +107,8 @@ ThreadPlan plan_on_common_cores(const HostView& host, std::size_t node, int terr
   // A second run on this machine would choose the same cores: do not bind with a limit or with load from others.
   const bool free_of_others = host.cpu_limit == 0.0 && host.load + d.total() <= host.machine_cores + 0.5;
   plan.disjoint = cores >= kCoresToBind && d.total() <= cores && free_of_others;
+  if (!plan.disjoint && terrain_threads == 0 && self.node.role == Role::terrain && d.terrain_ranks == 1)
+    plan.other = scenario::other_terrain_threads(cores, d.rig_cores + d.tires, host.grains, plan.threads);
   if (!plan.disjoint) return plan;
 
   int before = 0;  // cores of earlier nodes
@@ -203,7 +205,7 @@ void apply(const ThreadPlan& plan) {
   omp_set_num_threads(plan.threads);
   const bool bind = !plan.cores.empty() && !user_binds();
   const bool one_each = static_cast<int>(plan.cores.size()) == plan.threads;
-#pragma omp parallel num_threads(plan.threads)
+#pragma omp parallel num_threads(std::max(plan.threads, plan.other))
   {
     flush_denormals_to_zero();
     if (bind && one_each) bind_this_thread(&plan.cores[static_cast<std::size_t>(omp_get_thread_num())], 1);

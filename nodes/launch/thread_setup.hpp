@@ -9,7 +9,7 @@
 //     run_node(scenario, *transport, {.threads = plan.threads, …});
 //
 // Rules. The terrain gets the cores that the others leave; with many grains and few such cores it also gets the others'
-// cores. A tire computes on one thread. The rig hardly computes, so it has a core of its own only if there are many. If
+// cores, and where they leave at most half it tries both while it steps (nodes/ranks/thread_trial.hpp). A tire computes on one thread. The rig hardly computes, so it has a core of its own only if there are many. If
 // there are enough cores, each thread is bound to its own. If there are too few, or the machine has other work, nothing
 // is bound and the system balances. Results do not depend on any of this.
 #pragma once
@@ -38,6 +38,7 @@ struct ThreadPlan {
   std::vector<int> cores;  // to bind to; empty: do not bind
   bool disjoint = false;   // every computing thread of this machine's nodes has a core of its own
   std::string note;        // advice for the user, or empty
+  int other = 0;           // threads that the terrain may try instead while it steps; 0: none
 };
 
 /// @param node             index in host.nodes

@@ -15,6 +15,7 @@ struct RunContext {
   std::filesystem::path directory;                  // existing run directory; empty: write nothing (tests)
   launch::HeldFolder* held = nullptr;               // on that directory; null: nobody moves it (tests)
   int threads = 1;                                  // OpenMP threads of this node while stepping
+  int other_threads = 0;                            // that the terrain may try instead; 0: none
   bool profile = false;                             // record the time of steps
   std::function<bool()> stop_requested;             // a signal asked for a stop
   launch::ProgressSink progress;                    // called by the rig's node

@@ -8,6 +8,7 @@
 #include "nodes/ranks/node.hpp"
 #include "nodes/ranks/saved_forces.hpp"
 #include "nodes/ranks/terrain_orders.hpp"
+#include "nodes/ranks/thread_trial.hpp"
 #include "protocol/contact_statement.hpp"
 #include "protocol/core/archive_fields.hpp"
 #include "protocol/core/assert.hpp"
@@ -21,7 +22,7 @@ std::string contact_name(std::size_t tire) { return "node/contact" + std::to_str
 class TerrainNode : public Node {
  public:
   TerrainNode(const scenario::Scenario& scenario, int threads, std::shared_ptr<RankGroup> group)
-      : scenario_(scenario), threads_(threads), group_(std::move(group)) {
+      : scenario_(scenario), threads_(threads, 0), group_(std::move(group)) {
     FURROW_ASSERT(!group_ || group_->rank() == 0);
     terrain::TerrainContext context = scenario.terrain_context();
     context.threads = threads;
@@ -34,7 +35,7 @@ class TerrainNode : public Node {
     card.node_kind = scenario_.terrain->describe().engine;
     card.substeps = scenario_.terrain_substeps;
     card.tire_count = static_cast<int>(scenario_.tires.size());
-    card.threads = threads_;
+    card.threads = threads_.now();
     card.size = terrain_->size();
     return card;
   }
@@ -42,6 +43,7 @@ class TerrainNode : public Node {
   void set_up(Transport& transport, std::span<const NodeCard> cards, const RunContext& context) override {
     directory_ = context.directory;
     held_ = context.held;
+    threads_ = ThreadTrial(context.threads, context.other_threads);
     frames_ = frame_clock(scenario_, context);
     const int tires = static_cast<int>(scenario_.tires.size());
     AttachOrder attach;
@@ -120,6 +122,7 @@ class TerrainNode : public Node {
   std::int64_t ends_at() const override { return now_.ends_at; }
 
   void finish(Transport& transport, FinalReport own, bool) override {
+    own.threads = threads_.now();
     own.height_before = height_before_;
     own.height_after = terrain_->gather_height_field();
     own.grains = terrain_->grains_here();
@@ -161,11 +164,20 @@ class TerrainNode : public Node {
   void move(const StepHeader& header) {
     FURROW_ASSERT(now_.targets.size() == forces_.size(), now_.targets.size(), forces_.size());
     FURROW_ASSERT(report_.contact.size() == forces_.size(), report_.contact.size(), forces_.size());
+    choose_threads();
     terrain_->state_contacts(stated_);
     const Outcome outcome =
         terrain_->advance(now_.targets, scenario_.run.step, scenario_.terrain_substeps, forces_, report_.contact);
     if (!outcome.ok) throw physics_error(outcome, "terrain", when(header));
     report_.state = terrain_->gather_state();
+  }
+
+  void choose_threads() {
+    const double now = wall_clock();
+    const int before = threads_.now();
+    if (moved_at_ > 0.0) threads_.step_took(now - moved_at_);
+    moved_at_ = now;
+    if (threads_.now() != before) terrain_->set_threads(threads_.now());
   }
 
   void prepare(Transport& transport, const RunContext& context) {
@@ -195,7 +207,8 @@ class TerrainNode : public Node {
   }
 
   scenario::Scenario scenario_;
-  int threads_;
+  ThreadTrial threads_;
+  double moved_at_ = 0.0;  // wall time of the last step's begin, s
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
   std::vector<bool> states_contact_, prompt_;  // of each tire

@@ -43,10 +43,12 @@ void visit_fields(FieldsOf<RunOptions> auto& s, auto&& visit) {
                    "Simulated time at which the run ends. It is rounded to a whole number of run.step."));
   visit(s.average_from, key("average_from", "s", from(0, 1e5),
                             "Start of the window over which the summary averages; the window ends with the run."));
-  visit(s.threads,
-        key("threads", "", role::harmless,
-            from(1, 1024).shaped(R"({"type": ["integer", "string"], "pattern": "^auto$", "default": "auto"})"),
-            "Number of threads of the terrain. auto: as many as the other ranks leave. Results do not depend on it."));
+  visit(
+      s.threads,
+      key("threads", "", role::harmless,
+          from(1, 1024).shaped(R"({"type": ["integer", "string"], "pattern": "^auto$", "default": "auto"})"),
+          "Number of threads of the terrain. auto: as many as the other ranks leave; where they leave at most half of "
+          "the cores, the run times that and all cores now and then. Results do not depend on it."));
   visit(s.seed, key("seed", "", from(0, 9007199254740991), "Seed of the bed's random grain positions."));
   visit(s.peer_timeout,
         key("peer_timeout", "s", role::harmless, from(1, 1e6),

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "protocol/core/assert.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 
 namespace furrow::scenario {
 
@@ -25,6 +26,16 @@ inline int auto_terrain_threads(int cores, int others, int terrain_ranks, std::i
   const int left = cores - others;
   const bool share = grains >= kManyGrains && 2 * left < cores;
   return std::clamp((share ? cores : left) / terrain_ranks, 1, kMaxAutoThreads);
+}
+
+/// Threads that one rank of `grains` may also try, where the others leave it at most half of the cores: whether it gains
+/// by using their cores too depends on how long they compute. 0: none.
+/// @param chosen  what auto_terrain_threads() returns
+inline int other_terrain_threads(int cores, int others, std::int64_t grains, int chosen) {
+  FURROW_ASSERT(cores > 0 && others >= 0 && grains >= 0 && chosen > 0, cores, others, grains, chosen);
+  const int left = std::max(1, cores - others);
+  const int all = terrain::useful_threads(std::min(cores, kMaxAutoThreads), static_cast<double>(grains));
+  return 2 * left > cores || all <= left ? 0 : chosen == left ? all : left;
 }
 
 }  // namespace furrow::scenario

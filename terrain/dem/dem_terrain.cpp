@@ -129,6 +129,7 @@ class DemTerrain : public Terrain {
     return s;
   }
 
+  void set_threads(int threads) override { solver_.set_threads(threads); }
   std::int64_t size() const override { return solver_.grains().count; }
 
   void gather_frame(TerrainFrame& out) const override {

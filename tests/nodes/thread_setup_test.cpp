@@ -1,5 +1,6 @@
 // Assignment of cores: the plan is a pure function of the machine; applying it is checked on this machine.
 #include "nodes/launch/thread_setup.hpp"
+#include "nodes/ranks/thread_trial.hpp"
 #include "nodes/scenario/terrain_threads.hpp"
 #include "tests/refusal.hpp"
 
@@ -78,6 +79,56 @@ TEST(ThreadPlan, a_terrain_of_many_grains_shares_the_cores_of_many_tires) {
   host = machine(16, 4);
   host.grains = 1'140'000;
   EXPECT_EQ(plan_all(host).back().threads, 11);  // the others leave enough
+}
+
+TEST(ThreadPlan, a_terrain_may_try_the_cores_of_others_where_these_leave_at_most_half) {
+  auto host = machine(2);
+  EXPECT_EQ(plan_all(host).back().other, 0);  // nothing is known of its grains
+  host.grains = 3'000;
+  EXPECT_EQ(plan_all(host).back().other, 0);  // too few for two threads
+  host.grains = 38'000;
+  EXPECT_EQ(plan_all(host).back().other, 2);
+  EXPECT_EQ(plan_all(host).front().other, 0);
+  EXPECT_EQ(plan_all(host, 1).back().other, 0);  // the user's choice
+  host = machine(2, 4);
+  host.grains = 1'140'000;
+  EXPECT_EQ(plan_all(host).back().other, 1);  // it has all cores to begin with
+  host = machine(16);
+  host.grains = 1'140'000;
+  EXPECT_EQ(plan_all(host).back().other, 0);
+}
+
+/// Steps on until the trial has ended at which a step takes so long with one and with two threads. @returns the choice
+int tried(ranks::ThreadTrial& threads, double one, double two) {
+  for (int k = 0; k < 7000; ++k) threads.step_took(threads.now() == 1 ? one : two);
+  return threads.now();
+}
+
+TEST(ThreadTrial, the_faster_number_is_kept_and_changes_where_the_other_becomes_faster) {
+  ranks::ThreadTrial threads(1, 2);
+  EXPECT_EQ(tried(threads, 1.0, 0.99), 1);  // it gains too little
+  EXPECT_EQ(tried(threads, 1.0, 0.8), 2);
+  EXPECT_EQ(tried(threads, 1.0, 1.02), 2);
+  EXPECT_EQ(tried(threads, 1.0, 1.5), 1);
+}
+
+TEST(ThreadTrial, a_slow_block_does_not_decide) {
+  ranks::ThreadTrial threads(1, 2);
+  bool slow = true;  // the first block with two threads
+  for (int k = 0; k < 3000; ++k) {
+    const bool two = threads.now() == 2;
+    threads.step_took(two && slow ? 5.0 : two ? 0.8 : 1.0);
+    if (slow && !two && k > 900) slow = false;
+  }
+  EXPECT_EQ(threads.now(), 2);
+}
+
+TEST(ThreadTrial, nothing_is_tried_where_there_is_no_choice) {
+  ranks::ThreadTrial threads(3);
+  for (int k = 0; k < 3000; ++k) {
+    threads.step_took(1.0);
+    ASSERT_EQ(threads.now(), 3);
+  }
 }
 
 TEST(ThreadPlan, four_cores_leave_three_to_the_terrain_and_the_rig_sits_with_the_tire) {

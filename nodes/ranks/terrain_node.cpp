@@ -208,7 +208,7 @@ class TerrainNode : public Node {
 
   scenario::Scenario scenario_;
   ThreadTrial threads_;
-  double moved_at_ = 0.0;  // wall time of the last step's begin, s
+  double moved_at_ = 0.0;             // wall time of the last step's begin, s
   std::shared_ptr<RankGroup> group_;  // null: the only rank
   std::unique_ptr<terrain::Terrain> terrain_;
   std::vector<bool> states_contact_, prompt_;  // of each tire

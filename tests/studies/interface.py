@@ -7,8 +7,8 @@ One row per rolling friction, plate friction and face: δ of τ = σ tan δ at t
 its 95 % half-width, K, ω r/v of the first layer, the share of contacts at the limit of friction, the solid fraction
 within 4 r of the face and the lid's rise, means over beds and stresses. Rows of face `teeth` are the direct shear test.
 Rows of --rolling take the place of those in the table; each row has the commit that made it. With --by-stress the
-plates are sheared at 2, 5, 10 and 20 kPa, and interface_stress.csv has a row per stress: δ = atan(τ/σ) at the end, means
-over beds with the 95 % half-width.
+plates are sheared at 2, 5, 10 and 20 kPa, and interface_stress.csv has a row per stress: δ = atan(τ/σ) at the end, its
+mean over beds with the 95 % half-width.
 """
 import json
 import math

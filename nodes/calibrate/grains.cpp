@@ -51,6 +51,7 @@ constexpr int kMostPoints = 20;  // of a curve
 constexpr int kUsualPoints = 5;
 constexpr double kUsualRelativeSigma = 0.1;
 constexpr double kMostSize = 10.0;   // m, as of `furrow soil`
+constexpr double kLoose = 0.4;       // solid fraction: loosest soil above a plate
 constexpr double kLeastReach = 1.2;  // of a curve over the first sinkage that counts
 constexpr double kOneBed = 0.1;      // of a bed, relative
 constexpr double kSame = 1e-9;       // m: sizes and depths that differ by no more are equal
@@ -458,10 +459,11 @@ class GrainModel final : public CalibrationModel {
       curve.sinkage.push_back(z);
       curve.windows.push_back({std::max(z - window(), sinkage.front()), std::min(z + window(), to)});
       target.x.push_back(z), target.y.push_back(pressure_in(curve.windows.back(), sinkage, pressure));
-      if (!(target.y.back() > 0.0))
-        throw input_error(file, "pressure_Pa",
-                          "is {:.3g} Pa at {:.3g} m, expected above 0 from the diameter of a grain on", target.y.back(),
-                          z);
+      if (const double soil = kLoose * grains_.density * grains_.gravity.norm() * z; !(target.y.back() > soil))
+        throw input_error(
+            file, "pressure_Pa",
+            "is {:.3g} Pa at {:.3g} m, expected Pa, more than the soil above that depth weighs: {:.3g} Pa",
+            target.y.back(), z, soil);
       target.labels.push_back(fmt::format("{} pressure_Pa at {:.3g} mm", target.name, 1e3 * z));
     }
   }

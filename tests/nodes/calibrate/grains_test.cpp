@@ -204,6 +204,7 @@ TEST_F(CalibrateGrainsOnCurves, wrong_curves_are_refused_with_file_and_key) {
   write("plate.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,5000\n0.05,9000\n");
   write("short.csv", "sinkage_m,pressure_Pa\n0,0\n0.01,5000\n");
   write("pulled.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,-500\n0.05,9000\n");
+  write("kpa.csv", "sinkage_m,pressure_Pa\n0,0\n0.02,50\n0.05,90\n");
   write("other.csv", "sinkage_m,pressure_Pa,bed_depth_m\n0,0,0.2\n0.02,500,0.2\n0.05,9000,0.2\n");
   const double last = 9000.0 - 0.5 * 0.005 * 4000.0 / 0.03;
   EXPECT_EQ(load(curve_study()).model->targets(TargetSet::fitted)[0].y.back(), last);
@@ -228,6 +229,7 @@ TEST_F(CalibrateGrainsOnCurves, wrong_curves_are_refused_with_file_and_key) {
                       "other.csv: has 0 points of this plate on a bed of this depth with a sinkage of 0 or more"},
                      {"/targets/0/data", "short.csv", "short.csv: key 'sinkage_m': ends at 0.01 m, expected 0.024 m"},
                      {"/targets/0/data", "pulled.csv", "pulled.csv: key 'pressure_Pa': is"},
+                     {"/targets/0/data", "kpa.csv", "kpa.csv: key 'pressure_Pa': is 48.5 Pa at 0.02 m, expected Pa"},
                      {"/targets/0/quantity", "n", "key 'targets[0].quantity': is unknown"},
                  });
 }

@@ -18,10 +18,10 @@ class ThreadTrial {
 
  private:
   int threads_[2];
-  int used_ = 0, kept_ = 0;         // of threads_: in the next step; between trials
-  int steps_ = 0, blocks_ = 0;      // of the current block; of the current trial
-  int pause_ = kFirstPause;         // blocks before the next trial
-  double sum_ = 0.0, best_[2] = {}; // s: of the current block; the faster block of each number
+  int used_ = 0, kept_ = 0;          // of threads_: in the next step; between trials
+  int steps_ = 0, blocks_ = 0;       // of the current block; of the current trial
+  int pause_ = kFirstPause;          // blocks before the next trial
+  double sum_ = 0.0, best_[2] = {};  // s: of the current block; the faster block of each number
 
   static constexpr int kFirstPause = 8;
 };

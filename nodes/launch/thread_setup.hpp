@@ -9,9 +9,10 @@
 //     run_node(scenario, *transport, {.threads = plan.threads, …});
 //
 // Rules. The terrain gets the cores that the others leave; with many grains and few such cores it also gets the others'
-// cores, and where they leave at most half it tries both while it steps (nodes/ranks/thread_trial.hpp). A tire computes on one thread. The rig hardly computes, so it has a core of its own only if there are many. If
-// there are enough cores, each thread is bound to its own. If there are too few, or the machine has other work, nothing
-// is bound and the system balances. Results do not depend on any of this.
+// cores. Where they leave at most half it tries both while it steps (nodes/ranks/thread_trial.hpp). A tire computes on
+// one thread. The rig hardly computes, so it has a core of its own only if there are many. If there are enough cores,
+// each thread is bound to its own. If there are too few, or the machine has other work, nothing is bound and the system
+// balances. Results do not depend on any of this.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // Which of two numbers of threads lets the whole run step faster, where the terrain's threads share cores with other
-// ranks: blocks of steps with either are timed in turn, now and then, as the share of the others changes. Results do not
-// depend on the choice, nor the bits.
+// ranks: blocks of steps with either are timed in turn, now and then, as the share of the others changes. The bits of
+// results do not depend on the choice.
 #pragma once
 
 namespace furrow::ranks {

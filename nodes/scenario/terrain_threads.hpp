@@ -28,8 +28,8 @@ inline int auto_terrain_threads(int cores, int others, int terrain_ranks, std::i
   return std::clamp((share ? cores : left) / terrain_ranks, 1, kMaxAutoThreads);
 }
 
-/// Threads that one rank of `grains` may also try, where the others leave it at most half of the cores: whether it gains
-/// by using their cores too depends on how long they compute. 0: none.
+/// Threads that one rank of `grains` may also try, where the others leave it at most half of the cores: whether it is
+/// faster on their cores too depends on how long they compute. 0: none.
 /// @param chosen  what auto_terrain_threads() returns
 inline int other_terrain_threads(int cores, int others, std::int64_t grains, int chosen) {
   FURROW_ASSERT(cores > 0 && others >= 0 && grains >= 0 && chosen > 0, cores, others, grains, chosen);

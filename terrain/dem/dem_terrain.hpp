@@ -17,9 +17,9 @@ std::unique_ptr<Terrain> make_dem_terrain(const dem::DemOptions& options, std::f
 
 TerrainEstimate estimate_dem_terrain(const dem::DemOptions& options);
 
-/// At most `threads`, of which each has 2500 grains or more: barriers cost more than further threads save. Settling on
-/// two idle cores, two threads took 1.05, 0.9, 0.75 and 0.65 times as long as one for 345, 2600, 5200 and 15,900 grains,
-/// and up to twice the processor time; on cores that others use they take several times as long.
+/// At most `threads`, of which each has 2500 grains or more: barriers cost more than further threads save. To settle a
+/// bed, two threads on two idle cores took 1.05, 0.9, 0.75 and 0.65 times as long as one for 345, 2600, 5200 and 15,900
+/// grains, and up to twice the processor time. On cores that others use they take several times as long.
 int useful_threads(int threads, double grains);
 
 }  // namespace furrow::terrain

@@ -37,13 +37,9 @@ struct Bin {
         return p.z;
     }
   }
-  static const Quad& normal_row(int wall) {
-    static constexpr Quad kNormal[kWalls] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
-    return kNormal[wall];
-  }
   static Triple<double> normal(int wall) {
-    const Quad& n = normal_row(wall);
-    return {n.x, n.y, n.z};
+    constexpr Triple<double> kNormal[kWalls] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+    return kNormal[wall];
   }
   static const char* name(int wall) {
     constexpr const char* kName[kWalls] = {"the wall x = 0", "the wall x = length", "the wall y = -width/2",

@@ -88,7 +88,6 @@ class ContactCoefficients {
     std::memcpy(static_cast<void*>(&c), numbers, sizeof c);
     return c;
   }
-  bool operator==(const ContactCoefficients&) const = default;
 
  private:
   double numbers_[12] = {};

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "nodes/scenario/terrain_threads.hpp"
 #include "nodes/scenario/wheel_geometry.hpp"
 #include "protocol/core/assert.hpp"
 #include "protocol/messages.hpp"
+#include "terrain/dem/dem_terrain.hpp"
 
 namespace furrow::scenario {
 
@@ -22,11 +22,12 @@ std::vector<RankEntry> rank_table(const Scenario& s) {
   for (std::size_t k = 0; k < s.tires.size(); ++k)
     table.push_back({static_cast<int>(k) + 1, fmt::format("tire {}", k),
                      fmt::format("{}, {}; 1 thread", s.tires[k]->options().file.filename().string(), tires[k].name)});
-  const std::string threads = s.run.threads > 0
-                                  ? fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "")
-                              : s.terrain->estimate(s.terrain_context()).grains >= kManyGrains
-                                  ? "as many threads as there are cores left, or cores where these are few"
-                                  : "as many threads as there are cores left";
+  const auto grains = static_cast<double>(s.terrain->estimate(s.terrain_context()).grains);
+  std::string threads = "as many threads as there are cores left";
+  if (s.run.threads > 0)
+    threads = fmt::format("{} thread{}", s.run.threads, s.run.threads > 1 ? "s" : "");
+  else if (terrain::useful_threads(2, grains) == 2)
+    threads += ", or all cores where few are left and that is faster";
   const std::string what = s.terrain->describe().name;
   for (int i = 0; i < s.terrain_ranks; ++i)
     table.push_back(

@@ -22,7 +22,7 @@ std::string contact_name(std::size_t tire) { return "node/contact" + std::to_str
 class TerrainNode : public Node {
  public:
   TerrainNode(const scenario::Scenario& scenario, int threads, std::shared_ptr<RankGroup> group)
-      : scenario_(scenario), threads_(threads, 0), group_(std::move(group)) {
+      : scenario_(scenario), threads_(threads), group_(std::move(group)) {
     FURROW_ASSERT(!group_ || group_->rank() == 0);
     terrain::TerrainContext context = scenario.terrain_context();
     context.threads = threads;

@@ -21,8 +21,6 @@
 #include "protocol/files/text_file.hpp"
 #include "protocol/host.hpp"
 #include "rigs/rigs.hpp"
-#include "terrain/dem/beds/bed_generators.hpp"
-#include "terrain/dem/dem_terrain.hpp"
 #include "terrain/terrain_spec.hpp"
 #include "tire/tires.hpp"
 
@@ -189,11 +187,11 @@ void take_run(json j, Scenario& s) {
 }
 
 /// While the bed settles the other ranks wait, but the terrain may be bound to its own cores.
-int settle_threads(int wanted, double grains) {
+int settle_threads(int wanted) {
   if (wanted > 0) return wanted;
   const int cores = static_cast<int>(allowed_cores().size());
   const int of_others = cores < 4 ? 0 : cores < 8 ? 1 : 2;
-  return terrain::useful_threads(std::clamp(cores - of_others, 1, 32), grains);
+  return std::clamp(cores - of_others, 1, 32);
 }
 
 void take_terrain(const json& j, Scenario& s) {
@@ -202,6 +200,7 @@ void take_terrain(const json& j, Scenario& s) {
   read_fields(j, common);
   s.terrain_ranks = common.ranks;
   s.terrain_substeps = common.substeps;
+  s.settle_threads = settle_threads(s.run.threads);
   s.terrain = terrain::find_terrain(common.engine, context).read(j, context);
 }
 
@@ -322,8 +321,6 @@ Scenario load_scenario(const std::filesystem::path& name, const Settings& settin
     take_tires(document, s);
     take_terrain(document["terrain"], s);
     check_scenario(s, *rig, purpose);
-    if (const auto* grains = s.terrain->grains(); grains && grains->bed.empty())
-      s.settle_threads = settle_threads(s.run.threads, terrain::dem::expected_grains(*grains));
     rig->complete(document["rig"]);
   } catch (const Error& error) {  // an unlikely value may be the cause
     throw RefusedScenario(error, unusual);

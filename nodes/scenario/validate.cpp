@@ -50,8 +50,9 @@ std::vector<std::pair<std::string, std::string>> scales_lines(const WheelScales&
     lines.emplace_back(
         "contact", fmt::format("about {} mm long at {} kPa, {} grains long, {} wide", digits(1e3 * g.contact_length),
                                digits(1e-3 * g.pressure), digits(g.grains_long), digits(g.grains_wide)));
-    lines.emplace_back("sinkage", fmt::format("about {} mm by {}; the bed is {} times as deep as the wheel reaches",
-                                              digits(1e3 * g.sinkage), sinkage_by(g), digits(g.depth_ratio)));
+    const std::string tips = g.reach > g.sinkage ? fmt::format(", {} with the grousers", digits(1e3 * g.reach)) : "";
+    lines.emplace_back("sinkage", fmt::format("about {} mm by {}{}; the bed is {} times as deep as the wheel reaches",
+                                              digits(1e3 * g.sinkage), sinkage_by(g), tips, digits(g.depth_ratio)));
     lines.emplace_back("walls", fmt::format("{}, {} m ahead of the wheel at the {}",
                                             g.beside ? digits(*g.beside) + " m beside the wheel" : "none beside",
                                             digits(g.ahead), travels ? "end" : "start"));

@@ -10,6 +10,7 @@
 #include "protocol/files/data_files.hpp"
 #include "protocol/files/json_fields.hpp"
 #include "terrain/bulk_cohesion.hpp"
+#include "terrain/scm/pressure_sinkage.hpp"
 #include "terrain/scm/scm_ground.hpp"
 
 namespace furrow::terrain::scm {

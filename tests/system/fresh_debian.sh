@@ -10,20 +10,22 @@ readonly setup_budget_s=180 build_budget_s=600 small_budget_s=180  # README.md: 
 
 say() { printf 'fresh_debian: %s\n' "$*" >&2; }
 usage() { cat <<'HELP'
-usage: tests/system/fresh_debian.sh [--release NAME] [--short] [--keep] [--results DIR]
+usage: tests/system/fresh_debian.sh [--release NAME] [--archive FILE] [--short] [--keep] [--results DIR]
 Needs root, debootstrap, git and the network (the mirror is that of this machine's apt configuration).
   --release NAME the name of another release, for example trixie: Debian 13 (default: bookworm, Debian 12)
+  --archive FILE the source archive of a release instead of a clone; `ninja -C build package_source` makes it
   --short        the commands of the tutorial instead of the tests
   --keep         leave the system's folder for a look inside
   --results DIR  copy the runs' results there
 HELP
 }
 
-short=false keep=false results='' release=bookworm
+short=false keep=false results='' release=bookworm archive=''
 all=("$@")
 while (($#)); do
   case $1 in
     --release) release=$2; shift ;;
+    --archive) archive=$(realpath -- "$2"); shift ;;
     --short) short=true ;;
     --keep) keep=true ;;
     --results) results=$(realpath -m -- "$2"); shift ;;
@@ -82,8 +84,14 @@ mount -t proc proc "$system/proc"
 mount -t sysfs -o ro sysfs "$system/sys"
 mount --rbind /dev "$system/dev"
 mount -t tmpfs -o mode=1777,size=50% tmpfs "$system/tmp"
-git -c safe.directory='*' clone --quiet --no-hardlinks -- "$repository" "$system$checkout"
-commit=$(git -c safe.directory='*' -C "$system$checkout" rev-parse --short HEAD)
+if [[ -n $archive ]]; then
+  mkdir -- "$system$checkout"
+  tar -xf "$archive" -C "$system$checkout" --strip-components=1
+  commit=$(basename -- "$archive")
+else
+  git -c safe.directory='*' clone --quiet --no-hardlinks -- "$repository" "$system$checkout"
+  commit=$(git -c safe.directory='*' -C "$system$checkout" rev-parse --short HEAD)
+fi
 
 # 2. The commands: what is in the README's code block behind the mark.
 readme_command() {

@@ -19,7 +19,7 @@ constexpr double kBalanced = 1e-12;    // of the weight
 constexpr double kLongestStep = 0.03;  // of one iteration, m or rad
 constexpr double kDifference = 1e-6;   // for stiffnesses, m or rad
 constexpr double kRank = 1e-10;        // of a matrix
-constexpr int kMaxIterations = 200, kMaxHalvings = 30;
+constexpr int kMaxStaticIterations = 200, kMaxHalvings = 30;
 
 }  // namespace
 
@@ -108,7 +108,7 @@ Eigen::VectorXd shortest_solution(const Eigen::MatrixXd& matrix, const Eigen::Ve
 Outcome Statics::close() {
   double worst = 0.0;
   int worst_row = 0;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxStaticIterations; ++iteration) {
     const Eigen::VectorXd wanted = violations();
     worst = row_count() > 0 ? wanted.cwiseAbs().maxCoeff(&worst_row) : 0.0;
     if (worst <= kClosed) break;
@@ -195,7 +195,7 @@ Outcome Statics::settle(double weight, const ProgressCall& progress) {
   double now = unbalance();
   const double first = now, last = kBalanced * weight;
   double lowest = now;
-  for (int iteration = 0; iteration < kMaxIterations && now > kBalanced * weight; ++iteration) {
+  for (int iteration = 0; iteration < kMaxStaticIterations && now > kBalanced * weight; ++iteration) {
     // Newton's steps shorten the distance by decades.
     lowest = std::min(lowest, now);
     tell("finding how it stands", std::clamp(std::log(first / lowest) / std::log(first / last), 0.0, 1.0));

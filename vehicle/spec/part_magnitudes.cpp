@@ -16,7 +16,7 @@
 namespace furrow::vehicle {
 namespace {
 
-constexpr double kMostGyration = 1.5;  // radius, of the largest distance between wheels
+constexpr double kMostPartGyration = 1.5;  // radius, of the largest distance between wheels
 constexpr double kLeastRate = 0.05,
                  kMostRate = 200;   // of a shock absorber: coefficient over mass, 1/s
 constexpr double kMostLever = 2.0;  // of a torque, over the weight, m
@@ -119,7 +119,7 @@ class PartMagnitudes {
   }
   void body(const std::string& key, double mass, const Mat3& inertia) {
     if (key == "chassis") return;  // unlikely_values()
-    if (const double gyration = std::sqrt(0.5 * inertia.trace() / mass); gyration > kMostGyration * size_)
+    if (const double gyration = std::sqrt(0.5 * inertia.trace() / mass); gyration > kMostPartGyration * size_)
       add(key, "inertia",
           fmt::format("gives a part of {} kg a radius of gyration of {} m in a vehicle of {} m: another unit?",
                       number_text(mass), digits(gyration), digits(size_)));

@@ -20,6 +20,7 @@ import os
 import pathlib
 import random
 import shutil
+import subprocess
 import sys
 import time
 import traceback
@@ -35,10 +36,13 @@ SHARE_AFTER_END = 0.05  # of the reference's time that a moment may lie beyond i
 
 
 def with_own_mounts():
-    """As root, what the campaign mounts is seen by its own processes alone."""
-    if actions.is_root() and OWN_MOUNTS not in os.environ and shutil.which("unshare"):
+    """As root, what the campaign mounts is seen by its own processes alone, but in a chroot, which forbids that."""
+    own = ["unshare", "--mount", "--propagation", "private"]
+    if not actions.is_root() or OWN_MOUNTS in os.environ or not shutil.which("unshare"):
+        return
+    if subprocess.run([*own, "true"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
         os.environ[OWN_MOUNTS] = "1"
-        os.execvp("unshare", ["unshare", "--mount", "--propagation", "private", sys.executable, *sys.argv])
+        os.execvp("unshare", [*own, sys.executable, *sys.argv])
 
 
 def drawn(names, seed, index):

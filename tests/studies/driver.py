@@ -72,12 +72,21 @@ def stale_because(words, out):
     return None if found.get("scenario_digest") == digest_of(words) else "its scenario has changed"
 
 
+def begun(words, out):
+    """Whether `out` holds the beginning of this run, up to a checkpoint, and the program has not been built since."""
+    checkpoints = sorted((out / "checkpoints").glob("*/manifest.json"))
+    return (bool(checkpoints) and not summary(out) and
+            os.path.getmtime(checkpoints[-1]) > os.path.getmtime(provenance.program()) and
+            read_json(checkpoints[-1]).get("scenario_digest") == digest_of(words))
+
+
 def run_case(name, words, out, made_at=None):
-    """Runs the scenario that the words name. Returns whether the run was done."""
+    """Runs or continues the scenario that the words name. Returns whether the run was done."""
     (out / RECORD).unlink(missing_ok=True)
     begin = time.time()
-    done = subprocess.run([provenance.program(), "run", *words, "--out", str(out), "--overwrite", "--no-plots"],
-                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    command = ["resume", str(out)] if begun(words, out) else ["run", *words, "--out", str(out), "--overwrite"]
+    done = subprocess.run([provenance.program(), *command, "--no-plots"], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True)
     print(f"{name}: exit {done.returncode}, {time.time() - begin:.0f} s", file=sys.stderr, flush=True)
     if done.returncode != 0:
         print(done.stderr[-2000:], file=sys.stderr)

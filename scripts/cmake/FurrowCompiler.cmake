@@ -124,8 +124,8 @@ function(furrow_quick)
   endforeach()
 endfunction()
 
-# furrow_quick_parts(<library> <source or folder>…): compiles these parts of a library with FURROW_QUICK, as a library of
-# objects in it. To be called where the library is made, after its links.
+# furrow_quick_parts(<library> <source or folder>…): compiles these parts of a library with FURROW_QUICK, folder by
+# folder, as a library of objects in it. To be called where the library is made, after its links.
 function(furrow_quick_parts library)
   get_target_property(sources ${library} SOURCES)
   list(JOIN ARGN "|" parts)

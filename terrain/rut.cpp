@@ -118,7 +118,7 @@ Rut measure_rut(const HeightField& before, const HeightField& after, const RutOp
   rut.depth = sum / count;
   rut.width = std::nan("");
   if (rut.depth <= 0.0) {
-    rut.missing = "the ground behind the wheel is no lower than before: it has no width";
+    rut.missing = "the ground behind the wheel is no lower than before";
     return rut;
   }
   rut.width = crossing(rut.y, rut.profile, middle, 1, 0.5 * rut.depth) -

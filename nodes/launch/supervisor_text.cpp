@@ -16,6 +16,7 @@ constexpr std::size_t kMaxLines = 40;
 constexpr std::size_t kMaxWords = 600;  // characters
 // Begins Open MPI's paragraph of all possible reasons why ranks fail to start. Other paragraphs contain the cause.
 constexpr std::string_view kUsual = "It looks like MPI_INIT failed for some reason";
+constexpr std::string_view kNoticed = "noticed that process rank ";
 constexpr std::size_t kLongestLine = 2000;  // characters: a search in a longer line would exhaust the stack
 
 bool is_rule(std::string_view line) {
@@ -24,7 +25,7 @@ bool is_rule(std::string_view line) {
 
 /// Checks for the launcher's own log and the ranks' text as they abort: it hides the cause, but is better than nothing.
 bool is_internal(std::string_view line) {
-  return line.find("ORTE_ERROR_LOG") != std::string_view::npos ||
+  return line.find("ORTE_ERROR_LOG") != std::string_view::npos || line.find("/opal/mca/") != std::string_view::npos ||
          (line.starts_with('[') && line.find("] *** ") != std::string_view::npos);
 }
 
@@ -38,15 +39,21 @@ int signal_called(const std::string& name) {
 }  // namespace
 
 void LauncherText::add(std::string_view line) {
-  // "mpirun noticed that process rank 2 with PID 0 on node host exited on signal 9 (Killed)."
+  // "mpirun noticed that process rank 2 with PID 0 on node host exited on signal 9 (Killed)." Open MPI 5 breaks lines.
   static const std::regex kDead("process rank ([0-9]+) with PID [0-9]+ on node .* exited on signal ([0-9]+)");
   line = line.substr(0, kLongestLine);
   if (fault_.empty() && line.find(": precondition failed: ") != std::string_view::npos) fault_ = trimmed(line);
-  std::match_results<std::string_view::const_iterator> found;
-  if (std::regex_search(line.begin(), line.end(), found, kDead)) {
-    if (!lost_) lost_ = LostRank{std::stoi(found[1].str()), std::stoi(found[2].str())};
+  const std::string sentence = begun_.empty() ? std::string(line) : begun_ + " " + std::string(trimmed(line));
+  begun_.clear();
+  if (std::smatch dead; std::regex_search(sentence, dead, kDead)) {
+    if (!lost_) lost_ = LostRank{std::stoi(dead[1].str()), std::stoi(dead[2].str())};
     return;
   }
+  if (sentence.find(kNoticed) != std::string::npos && sentence.size() < kLongestLine && !is_rule(trimmed(line))) {
+    begun_ = sentence;
+    return;
+  }
+  std::match_results<std::string_view::const_iterator> found;
   // "srun: error: node7: task 2: Killed"
   static const std::regex kDeadTask("srun: error: .*: task ([0-9]+): ([A-Za-z ]+)");
   if (std::regex_search(line.begin(), line.end(), found, kDeadTask)) {

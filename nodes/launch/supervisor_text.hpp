@@ -27,6 +27,7 @@ class LauncherText {
  private:
   std::optional<LostRank> lost_;
   std::string fault_;
+  std::string begun_;  // a sentence on a rank that died, whose end is on the next line
   std::vector<std::string> lines_, usual_;
   bool is_usual_ = false;  // for the current paragraph
 };

@@ -83,6 +83,19 @@ TEST(LauncherText, names_the_rank_that_died) {
   EXPECT_EQ(text.words(), "");
 }
 
+TEST(LauncherText, joins_a_sentence_that_the_launcher_breaks) {
+  launch::LauncherText text;
+  for (const char* line :
+       {"--------------------------------------------------------------------------",
+        "prterun noticed that process rank 1 with PID 22546 on node the-host exited on", "signal 9 (Killed).",
+        "--------------------------------------------------------------------------", "It went on."})
+    text.add(line);
+  ASSERT_TRUE(text.lost());
+  EXPECT_EQ(text.lost()->rank, 1);
+  EXPECT_EQ(text.lost()->signal, 9);
+  EXPECT_EQ(text.words(), "It went on.");
+}
+
 TEST(LauncherText, finds_the_precondition_that_a_rank_reports) {
   launch::LauncherText text;
   EXPECT_EQ(text.fault(), "");

@@ -140,13 +140,7 @@ function(furrow_quick_parts library)
   if(definitions)
     target_compile_definitions(${library}_quick PRIVATE ${definitions})
   endif()
-  set(folders)
-  foreach(source ${quick})
-    get_filename_component(folder ./${source} DIRECTORY)
-    string(REGEX REPLACE "^\\./" "" folder ${folder})
-    list(APPEND folders ${folder})
-  endforeach()
-  furrow_batch_folders(${library}_quick ${folders})
+  furrow_batch_folders(${library}_quick)
   furrow_compile(${library}_quick furrow_quick_pch FLAGS ${FURROW_QUICK})
 endfunction()
 
@@ -160,9 +154,9 @@ function(furrow_batch)
   set_target_properties(${targets} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 
-# furrow_batch_folders(<library> <folder>…): compiles the sources of each of these folders of a library together, in a
-# third of the time; `.` are those without a folder. Names in anonymous namespaces must differ within a folder. To be
-# called where the library is made.
+# furrow_batch_folders(<library> [<folder>…]): compiles the sources of each of these folders of a library together, in a
+# third of the time; `.` are those without a folder. Without folders it does so for all. Names in anonymous namespaces
+# must differ within a folder. To be called where the library is made.
 function(furrow_batch_folders library)
   if(NOT FURROW_BATCH)
     return()
@@ -171,7 +165,7 @@ function(furrow_batch_folders library)
   foreach(source ${sources})
     get_filename_component(folder ./${source} DIRECTORY)
     string(REGEX REPLACE "^\\./" "" folder ${folder})
-    if(folder IN_LIST ARGN)
+    if(NOT ARGN OR folder IN_LIST ARGN)
       string(MAKE_C_IDENTIFIER ${folder} group)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The contact law of the 2016 report on the small rig: does it turn the trends of its Figs 8, 16 and 20?
 
-usage: report_law.py [shear] [rig] [passes] [factors] [small_steps] [janosi] [--seeds 1 2 …] [--finished]
+usage: report_law.py [shear] [rig] [passes] [factors] [small_steps] [full_size] [janosi] [--seeds 1 2 …] [--finished]
 
 `shear`: direct shear at 0.05 to 4 m/s with the report's law at three steps, and with `mindlin`, three beds each;
 writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the report's rim speed of 4 m/s on a bed of
@@ -9,7 +9,9 @@ writes report_law_shear.csv. `rig`: drawbar_pull_small_report_soil.json at the r
 report_law_resistance.csv, the resistance against time at four cohesions (Fig. 13). `passes`: three passes
 in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig. 8, one change at a time from the rig's
 runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. `small_steps`: the rig at steps of 3, 6 and 20 µs on
-the first bed, for the law as it is printed; writes report_law_small_steps.csv. `janosi`: the tractive effort that the
+the first bed, for the law as it is printed; writes report_law_small_steps.csv. `full_size`: the ends of Figs 8, 15 and
+16 with the report's grains of 6 mm, layered tire and step, drawbar_pull_tr.json, on the first bed; writes
+report_law_full_size.csv. `janosi`: the tractive effort that the
 shear strength at the speed of sliding would give, beside the rig's; runs nothing and writes report_law_janosi.csv.
 
 Expected, written down before the first run: a trend agrees with the report's if the 95 % interval of the slope over
@@ -45,6 +47,8 @@ FACTORS = {
 # step (s): cases, end (s); means begin at its half
 SMALL_STEPS = {6e-6: (("slip 0.1", "slip 0.9", "slip 0.5", "cohesion 40 kPa", "cohesion 100 kPa"), 1.2),
                3e-6: (("slip 0.1", "slip 0.9"), 0.6), 20e-6: (("slip 0.1", "slip 0.9"), 1.2)}
+FULL = str(driver.ROOT / "rigs" / "drawbar_pull_tr.json")
+FULL_SIZE = ("slip 0.1", "slip 0.7", "cohesion 40 kPa", "cohesion 100 kPa", "slip 0.9")
 FIGURES = {"pull_N": "drawbar_pull_N", "gross_N": "tractive_effort_N", "resistance_N": "terrain_resistance_N",
            "sinkage_mm": "sinkage_m", "rut_mm": "rut_depth_m"}
 OVER_TIME = {40: "cohesion 40 kPa", 60: "cohesion 60 kPa", 80: "slip 0.3", 100: "cohesion 100 kPa"}  # kPa: case
@@ -99,9 +103,9 @@ def folder_of(part, case, seed):
     return driver.RESULTS / part / f"{case}_{seed}".replace(" ", "_").replace("/", "_")
 
 
-def run_of(part, case, seed, finished, *changed):
+def run_of(part, case, seed, finished, *changed, of=RIG):
     """The summary of a run of the rig; None where it has failed or must not run."""
-    words = [RIG, *driver.settings(FAST, *changed, {"run.seed": seed})]
+    words = [of, *driver.settings(FAST, *changed, {"run.seed": seed})]
     out = folder_of(part, case, seed)
     return driver.summary(out) if driver.done_run(words, out, finished) else None
 
@@ -202,6 +206,16 @@ def small_steps(seed, finished):
                 driver.write("report_law_small_steps.csv", rows, made)
 
 
+def full_size(seed, finished):
+    rows, made = [], provenance.made_here()
+    for case in FULL_SIZE:
+        if summary := run_of("report_law_full_size", case, seed, finished, CASES[case], of=FULL):
+            rows.append({"case": case, "seed": seed, "slip": CASES[case].get("rig.slip", 0.3),
+                         "cohesion_kPa": CASES[case].get("terrain.cohesion", 80e3) / 1e3,
+                         **driver.drawbar_row(summary, FIGURES)})
+            driver.write("report_law_full_size.csv", rows, made)
+
+
 def over_speed(rows, speed, column):
     """A value of the shear tests between their speeds, linear in ln speed; the slowest and fastest beyond."""
     points = [(math.log(float(row["speed_m_s"])), float(row[column])) for row in rows]
@@ -240,7 +254,8 @@ def main():
     parser = driver.options(__doc__, seeds={"type": int, "nargs": "+", "default": [1, 2, 3, 4, 5]},
                             finished={"action": "store_true"},
                             cases={"nargs": "+", "default": list(PASSES), "help": "of passes"})
-    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors", "small_steps", "janosi"])
+    parser.add_argument("parts", nargs="*", default=["shear", "rig", "passes", "factors", "small_steps", "full_size",
+                                                    "janosi"])
     arguments = parser.parse_args()
     if "shear" in arguments.parts:
         shear()
@@ -252,6 +267,8 @@ def main():
         factors(arguments.seeds, arguments.finished)
     if "small_steps" in arguments.parts:
         small_steps(arguments.seeds[0], arguments.finished)
+    if "full_size" in arguments.parts:
+        full_size(arguments.seeds[0], arguments.finished)
     if "janosi" in arguments.parts:
         janosi(provenance.made_here())
 

@@ -337,8 +337,9 @@ LaunchResult Supervisor::lost_rank(int rank, const std::string& how) const {
 LaunchResult Supervisor::outcome() const {
   const bool exited = WIFEXITED(status_);
   const int status = exited ? WEXITSTATUS(status_) : -1;
+  const std::string little = little_room(), room = little.empty() ? "" : "; " + little;
   if (late_ && stop_seen_ == 0.0) {
-    const std::string said = launcher_said(), little = little_room(), room = little.empty() ? "" : "; " + little;
+    const std::string said = launcher_said();
     const std::string text = fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
                                          start_.standing(), launch_.patience, said) +
                              room;
@@ -377,7 +378,7 @@ LaunchResult Supervisor::outcome() const {
   std::vector<std::string> suspects = launcher_settings();
   suspects.insert(suspects.begin(), {"PATH", "TMPDIR"});
   return {ExitCode::io, fmt::format("no rank could be started (are {} right, is FURROW_MPIRUN Open MPI's?): {}",
-                                    fmt::join(suspects, ", "), text)};
+                                    fmt::join(suspects, ", "), text + room)};
 }
 
 }  // namespace

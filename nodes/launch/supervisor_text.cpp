@@ -26,6 +26,7 @@ bool is_rule(std::string_view line) {
 /// Checks for the launcher's own log and the ranks' text as they abort: it hides the cause, but is better than nothing.
 bool is_internal(std::string_view line) {
   return line.find("ORTE_ERROR_LOG") != std::string_view::npos || line.find("/opal/mca/") != std::string_view::npos ||
+         line.starts_with("*** ") || line.find("] Local abort before MPI_INIT") != std::string_view::npos ||
          (line.starts_with('[') && line.find("] *** ") != std::string_view::npos);
 }
 
@@ -61,7 +62,9 @@ void LauncherText::add(std::string_view line) {
       lost_ = LostRank{std::stoi(found[1].str()), signal};
     return;
   }
-  const std::string text(trimmed(line));
+  std::string plain(line);
+  std::erase(plain, '\0');  // Open MPI 5 writes some
+  const std::string text(trimmed(plain));
   if (is_rule(text)) is_usual_ = false;
   if (text.starts_with(kUsual)) is_usual_ = true;
   std::vector<std::string>& sort = is_usual_ ? usual_ : lines_;

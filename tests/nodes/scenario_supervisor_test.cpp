@@ -122,6 +122,8 @@ TEST(LauncherText, passes_over_what_the_launcher_logs_of_itself_unless_there_is_
   EXPECT_EQ(text.words(), "A requested component was not found.");
   launch::LauncherText aborted;
   aborted.add("[host:7] *** An error occurred in MPI_Init_thread");
+  aborted.add({"\0*** on a NULL communicator", 27});  // Open MPI 5
+  aborted.add("[host:7] Local abort before MPI_INIT completed completed successfully");
   aborted.add("A requested component was not found.");
   EXPECT_EQ(aborted.words(), "A requested component was not found.");
 }

@@ -364,7 +364,7 @@ class BadFile(SystemTest):
 
     def under_the_users_mpirun(self, count, **sections):
         """What standard error holds: one error, told once."""
-        command = [shutil.which("mpirun"), "-q", "--allow-run-as-root", "--oversubscribe", "-n", str(count), PROGRAM,
+        command = [shutil.which("mpirun"), "--allow-run-as-root", "--oversubscribe", "-n", str(count), PROGRAM,
                    "run", write_scenario(self.folder, changed(**sections))]
         done = self.call(command, code=2, errors=1)
         self.assertEqual(self.names(), ["small.json"])

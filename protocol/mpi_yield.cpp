@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
+#include <string_view>
 
 namespace furrow {
 namespace {
@@ -12,13 +13,15 @@ constexpr char kVariable[] = "OMPI_MCA_mpi_yield_when_idle";
 }  // namespace
 
 MpiYield::MpiYield() {
-  if (std::getenv(kVariable)) return;
+  const char* const chosen = std::getenv(kVariable);
+  never_ = chosen && std::string_view(chosen) == "0";  // which Open MPI 5 passes over where ranks share cores
+  if (chosen && !never_) return;
   switch_ = reinterpret_cast<Switch>(dlsym(RTLD_DEFAULT, "opal_progress_set_yield_when_idle"));
   setenv(kVariable, switch_ ? "1" : "0", 0);
 }
 
 void MpiYield::set(bool yields) noexcept {
-  if (switch_) switch_(yields);
+  if (switch_) switch_(yields && !never_);
 }
 
 }  // namespace furrow

@@ -21,6 +21,7 @@ class MpiYield {
  private:
   using Switch = bool (*)(bool);
   Switch switch_ = nullptr;  // null if nothing can be changed, or must not be
+  bool never_ = false;       // chosen by the user
 };
 
 }  // namespace furrow

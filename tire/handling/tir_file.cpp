@@ -128,6 +128,18 @@ class Sections {
     std::vector<std::string>& keys = unused_[section];
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   }
+  /// Pairs of a section that is not read and the missing one that its name resembles.
+  std::vector<std::pair<std::string, std::string>> misspelt() const {
+    std::vector<std::string> missing;
+    for (const std::string_view name : kRead)
+      if (!sections_.contains(std::string(name))) missing.emplace_back(name);
+    std::vector<std::pair<std::string, std::string>> pairs;
+    for (const auto& [name, section] : sections_)
+      if (std::find(kRead.begin(), kRead.end(), name) == kRead.end())
+        if (const std::vector<std::string> others = nearest_words(name, missing); !others.empty())
+          pairs.emplace_back(name, others.front());
+    return pairs;
+  }
   /// "[A] X, Y; [B] Z" of what is not used; empty: nothing.
   std::string unused() const {
     std::vector<std::string> all;
@@ -468,6 +480,8 @@ MagicFormula parse_tir(const std::string& text, const std::string& name) {
   sections.refuse_missing();
   t.load_curve = read_curve(sections);
   check(sections, t);
+  for (const auto& [section, other] : sections.misspelt())
+    t.remarks.emplace_back(fmt::format("[{}]", section), fmt::format("is not used: did you mean [{}]?", other));
   if (sections.has("BOTTOMING_CURVE")) sections.leave("BOTTOMING_CURVE", "");
   if (const std::string unused = sections.unused(); !unused.empty())
     t.remarks.emplace_back(unused, "is not used: unknown, or without a place in this model");

@@ -157,6 +157,11 @@ TEST(TirFile, names_what_it_does_not_use_once) {
       "model\n");
 }
 
+TEST(TirFile, names_an_optional_section_whose_name_is_misspelt) {
+  EXPECT_EQ(remarks(replaced("[OVERTURNING_COEFFICIENTS]", "[OVERTURNING_COEFICIENTS]")),
+            "[OVERTURNING_COEFICIENTS] is not used: did you mean [OVERTURNING_COEFFICIENTS]?\n");
+}
+
 TEST(TirFile, speed_terms_of_the_rolling_resistance_need_the_speed_they_are_relative_to) {
   MagicFormula tire = example_tire();
   tire.rolling.qsy3 = 0.002;

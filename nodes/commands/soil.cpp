@@ -245,7 +245,7 @@ Action soil_options(CLI::App& command, Typed& typed) {
                      "Push discs and strips in by this much, m (default: a quarter of the smallest).");
   command.add_option("--bed-width", arguments->bed_width,
                      "Make the beds of plates and cones in metres this long and wide, m; they are periodic (default: "
-                     "five times the largest plate, six times the largest cone).");
+                     "five times the largest disc, ten times the largest strip, six times the largest cone).");
   command.add_flag("--own-bed", arguments->own_bed,
                    "Test the scenario's own bed (of terrain.bed, the cache, or settled now) with --disc and cones in "
                    "its middle, instead of beds of its grains.");

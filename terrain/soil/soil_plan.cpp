@@ -94,10 +94,13 @@ PlateTest plate_test(const SoilOptions& o, double size, bool disc, double sinkag
 PlateBed plate_bed(const SoilOptions& o, const std::vector<PlateTest>& plates, double depth) {
   PlateBed bed{.plates = plates, .exact = true};
   const double r = o.material.radius;
-  double widest = 0.0;
+  double length = 0.0;
   bool discs = false;
-  for (const PlateTest& plate : plates) widest = std::max(widest, plate.width), discs |= plate.disc;
-  const double length = o.bed_width > 0.0 ? o.bed_width / r : kWidths * widest;
+  for (const PlateTest& plate : plates) {
+    length = std::max(length, (plate.disc ? kWidths : kStripWidths) * plate.width);
+    discs |= plate.disc;
+  }
+  if (o.bed_width > 0.0) length = o.bed_width / r;
   bed.box = {length, discs ? length : kStripLength, depth / r};
   bed.box.own = o.own_bed;
   return bed;

@@ -27,10 +27,12 @@ struct SoilOptions {
   std::vector<double> cones;          // diameters of the base, m
   std::vector<double> depths;         // of the beds; empty: kDepths largest plates, m
   double sinkage = 0.0;               // 0: kSinkage of the smallest plate, m
-  double bed_width = 0.0;             // 0: kWidths of the largest plate or cone, m
+  double bed_width = 0.0;             // 0: kWidths of the largest disc, kStripWidths of the largest strip, m
   bool own_bed = false;               // use the scenario's bed for plates and cones
 };
-inline constexpr double kWidths = 5.0, kDepths = 3.0, kSinkage = 0.25;
+// Next to its images a strip in a bed five times as long bore 1.4 to 1.9 times as much as in one of ten
+// (scripts/docs/soils.md).
+inline constexpr double kWidths = 5.0, kStripWidths = 10.0, kDepths = 3.0, kSinkage = 0.25;
 
 /// Plates of several sizes that are pushed into a bed one after another; each starts from the bed's initial state.
 struct PlateBed {
@@ -41,7 +43,7 @@ struct PlateBed {
 
 /// A test with a plate of this size that is pushed in by `sinkage`, m.
 PlateTest plate_test(const SoilOptions& options, double size, bool disc, double sinkage);
-/// A bed for these plates, `depth` m deep; its width is kWidths of the largest plate, or that in the options.
+/// A bed for these plates, `depth` m deep, as wide as the options say.
 PlateBed plate_bed(const SoilOptions& options, const std::vector<PlateTest>& plates, double depth);
 
 /// Sizes of boxes and tools in grain radii, loads in Pa.

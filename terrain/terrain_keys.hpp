@@ -8,7 +8,8 @@ namespace furrow::terrain::keys {
 inline constexpr Key kMaterial =
     key("material", "", allowed::not_empty().or_null(),
         "Soil file with values for this section: loose_sand.json, dense_sand.json, cohesive_sand.json (measured with "
-        "furrow soil, engines dem and scm), grains_lete_sand.json, grains_sandy_loam.json, "
+        "furrow soil, engines dem and scm), grains_lete_sand.json, grains_lete_sand_loose.json, "
+        "grains_sandy_loam.json, "
         "grains_loose_dry_sand.json (fitted, engines of grains), "
         "lete_sand.json, upland_sandy_loam.json, dry_sand.json (published, engine scm) or your own, relative to the "
         "scenario, then in terrain/data. Keys of the scenario's own section override it; with --set it overrides them. "

@@ -1,14 +1,16 @@
 #!/usr/bin/python3
 """Does the grains' LETE sand bear plates as Wong's table says? Strips of 100 and 200 mm are pushed into beds of grains.
 
-usage: lete_plates.py [packings] [fits]
+usage: lete_plates.py [fit] [packings]
 
-`packings` presses them into beds of three packings and writes lete_plates.csv beside this script; a test that is
-finished is used again. `fits` calibrates rolling friction, cohesion and packing to Wong's two curves, alone and
-together with his friction angle and cohesion, and writes lete_plates_fits.csv; fits go on from finished evaluations.
+`fit` calibrates rolling friction, cohesion and packing to Wong's curve for 100 mm together with his friction angle and
+cohesion, and writes lete_plates_fit.csv; it goes on from finished evaluations. `packings` presses the strips into beds
+of three packings and of grains_lete_sand_loose.json, the result of the fit, and writes lete_plates.csv beside this
+script; a test that is finished is used again.
 
-A row of a fit is one evaluation: its parameters, targets with their errors, and misfit. A row of packings is one packing and width: pressure at six sinkages, mean over three beds with half of its 95 % interval; n of the
-fit p = (k_c/b + k_phi) z^n and k_c, k_phi, with standard errors; heaved over displaced volume. Rows without a solid
+A row of a fit is one evaluation: its parameters, and its figures with their errors. A row of packings is one bed and
+width: pressure at six sinkages, mean over three beds with half of its 95 % interval; n of the fit
+p = (k_c/b + k_phi) z^n and k_c, k_phi, with standard errors; heaved over displaced volume. Rows without a solid
 fraction are Wong's k_c, k_phi and n, of terrain/data/lete_sand.json.
 """
 import json
@@ -20,22 +22,25 @@ from calibrated_soils import evaluations
 from lete_sand import ANEW, RIG
 
 PACKINGS = {"0.52": {"terrain.solid_fraction": 0.52} | ANEW, "as fitted": {},
-            "0.60": {"terrain.solid_fraction": 0.6} | ANEW}
+            "0.60": {"terrain.solid_fraction": 0.6} | ANEW,
+            "fitted to plates": {"terrain.material": "grains_lete_sand_loose.json"}}
 SINKAGES = (10, 15, 20, 30, 50, 70)  # mm
 NEAR = 0.0025  # m, over which pressures are averaged
 WONG = driver.ROOT / "terrain" / "data" / "lete_sand.json"
 WIDTHS = (0.1, 0.2)  # m
-DEPTH = 0.4  # m, of the fits' beds
+FIT_END = 60  # mm, the deepest point of the fit
 FIT = {
     "format_version": 1, "calibrate": "grains", "start": RIG, "set": ANEW,
-    "tests": {"seeds": 3},
+    "tests": {"seeds": 3, "stresses": [20e3, 50e3, 100e3]},
     "parameters": {"rolling_friction": {"lower": 0.0, "upper": 1.0, "start": 0.3},
                    "cohesion": {"lower": 0.0, "upper": 60e3, "start": 7.4e3},
                    "solid_fraction": {"lower": 0.5, "upper": 0.6, "start": 0.55}},
-    "evaluations": 24, "result": "grains_lete_plates.json",
+    "targets": [{"data": "wong_100_mm.csv", "strip": 0.1, "depth": 0.3},
+                {"quantity": "friction_angle_deg", "data": str(WONG), "sigma": 1.0},
+                {"quantity": "cohesion_Pa", "data": str(WONG), "sigma": 300}],
+    "evaluations": 16, "result": "grains_lete_plates.json",
 }
-STRENGTH = [{"quantity": "friction_angle_deg", "data": str(WONG), "sigma": 1.0},
-            {"quantity": "cohesion_Pa", "data": str(WONG), "sigma": 300}]
+FITTED = driver.RESULTS / "lete_fit"
 
 
 def tested(packing, changed):
@@ -61,6 +66,17 @@ def wong(width, mm):
     return (soil["bekker_k_c"] / width + soil["bekker_k_phi"]) * (1e-3 * mm) ** soil["bekker_n"]
 
 
+def fit(made):
+    FITTED.mkdir(parents=True, exist_ok=True)
+    (FITTED / "wong_100_mm.csv").write_text("sinkage_m,pressure_Pa\n" + "".join(
+        f"{1e-3 * mm:g},{wong(0.1, mm):.6g}\n" for mm in range(0, FIT_END + 1, 2)), encoding="utf-8")
+    study = FITTED / "study.json"
+    study.write_text(json.dumps(FIT, indent=2) + "\n", encoding="utf-8")
+    driver.furrow("calibrate", study, "--out", FITTED / "fit", progress=True)
+    names = [f"at_{mm}_mm_Pa" for mm in range(20, FIT_END + 1, 10)] + ["friction_angle_deg", "cohesion_Pa"]
+    driver.write("lete_plates_fit.csv", evaluations(FITTED / "fit", names), made)
+
+
 def packings(made):
     rows = []
     for packing, changed in PACKINGS.items():
@@ -83,29 +99,11 @@ def packings(made):
     driver.write("lete_plates.csv", rows, made)
 
 
-def fits(made):
-    rows = []
-    for name, more in (("plates", []), ("plates and strength", STRENGTH)):
-        out = driver.RESULTS / ("lete_fit_" + name.replace(" ", "_"))
-        out.mkdir(parents=True, exist_ok=True)
-        targets = []
-        for width in WIDTHS:
-            data = out / f"wong_{1e3 * width:.0f}_mm.csv"
-            data.write_text("sinkage_m,pressure_Pa\n" + "".join(f"{1e-3 * mm:g},{wong(width, mm):.6g}\n"
-                                                                for mm in range(0, 73, 2)), encoding="utf-8")
-            targets.append({"data": str(data), "strip": width, "depth": DEPTH, "points": 6})
-        study = out / "study.json"
-        study.write_text(json.dumps(FIT | {"targets": targets + more}, indent=2) + "\n", encoding="utf-8")
-        driver.furrow("calibrate", study, "--out", out / "fit", progress=True)
-        rows += [{"fit": name} | row for row in evaluated(out / "fit")]
-    driver.write("lete_plates_fits.csv", rows, made)
-
-
 def main():
     parser = driver.options(__doc__)
-    parser.add_argument("parts", nargs="*", choices=("packings", "fits"))
+    parser.add_argument("parts", nargs="*", choices=("fit", "packings"))
     parts, made = parser.parse_args().parts, provenance.made_here()
-    for part in (packings, fits):
+    for part in (fit, packings):
         if not parts or part.__name__ in parts:
             part(made)
 

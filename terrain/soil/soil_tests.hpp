@@ -30,8 +30,8 @@ struct SoilOptions {
   double bed_width = 0.0;             // 0: kWidths of the largest disc, kStripWidths of the largest strip, m
   bool own_bed = false;               // use the scenario's bed for plates and cones
 };
-// Next to its images a strip in a bed five times as long bore 1.4 to 1.9 times as much as in one of ten
-// (scripts/docs/soils.md).
+// Next to its images a strip in a bed five times as long bore 1.4 to 1.8 times as much as in one of ten
+// down to 0.4 widths (scripts/docs/soils.md).
 inline constexpr double kWidths = 5.0, kStripWidths = 10.0, kDepths = 3.0, kSinkage = 0.25;
 
 /// Plates of several sizes that are pushed into a bed one after another; each starts from the bed's initial state.

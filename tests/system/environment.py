@@ -5,7 +5,6 @@ import json
 import os
 import pathlib
 import platform
-import re
 import shutil
 import signal
 import subprocess
@@ -122,12 +121,14 @@ class Launcher(EnvironmentTest):
         self.check("trap '' TERM; while true; do sleep 0.1; done\n", "mpirun said nothing", 40)
 
     def test_what_the_user_has_set_for_it_is_named(self):
-        # Open MPI 5 loses its own words at times.
-        words = (r"no rank could be started \(are PATH, TMPDIR, OMPI_MCA_btl right, is FURROW_MPIRUN Open MPI's\?\): "
-                 r"mpirun ended.*Component: bogus")
-        said = (self.furrow("run", self.path, "--out", "out", "--overwrite", code=5, errors=1,
-                            env={"OMPI_MCA_btl": "bogus", "OMPI_MCA_orte_jobid": "left over"}).stderr for _ in range(5))
-        self.assertTrue(any(re.search(words, one) for one in said))
+        version = subprocess.run([shutil.which("mpirun"), "--version"], capture_output=True, text=True).stdout
+        for _ in range(1 if "(Open MPI) 4" in version else 5):  # Open MPI 5 loses its own words at times
+            said = self.furrow("run", self.path, "--out", "out", "--overwrite", code=5, errors=1,
+                               env={"OMPI_MCA_btl": "bogus", "OMPI_MCA_orte_jobid": "left over"}).stderr
+            if "Component: bogus" in said:
+                break
+        self.assertRegex(said, r"no rank could be started \(are PATH, TMPDIR, OMPI_MCA_btl right, is "
+                         r"FURROW_MPIRUN Open MPI's\?\): mpirun ended.*Component: bogus")
 
     def test_bad_time_out(self):
         self.furrow("run", self.path, "--out", "out", env={"FURROW_START_TIMEOUT": "soon"}, code=2, errors=1,
@@ -148,7 +149,7 @@ class Limits(EnvironmentTest):
 
     def test_stack(self):
         # The loader of glibc 2.41 needs more than 128 kB before the program begins.
-        kb = 256 if platform.libc_ver()[1] >= "2.37" else 64
+        kb = 256 if platform.libc_ver()[1] >= "2.41" else 64
         self.limited(f"-S -s {kb}", "run", self.path, *SHORT, "--out", "out")  # may be raised
         if os.geteuid() != 0:
             self.limited(f"-s {kb}", "validate", self.path, code=6, errors=1,

@@ -64,6 +64,12 @@ class Lines {
 
 bool memory_is_scarce() { return address_space_limit().bytes < kScarce; }
 
+/// The text, and that the folder for temporary files has little room, if so.
+std::string with_little_room(const std::string& text) {
+  const std::string little = little_room();
+  return little.empty() ? text : text + "; " + little;
+}
+
 LaunchResult out_of_memory(const std::string& text) {
   return {ExitCode::limit, fmt::format("{}: {}", scenario::out_of_memory(0.0).what(), text)};
 }
@@ -337,12 +343,11 @@ LaunchResult Supervisor::lost_rank(int rank, const std::string& how) const {
 LaunchResult Supervisor::outcome() const {
   const bool exited = WIFEXITED(status_);
   const int status = exited ? WEXITSTATUS(status_) : -1;
-  const std::string little = little_room(), room = little.empty() ? "" : "; " + little;
   if (late_ && stop_seen_ == 0.0) {
     const std::string said = launcher_said();
-    const std::string text = fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
-                                         start_.standing(), launch_.patience, said) +
-                             room;
+    const std::string text =
+        with_little_room(fmt::format("{} within {:g} s (FURROW_START_TIMEOUT sets another time): mpirun {}",
+                                     start_.standing(), launch_.patience, said));
     if (said.find(std::strerror(ENOMEM)) == std::string::npos && !memory_is_scarce()) return {ExitCode::io, text};
     return out_of_memory(text);
   }
@@ -378,7 +383,7 @@ LaunchResult Supervisor::outcome() const {
   std::vector<std::string> suspects = launcher_settings();
   suspects.insert(suspects.begin(), {"PATH", "TMPDIR"});
   return {ExitCode::io, fmt::format("no rank could be started (are {} right, is FURROW_MPIRUN Open MPI's?): {}",
-                                    fmt::join(suspects, ", "), text + room)};
+                                    fmt::join(suspects, ", "), with_little_room(text))};
 }
 
 }  // namespace

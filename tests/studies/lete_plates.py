@@ -6,7 +6,8 @@ usage: lete_plates.py [fit] [packings]
 `fit` calibrates rolling friction, cohesion and packing to Wong's curve for 100 mm together with his friction angle and
 cohesion, and writes lete_plates_fit.csv; it goes on from finished evaluations. `packings` presses the strips into beds
 of three packings and of grains_lete_sand_loose.json, the result of the fit, and writes lete_plates.csv beside this
-script; a test that is finished is used again.
+script; a test that is finished is used again. The committed fit is of beds five strips long, the default before
+2381f383; now it is ten.
 
 A row of a fit is one evaluation: its parameters, and its figures with their errors. A row of packings is one bed and
 width: pressure at six sinkages, mean over three beds with half of its 95 % interval; n of the fit
@@ -27,6 +28,7 @@ PACKINGS = {"0.52": {"terrain.solid_fraction": 0.52} | ANEW, "as fitted": {},
 SINKAGES = (10, 15, 20, 30, 50, 70)  # mm
 NEAR = 0.0025  # m, over which pressures are averaged
 WONG = driver.ROOT / "terrain" / "data" / "lete_sand.json"
+TABLE = driver.read_json(WONG)["terrain"]
 WIDTHS = (0.1, 0.2)  # m
 FIT_END = 60  # mm, the deepest point of the fit
 FIT = {
@@ -62,8 +64,7 @@ def pressures(table, width):
 
 def wong(width, mm):
     """Pressure of Wong's table, Pa"""
-    soil = driver.read_json(WONG)["terrain"]
-    return (soil["bekker_k_c"] / width + soil["bekker_k_phi"]) * (1e-3 * mm) ** soil["bekker_n"]
+    return (TABLE["bekker_k_c"] / width + TABLE["bekker_k_phi"]) * (1e-3 * mm) ** TABLE["bekker_n"]
 
 
 def fit(made):
@@ -91,10 +92,9 @@ def packings(made):
                 row |= {key: bed[key], f"{key}_se": bed["standard_error"][key]}
             rows.append(row | {"heaved_share": plate["heaved_share"],
                                "heaved_share_se": plate["standard_error"]["heaved_share"]})
-    table = driver.read_json(WONG)["terrain"]
     for width in WIDTHS:
         rows.append({"packing": "Wong's table", "width_mm": 1e3 * width}
-                    | {key: table[f"bekker_{key}"] for key in ("n", "k_c", "k_phi")}
+                    | {key: TABLE[f"bekker_{key}"] for key in ("n", "k_c", "k_phi")}
                     | {f"at_{z}_mm_kPa": 1e-3 * wong(width, z) for z in SINKAGES})
     driver.write("lete_plates.csv", rows, made)
 

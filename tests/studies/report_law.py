@@ -11,8 +11,8 @@ in one rut; writes report_law_passes.csv. `factors`: what turns the trend of Fig
 runs: pull at slips 0.1 and 0.7; writes report_law_factors.csv. `small_steps`: the rig at steps of 3, 6 and 20 µs on
 the first bed, for the law as it is printed; writes report_law_small_steps.csv. `full_size`: the ends of Figs 8, 15 and
 16 with the report's grains of 6 mm, layered tire and step, drawbar_pull_tr.json, on the first bed; writes
-report_law_full_size.csv. `janosi`: the tractive effort that the
-shear strength at the speed of sliding would give, beside the rig's; runs nothing and writes report_law_janosi.csv.
+report_law_full_size.csv. `janosi`: the tractive effort that the shear strength at the speed of sliding would give,
+beside the rig's; runs nothing and writes report_law_janosi.csv.
 
 Expected, written down before the first run: a trend agrees with the report's if the 95 % interval of the slope over
 beds excludes zero with the report's sign: pull grows with slip (Fig. 8), tractive effort falls with cohesion (Fig. 16),
@@ -110,14 +110,17 @@ def run_of(part, case, seed, finished, *changed, of=RIG):
     return driver.summary(out) if driver.done_run(words, out, finished) else None
 
 
+def row_of(case, seed, summary):
+    return {"case": case, "seed": seed, "slip": CASES[case].get("rig.slip", 0.3),
+            "cohesion_kPa": CASES[case].get("terrain.cohesion", 80e3) / 1e3, **driver.drawbar_row(summary, FIGURES)}
+
+
 def rig(seeds, finished):
     rows, made = [], provenance.made_here()
     for seed in seeds:
         for case, changed in CASES.items():
             if summary := run_of("report_law", case, seed, finished, LAW, changed):
-                rows.append({"case": case, "seed": seed, "slip": changed.get("rig.slip", 0.3),
-                             "cohesion_kPa": changed.get("terrain.cohesion", 80e3) / 1e3,
-                             **driver.drawbar_row(summary, FIGURES)})
+                rows.append(row_of(case, seed, summary))
                 driver.write("report_law.csv", rows, made)
     trends = (("Fig. 8: pull, N for each unit of slip", "slip ", "slip", "pull_N"),
               ("Fig. 16: tractive effort, N for each kPa", "cohesion ", "cohesion_kPa", "gross_N"),
@@ -210,9 +213,7 @@ def full_size(seed, finished):
     rows, made = [], provenance.made_here()
     for case in FULL_SIZE:
         if summary := run_of("report_law_full_size", case, seed, finished, CASES[case], of=FULL):
-            rows.append({"case": case, "seed": seed, "slip": CASES[case].get("rig.slip", 0.3),
-                         "cohesion_kPa": CASES[case].get("terrain.cohesion", 80e3) / 1e3,
-                         **driver.drawbar_row(summary, FIGURES)})
+            rows.append(row_of(case, seed, summary))
             driver.write("report_law_full_size.csv", rows, made)
 
 

@@ -51,6 +51,8 @@ constexpr std::array<std::string_view, 20> kRead{"UNITS",
                                                  "ALIGNING_COEFFICIENTS",
                                                  "TURNSLIP_COEFFICIENTS"};
 
+bool is_read(std::string_view section) { return std::find(kRead.begin(), kRead.end(), section) != kRead.end(); }
+
 /// Names that PAC2002 has for the same.
 const std::map<std::string, std::string> kOtherNames{{"INFLPRES", "IP"}, {"NOMPRES", "IP_NOM"}, {"PPMX1", "QPX1"},
                                                      {"PPZ1", "QPZ1"},   {"PPZ2", "QPZ2"},      {"Q_FZ1", "QFZ1"},
@@ -135,7 +137,7 @@ class Sections {
       if (!sections_.contains(std::string(name))) missing.emplace_back(name);
     std::vector<std::pair<std::string, std::string>> pairs;
     for (const auto& [name, section] : sections_)
-      if (std::find(kRead.begin(), kRead.end(), name) == kRead.end())
+      if (!is_read(name))
         if (const std::vector<std::string> others = nearest_words(name, missing); !others.empty())
           pairs.emplace_back(name, others.front());
     return pairs;
@@ -189,7 +191,7 @@ class Sections {
   void begin_section(std::string name, int number) {
     open_ = std::move(name);
     block_ = false;
-    reads_ = std::find(kRead.begin(), kRead.end(), open_) != kRead.end();
+    reads_ = is_read(open_);
     const auto [section, fresh] = sections_.try_emplace(open_, Section{number, {}, {}});
     if (!fresh && reads_)
       throw input_error(
